@@ -1,0 +1,1 @@
+//! Case files, schema, results, pictures, checkpoints.

@@ -1,0 +1,544 @@
+//! The case: all that a user writes about one model. Plain data with SI units; angles in degrees only under keys that
+//! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `build`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A closed or open list of points (m).
+pub type PointList = Vec<[f64; 2]>;
+/// Pairs of time (s) and factor; linear between, constant beyond both ends.
+pub type TimeTable = Vec<[f64; 2]>;
+
+/// One model, its loads, stages and outputs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// What the model is.
+    pub title: String,
+    /// Rock outline and joint traces from files.
+    pub domain: Domain,
+    /// The regular triangular mesh of mathematical covers.
+    pub mesh: Mesh,
+    /// Joint traces.
+    #[serde(default, rename = "joint")]
+    pub joints: Vec<JointTrace>,
+    /// Generated joint sets.
+    #[serde(default, rename = "joint_set")]
+    pub joint_sets: Vec<JointSet>,
+    /// Rocks by name.
+    #[serde(rename = "rock")]
+    pub rocks: BTreeMap<String, Rock>,
+    /// Joint laws by name.
+    #[serde(default, rename = "joint_law")]
+    pub joint_laws: BTreeMap<String, JointLaw>,
+    /// Acceleration of gravity.
+    #[serde(default)]
+    pub gravity: Gravity,
+    /// Fixities.
+    #[serde(default, rename = "fix")]
+    pub fixes: Vec<Fix>,
+    /// Loads.
+    #[serde(default, rename = "load")]
+    pub loads: Vec<Load>,
+    /// Velocities at the start.
+    #[serde(default, rename = "initial_velocity")]
+    pub initial_velocities: Vec<InitialVelocity>,
+    /// Stress before the first stage.
+    #[serde(default)]
+    pub in_situ: Option<InSitu>,
+    /// Stages in order.
+    #[serde(rename = "stage")]
+    pub stages: Vec<Stage>,
+    /// Points whose motion goes into the history.
+    #[serde(default, rename = "monitor")]
+    pub monitors: Vec<Monitor>,
+    /// What to write and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// Numerical choices.
+    #[serde(default)]
+    pub solver: Solver,
+}
+
+/// Rock outline, holes, islands, and a file that may hold them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Outer loop of the rock (m), either sense; this or `geometry_file` with an outline.
+    #[serde(default)]
+    pub outline: PointList,
+    /// Loops cut out of the outline (m).
+    #[serde(default)]
+    pub holes: Vec<PointList>,
+    /// Loops of rock inside holes or beside the outline (m).
+    #[serde(default)]
+    pub islands: Vec<PointList>,
+    /// JSON (`outline`, `joints`), GeoJSON lines or DXF lines, relative to the case file.
+    #[serde(default)]
+    pub geometry_file: Option<PathBuf>,
+    /// Law of traces that name none.
+    #[serde(default)]
+    pub joint_law: Option<String>,
+    /// Distance (m) within which points and edges become one; default 1e-6 of the bounding-box diagonal.
+    #[serde(default)]
+    pub snap_tolerance: Option<f64>,
+}
+
+/// Equilateral lattice: node(i, j) = origin + i·a1 + j·a2, a1 = size·(cos, sin)(angle), a2 = a1 turned by +60°.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// Side of a triangle (m).
+    pub size: f64,
+    /// Direction of a1 from the x axis (degrees).
+    #[serde(default)]
+    pub angle_deg: f64,
+    /// Node (0, 0) (m).
+    #[serde(default)]
+    pub origin: [f64; 2],
+}
+
+/// One joint: a polyline in the reference configuration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointTrace {
+    /// At least two points (m).
+    pub points: PointList,
+    /// Joint law by name; default `domain.joint_law`.
+    #[serde(default)]
+    pub law: Option<String>,
+}
+
+/// Straight parallel joints generated from statistics; the same seed gives the same joints.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointSet {
+    /// Direction of the traces, counter-clockwise from the x axis (degrees).
+    pub dip_deg: f64,
+    /// Standard deviation of the direction (degrees).
+    #[serde(default)]
+    pub dip_sd_deg: f64,
+    /// Mean distance between neighbouring lines, normal to them (m).
+    pub spacing: f64,
+    /// Standard deviation of the spacing (m).
+    #[serde(default)]
+    pub spacing_sd: f64,
+    /// Length of a trace (m); default: through the whole region.
+    #[serde(default)]
+    pub trace_length: Option<f64>,
+    /// Standard deviation of the trace length (m).
+    #[serde(default)]
+    pub trace_length_sd: f64,
+    /// Rock bridge between traces on one line (m).
+    #[serde(default)]
+    pub gap: f64,
+    /// Seed of the generator.
+    #[serde(default)]
+    pub seed: u64,
+    /// Polygon (m) to which the traces are clipped; default: the bounding box of the outline.
+    #[serde(default)]
+    pub region: Option<PointList>,
+    /// Joint law by name; default `domain.joint_law`.
+    #[serde(default)]
+    pub law: Option<String>,
+}
+
+/// Plane strain or plane stress.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Plane {
+    /// No strain out of the plane.
+    #[default]
+    Strain,
+    /// No stress out of the plane.
+    Stress,
+}
+
+/// A linear elastic rock.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rock {
+    /// Density (kg/m³).
+    pub density: f64,
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Plane strain or plane stress.
+    #[serde(default)]
+    pub plane: Plane,
+    /// Polygon (m): elements whose centroid lies inside are of this rock.
+    #[serde(default)]
+    pub region: Option<PointList>,
+    /// Points (m): the blocks that hold them are of this rock.
+    #[serde(default)]
+    pub blocks: PointList,
+}
+
+/// Kind of a joint law.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum JointLawKind {
+    /// |T| ≤ N·tan φ + c·l with tension cut-off, peak and residual values, dilation.
+    #[default]
+    MohrCoulomb,
+}
+
+/// Strength and stiffness of a joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointLaw {
+    /// Kind of law.
+    #[serde(default)]
+    pub kind: JointLawKind,
+    /// Normal stiffness (Pa/m); default: the solver's contact stiffness.
+    #[serde(default)]
+    pub normal_stiffness: Option<f64>,
+    /// Shear stiffness (Pa/m); default: the solver's contact stiffness.
+    #[serde(default)]
+    pub shear_stiffness: Option<f64>,
+    /// Friction angle (degrees).
+    pub friction_deg: f64,
+    /// Cohesion (Pa).
+    #[serde(default)]
+    pub cohesion: f64,
+    /// Tensile strength (Pa).
+    #[serde(default)]
+    pub tension: f64,
+    /// Friction angle after failure (degrees); default: `friction_deg`.
+    #[serde(default)]
+    pub residual_friction_deg: Option<f64>,
+    /// Cohesion after failure (Pa); default: `cohesion`.
+    #[serde(default)]
+    pub residual_cohesion: Option<f64>,
+    /// Tensile strength after failure (Pa).
+    #[serde(default)]
+    pub residual_tension: f64,
+    /// Dilation angle while slipping (degrees).
+    #[serde(default)]
+    pub dilation_deg: f64,
+    /// Slip (m) at which dilation ends; default: never.
+    #[serde(default)]
+    pub dilation_slip: Option<f64>,
+}
+
+/// Acceleration of gravity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gravity {
+    /// Horizontal part (m/s²).
+    #[serde(default)]
+    pub x: f64,
+    /// Vertical part (m/s²), up positive.
+    #[serde(default = "standard_gravity")]
+    pub y: f64,
+}
+
+fn standard_gravity() -> f64 {
+    -9.81
+}
+
+impl Default for Gravity {
+    fn default() -> Self {
+        Self { x: 0.0, y: standard_gravity() }
+    }
+}
+
+/// Axes that a fixity holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Horizontal.
+    X,
+    /// Vertical.
+    Y,
+    /// Both.
+    #[default]
+    Xy,
+}
+
+/// Holds a part of the rock; exactly one of `point`, `edge`, `box`, `block`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fix {
+    /// Name, for stages that free or fix.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// A material point (m).
+    #[serde(default)]
+    pub point: Option<[f64; 2]>,
+    /// The parts of the rock boundary on this segment (m).
+    #[serde(default)]
+    pub edge: Option<[[f64; 2]; 2]>,
+    /// `[xmin, ymin, xmax, ymax]` (m): the physical covers whose area centroid lies inside.
+    #[serde(default, rename = "box")]
+    pub region: Option<[f64; 4]>,
+    /// The whole block that holds this point (m).
+    #[serde(default)]
+    pub block: Option<[f64; 2]>,
+    /// What is held.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 and 100 times the contact stiffness.
+    #[serde(default)]
+    pub stiffness: Option<f64>,
+    /// Whether it holds from the start.
+    #[serde(default = "yes")]
+    pub active: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// What a load acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LoadKind {
+    /// `force` (N/m) at the material point `point`.
+    Point,
+    /// `traction` (Pa, global axes) on the boundary parts along `edge`.
+    Traction,
+    /// `pressure` (Pa, pushing into the rock) on the boundary parts along `edge`; follows the surface.
+    Pressure,
+    /// `acceleration` (m/s²) of all rock, added to gravity.
+    Body,
+    /// `force` (N/m) and `moment` (N·m/m, counter-clockwise) about the centroid of the block that holds `point`.
+    Block,
+}
+
+/// A load with an optional time table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// Name.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// What it acts on.
+    pub kind: LoadKind,
+    /// Material point (m), for `point` and `block`.
+    #[serde(default)]
+    pub point: Option<[f64; 2]>,
+    /// Segment (m), for `traction` and `pressure`.
+    #[serde(default)]
+    pub edge: Option<[[f64; 2]; 2]>,
+    /// Force (N per metre of depth).
+    #[serde(default)]
+    pub force: Option<[f64; 2]>,
+    /// Moment (N·m per metre of depth), counter-clockwise.
+    #[serde(default)]
+    pub moment: Option<f64>,
+    /// Traction (Pa) in global axes.
+    #[serde(default)]
+    pub traction: Option<[f64; 2]>,
+    /// Pressure (Pa), pushing into the rock.
+    #[serde(default)]
+    pub pressure: Option<f64>,
+    /// Acceleration (m/s²).
+    #[serde(default)]
+    pub acceleration: Option<[f64; 2]>,
+    /// Factor over time; default 1 always.
+    #[serde(default)]
+    pub table: Option<TimeTable>,
+}
+
+/// Velocity at the start of the first stage.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialVelocity {
+    /// The block that holds this point (m); default: all blocks.
+    #[serde(default)]
+    pub block: Option<[f64; 2]>,
+    /// Velocity of the centroid (m/s).
+    #[serde(default)]
+    pub velocity: [f64; 2],
+    /// Angular velocity about the centroid (rad/s), counter-clockwise.
+    #[serde(default)]
+    pub angular_velocity: f64,
+}
+
+/// Stress before the first stage (Pa, tension positive): value + gradient·(y − y_reference).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InSitu {
+    /// Horizontal normal stress (Pa).
+    pub sxx: f64,
+    /// Vertical normal stress (Pa).
+    pub syy: f64,
+    /// Shear stress (Pa).
+    #[serde(default)]
+    pub sxy: f64,
+    /// Change of the three with height (Pa/m).
+    #[serde(default)]
+    pub gradient: [f64; 3],
+    /// Height (m) at which the values hold.
+    #[serde(default)]
+    pub y_reference: f64,
+}
+
+/// How a stage treats time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StageKind {
+    /// Damped to equilibrium; time is a path, not physics.
+    Static,
+    /// True motion.
+    Dynamic,
+}
+
+/// One stage: changes at its start, then motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// Name.
+    pub name: String,
+    /// Static or dynamic.
+    pub kind: StageKind,
+    /// Simulated time (s); for a static stage the most that it may take.
+    pub duration: f64,
+    /// Static: unbalanced ratio at which the stage ends.
+    #[serde(default)]
+    pub convergence: Option<f64>,
+    /// Static: time (s) over which gravity and body loads grow from nothing; default: from the model's height and wave
+    /// speed in the first stage, 0 in later stages.
+    #[serde(default)]
+    pub ramp: Option<f64>,
+    /// Dynamic: damping ratio ξ of the deformation of each block.
+    #[serde(default)]
+    pub damping: Option<f64>,
+    /// Points (m): the blocks that hold them are removed.
+    #[serde(default)]
+    pub excavate: PointList,
+    /// Polygon (m): the blocks whose reference centroid lies inside are removed.
+    #[serde(default)]
+    pub excavate_region: Option<PointList>,
+    /// Values of joint laws that change.
+    #[serde(default, rename = "law")]
+    pub law_changes: Vec<LawChange>,
+    /// Joints of one law that take another.
+    #[serde(default, rename = "switch_law")]
+    pub law_switches: Vec<LawSwitch>,
+    /// Fixities by name that begin to hold.
+    #[serde(default)]
+    pub fix: Vec<String>,
+    /// Fixities by name that let go.
+    #[serde(default)]
+    pub free: Vec<String>,
+}
+
+/// New values of one joint law; what is not given stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawChange {
+    /// Joint law by name.
+    pub law: String,
+    /// Friction angle (degrees), peak and residual.
+    #[serde(default)]
+    pub friction_deg: Option<f64>,
+    /// Cohesion (Pa), peak and residual.
+    #[serde(default)]
+    pub cohesion: Option<f64>,
+    /// Tensile strength (Pa), peak.
+    #[serde(default)]
+    pub tension: Option<f64>,
+}
+
+/// Joints of law `from` take law `to`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawSwitch {
+    /// Law to replace, by name.
+    pub from: String,
+    /// Law that takes its place, by name.
+    pub to: String,
+}
+
+/// A material point whose motion goes into the history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Monitor {
+    /// Name; heads the columns.
+    pub name: String,
+    /// Place in the reference configuration (m).
+    pub point: [f64; 2],
+}
+
+/// What to write and how often.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Simulated time between frames (s); default: a twentieth of each stage's duration.
+    pub frame_interval: Option<f64>,
+    /// Simulated time between rows of the history (s); default: a five-hundredth of each stage's duration.
+    pub history_interval: Option<f64>,
+    /// Simulated time between checkpoints (s); default: one at the end.
+    pub checkpoint_interval: Option<f64>,
+    /// Whether to write VTU frames.
+    pub frames: bool,
+    /// Whether to draw pictures.
+    pub pictures: bool,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { frame_interval: None, history_interval: None, checkpoint_interval: None, frames: true, pictures: true }
+    }
+}
+
+/// Time integration.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Lumped mass, leapfrog, open–close iteration.
+    #[default]
+    Explicit,
+}
+
+/// Numerical choices; the defaults are those of `docs/theory.md`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// Time integration.
+    pub integrator: Integrator,
+    /// Communication step (s); the internal step is an integer fraction of its tenth.
+    pub communication_step: Option<f64>,
+    /// Largest internal step (s); default: the stability limit.
+    pub dt_max: Option<f64>,
+    /// Share of the stability limit that is used.
+    pub dt_safety: f64,
+    /// Contact stiffness: normal_stiffness = this·(λ+2μ)/mesh size.
+    pub contact_stiffness: f64,
+    /// Shear over normal contact stiffness.
+    pub shear_ratio: f64,
+    /// θ of the contact spring: 1 is backward Euler, more adds a dashpot.
+    pub contact_theta: f64,
+    /// Change of a contact force, relative to the largest, below which the open–close iteration has settled.
+    pub contact_tolerance: f64,
+    /// Most sweeps of the open–close iteration in a step.
+    pub sweeps_max: u32,
+    /// Penetration, relative to the mesh size, at which the run stops as failed.
+    pub penetration_limit: f64,
+    /// Memory (bytes) that a model may need.
+    pub memory_limit: u64,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::Explicit,
+            communication_step: None,
+            dt_max: None,
+            dt_safety: 0.9,
+            contact_stiffness: 0.5,
+            shear_ratio: 0.5,
+            contact_theta: 4.0,
+            contact_tolerance: 1e-2,
+            sweeps_max: 8,
+            penetration_limit: 0.5,
+            memory_limit: 8 << 30,
+        }
+    }
+}
