@@ -276,6 +276,7 @@ impl Narrow<'_> {
             law,
             approach: [0.0; 2],
             torn: false,
+            fresh: pick.held.is_none(),
         };
         self.weigh(&mut contact);
         contact

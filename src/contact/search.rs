@@ -1,6 +1,6 @@
 //! Which nodes are near which edges: a bucket grid over the edges, rebuilt when nodes have moved far enough.
 
-use crate::geometry::{Point, polygon};
+use crate::geometry::{Point, segment};
 
 use super::Boundary;
 
@@ -70,7 +70,7 @@ impl SearchGrid {
             for &edge in &self.bucket_edges[self.bucket_start[bucket] as usize..self.bucket_start[bucket + 1] as usize] {
                 let e = edge as usize;
                 if may_meet(boundary, node, e, fixed)
-                    && polygon::distance_to_segment(p, place[e], place[boundary.after(e)]) < cutoff
+                    && segment::distance(p, place[e], place[boundary.after(e)]) < cutoff
                 {
                     self.near.push(Candidate { node: node as u32, side: boundary.side[e], edge });
                 }

@@ -81,11 +81,35 @@ pub struct VertexEdge {
     pub approach: [f64; 2],
     /// Whether the normal force asked for more tension than the joint has.
     pub torn: bool,
+    /// Whether the contact is seen for the first time.
+    pub fresh: bool,
 }
 
 impl VertexEdge {
     /// Unit tangent of the edge.
     pub fn tangent(&self) -> Vector {
         Vector::new(-self.normal.y, self.normal.x)
+    }
+}
+
+impl VertexEdge {
+    /// Normal and shear component of a cover field at the node relative to the edge.
+    pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
+        let at = |k: usize| -> Vector {
+            self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
+        };
+        let relative = at(0) - at(1);
+        [relative.dot(&self.normal), relative.dot(&self.tangent())]
+    }
+
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m), theory Eq. (15).
+    pub fn shear_after(&self, shear: f64) -> (f64, f64) {
+        if self.history.state == ContactState::Open {
+            return (0.0, 0.0);
+        }
+        let limit = (self.history.normal_force * self.limits.friction + self.limits.cohesion).max(0.0);
+        let trial = self.history.shear_stored - self.stiffness[1] * shear;
+        let stored = trial.clamp(-limit, limit);
+        (stored, (trial - stored).abs() / self.stiffness[1])
     }
 }

@@ -1,6 +1,6 @@
 //! Cuts mathematical covers into physical covers, manifold elements and blocks.
 
-use crate::geometry::{Arrangement, NONE, Point, Vector, polygon};
+use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 
 use super::mesh::{RegularMesh, Triangle};
 use super::order::morton;
@@ -104,7 +104,7 @@ impl Covers {
         let distance = |e: usize| -> f64 {
             let points = self.polygon(e);
             let sides = points.iter().zip(points.iter().cycle().skip(1));
-            sides.map(|(a, b)| polygon::distance_to_segment(p, *a, *b)).fold(f64::INFINITY, f64::min)
+            sides.map(|(a, b)| segment::distance(p, *a, *b)).fold(f64::INFINITY, f64::min)
         };
         self.element_at(p).or_else(|| {
             let near = (0..self.element_count())
@@ -176,7 +176,8 @@ impl RawElements {
         };
         for (k, &f) in face.iter().enumerate() {
             of_face[f as usize] = k as u32;
-            raw.integrate(&arrangement.face_loops(f));
+            let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
+            raw.integrate(&loops);
         }
         raw.face = face;
         raw.of_face = of_face;
@@ -185,11 +186,11 @@ impl RawElements {
 
     fn integrate(&mut self, loops: &[Vec<Point>]) {
         let base = loops[0][0];
-        let mut total = polygon::Moments::default();
-        for points in loops {
-            let local: Vec<Point> = points.iter().map(|p| p - base).collect();
-            total += polygon::moments(&local);
-        }
+        let total = loops
+            .iter()
+            .map(|points| polygon::Moments::of(points, base))
+            .reduce(|a, b| a + b)
+            .expect("a face of rock has an outer loop");
         let centroid = total.first / total.area;
         self.area.push(total.area);
         self.centroid.push(base + centroid);

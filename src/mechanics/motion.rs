@@ -102,25 +102,27 @@ pub fn kinetic_energy(kick: &Kick) -> f64 {
         + 0.5 * (polar - lumped) / (lumped * lumped) * sums.moment * sums.moment
 }
 
-/// Spin (rad/s) and angular momentum (kg·m²/s per metre) of a block about its centroid in its metric.
-pub fn angular_momentum(kick: &Kick) -> [f64; 2] {
-    let sums = kick.sums(kick.centre());
-    [sums.spin, kick.metric.polar[kick.block] * sums.spin]
+/// Rigid motion of a block in its metric: centroid (m), its velocity (m/s) and the spin (rad/s).
+pub fn rigid_motion(kick: &Kick) -> (Point, Vector, f64) {
+    let centre = kick.centre();
+    let sums = kick.sums(centre);
+    (centre, sums.velocity, sums.spin)
 }
 
-/// Velocity (m/s) of a block's covers that is a rigid spin (rad/s) about the centroid plus a translation (m/s).
-pub fn polar(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vector]) {
+/// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
+pub fn rigid_velocity(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vector]) {
     let centre = kick.centre();
     for (k, i) in kick.covers.clone().enumerate() {
         out[k] = velocity + turned(kick.place(i) - centre) * spin;
     }
 }
 
-/// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes `predicted` velocities
-/// and returns centroid and damped energy, theory Eqs. (3), (10)–(12).
-pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector]) -> BlockMotion {
+/// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes the `damped` and the
+/// `predicted` velocities and returns centroid and damped energy, theory Eqs. (3), (10)–(12).
+pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mut [Vector]) -> BlockMotion {
     let centre = kick.centre();
-    let damped = damp(kick, centre, predicted);
+    let loss = damp(kick, centre, predicted);
+    damped.copy_from_slice(predicted);
     if kick.metric.is_free(kick.block) {
         push_free(kick, centre, force, predicted);
     } else {
@@ -129,7 +131,7 @@ pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector]) -> BlockMot
             predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
         }
     }
-    BlockMotion { centre, damped }
+    BlockMotion { centre, damped: loss }
 }
 
 fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {

@@ -28,6 +28,15 @@ pub struct Ledger {
 }
 
 impl Ledger {
+    /// Adds the works of another ledger times `share`; energies of now stay.
+    pub fn add_works(&mut self, works: &Ledger, share: f64) {
+        self.friction += share * works.friction;
+        self.contact_work += share * works.contact_work;
+        self.support_work += share * works.support_work;
+        self.damping += share * works.damping;
+        self.external_work += share * works.external_work;
+    }
+
     /// Energy dissipated by contact springs: dashpots, impacts and the numerical damping of the implicit spring.
     pub fn contact_dissipation(&self) -> f64 {
         -(self.contact_work + self.support_work) - self.stored - self.friction

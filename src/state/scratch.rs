@@ -15,6 +15,8 @@ pub struct Scratch {
     pub force: Vec<Vector>,
     /// Velocities without contact forces (m/s).
     pub predicted: Vec<Vector>,
+    /// Velocities after damping and before any force (m/s).
+    pub damped: Vec<Vector>,
     /// Centroid and damped energy of each block.
     pub motion: Vec<BlockMotion>,
     /// Current places of boundary points (m).
