@@ -1,1 +1,5 @@
 //! Case files, schema, results, pictures, checkpoints.
+
+pub mod files;
+pub mod history;
+pub mod vtu;
