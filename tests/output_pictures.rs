@@ -33,7 +33,7 @@ fn series(name: &str, unit: &str, value: impl Fn(f64) -> f64) -> Series {
 
 #[test]
 fn a_jointed_slope_is_drawn() {
-    let slope = sample(3.4, 3.0);
+    let slope = sample(3.4, 1.8);
     check(&model_picture(&slope.reference, &slope.decor), "model.png");
     let title = "Rock slope with two joint sets";
     check(&displacement_picture(&slope.moved(2.5, 2.0), title, &profile()), "displacement.png");

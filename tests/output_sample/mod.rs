@@ -153,7 +153,7 @@ fn blocks(spacing: f64) -> Vec<Vec<Point>> {
         let corner = |i, j| Point::new(50.0, 30.0) + along * jitter(i, 4.0) + across * jitter(j, 1.0);
         [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
     };
-    cells.map(|at| clipped(&profile, &cell(at))).filter(|block| area(block) > 1e-6).collect()
+    cells.map(|at| without_spikes(clipped(&profile, &cell(at)))).filter(|block| area(block) > 1e-6).collect()
 }
 
 /// Triangles of the lattice that may meet the block, with their nodes.
@@ -196,6 +196,20 @@ fn clipped(subject: &[Point], clip: &[Point]) -> Vec<Point> {
         }
         kept
     })
+}
+
+/// Without corners at which the outline turns back on itself, which clipping an outline that is not convex leaves.
+fn without_spikes(mut polygon: Vec<Point>) -> Vec<Point> {
+    while let Some(k) = (0..polygon.len()).find(|&k| is_spike(&polygon, k)) {
+        polygon.remove(k);
+    }
+    polygon
+}
+
+fn is_spike(polygon: &[Point], k: usize) -> bool {
+    let n = polygon.len();
+    let (to, from) = (polygon[k] - polygon[(k + n - 1) % n], polygon[(k + 1) % n] - polygon[k]);
+    to.perp(&from).abs() <= 1e-9 && to.dot(&from) <= 0.0
 }
 
 fn edges(polygon: &[Point]) -> impl Iterator<Item = [Point; 2]> {

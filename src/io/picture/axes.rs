@@ -1,7 +1,7 @@
 //! From metres to pixels: bounds, views with equal axes, ticks and the numbers beside them.
 
 use super::colour::{GREY, INK, PALE};
-use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle};
+use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle, text_width};
 use crate::geometry::{Point, Vector};
 
 /// Size (px) of numbers on axes.
@@ -132,8 +132,10 @@ impl View {
             sheet.line([left - TICK_LENGTH, y], [left, y], Style::line(INK, 1.2));
             draw_left_number(sheet, [left, y], &ticks.label(value));
         }
+        let widest = ticks.values.iter().map(|&value| text_width(&ticks.label(value), TICK_SIZE)).fold(0.0, f64::max);
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
-        sheet.text([left - 58.0, self.area.top + 0.5 * self.area.height], "y [m]", style);
+        let x = left - (widest + 22.0).max(54.0);
+        sheet.text([x, self.area.top + 0.5 * self.area.height], "y [m]", style);
     }
 }
 

@@ -6,7 +6,8 @@ use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, is_drawable, number_text, round_above};
 use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
 use super::slope::{
-    BELOW_FRAME, LEFT, Labels, TOP, WIDTH, corners, draw_block_outlines, draw_filled, draw_title, outlines, time_text,
+    BELOW_FRAME, LEFT, Labels, TOP, WIDTH, corners, draw_absence, draw_block_outlines, draw_filled, draw_title,
+    outlines, time_text,
 };
 use super::svg::{Anchor, Rect, Style, Svg, TextStyle, text_width};
 use crate::geometry::{Point, Vector};
@@ -19,10 +20,12 @@ const HEIGHT_MAX: f64 = 820.0;
 const BAR_ROOM: f64 = 180.0;
 /// Height (px) of the notes at the bottom.
 const NOTES: f64 = 60.0;
+/// Length (px) of the length bar at least.
+const LENGTH_MIN: f64 = 80.0;
 /// Deformation below this part of the size of the slope cannot be seen and is drawn larger.
 const VISIBLE: f64 = 1e-3;
-/// Part of the size of the slope to which such a deformation is drawn.
-const EXAGGERATED: f64 = 0.02;
+/// Part of the size of the slope to which such a deformation is drawn at least.
+const EXAGGERATED: f64 = 0.008;
 
 /// Draws the slope at its current place, each element coloured by the mean displacement of its points.
 ///
@@ -86,7 +89,7 @@ fn exaggeration(largest: f64, elements: &Polygons) -> f64 {
     if !(largest > 1e-12 * size && largest < VISIBLE * size) {
         return 1.0;
     }
-    round_above(0.4 * EXAGGERATED * size / largest)
+    round_above(EXAGGERATED * size / largest)
 }
 
 /// The snapshot with every point displaced `factor` times as far.
@@ -131,6 +134,7 @@ fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, ref
     let step = |k: usize| scale_step(field.of_elements[k] / field.largest);
     draw_filled(sheet, &shown.elements, view, &colours, step);
     draw_block_outlines(sheet, shown, view);
+    draw_absence(sheet, view, &shown.elements);
     sheet.path(&outlines(reference_outline, view), Style::line(GREY, 1.8).dashed());
     let largest = field.largest_element.filter(|_| field.largest > 0.0);
     if let Some(corners) = largest.and_then(|k| corners(&shown.elements, k)) {
@@ -162,7 +166,7 @@ fn draw_colour_bar(sheet: &mut Svg, frame: &Rect, field: &Field) {
     }
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
     let middle = bar.top + 0.5 * bar.height;
-    sheet.text([bar.right() + 80.0, middle], &format!("displacement [{unit}]"), style);
+    sheet.text([bar.right() + 74.0, middle], &format!("displacement [{unit}]"), style);
 }
 
 /// Below the frame: a length, the dashed line explained, the largest value, the factor of deformation.
@@ -187,7 +191,7 @@ fn draw_notes(sheet: &mut Svg, view: &View, field: &Field, factor: f64) {
 
 /// Draws a bar of a round length; returns where the next note starts.
 fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
-    let length = round_above(0.4 * 150.0 / view.scale);
+    let length = round_above(LENGTH_MIN / view.scale);
     let (left, right) = (LEFT, LEFT + length * view.scale);
     let style = Style::line(INK, 2.5);
     sheet.line([left, y - 5.0], [right, y - 5.0], style);

@@ -8,8 +8,6 @@ use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
-/// Left of the frames (px).
-const FRAME_LEFT: f64 = LEFT + 26.0;
 /// Top of the first frame (px).
 const FRAME_TOP: f64 = 80.0;
 /// Distance (px) of the frames.
@@ -19,6 +17,8 @@ const SHARED_HEIGHT: f64 = 840.0;
 /// Height (px) of a frame at least and at most.
 const LOWEST: f64 = 170.0;
 const HIGHEST: f64 = 520.0;
+/// Distance (px) of value ticks that is aimed at.
+const TICK_DISTANCE: f64 = 36.0;
 /// Values beyond this are taken for numerical failures and left out.
 const FARTHEST: f64 = 1e300;
 
@@ -41,10 +41,10 @@ pub fn history_picture(title: &str, series: &[Series]) -> Picture {
     let mut sheet = Svg::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
     draw_title(&mut sheet, title, "");
     let times = Range::of(series.iter().flat_map(drawable).map(|(time, _)| time));
-    let width = WIDTH - FRAME_LEFT - LEGEND_ROOM;
+    let width = WIDTH - LEFT - LEGEND_ROOM;
     let frame = |k: usize| {
         let top = FRAME_TOP + k as f64 * (height + BETWEEN);
-        Rect { left: FRAME_LEFT, top, width, height }
+        Rect { left: LEFT, top, width, height }
     };
     for (k, group) in groups.iter().enumerate() {
         let values = Range::of(group.iter().flat_map(|series| drawable(series)).map(|(_, value)| value));
@@ -164,7 +164,8 @@ impl Chart {
     fn draw_value_ticks(&self, sheet: &mut Svg, values: Range, unit: &str) {
         let exponent = values.exponent();
         let divisor = 10.0_f64.powi(exponent);
-        let ticks = Ticks::new(values.min / divisor, values.max / divisor, (self.frame.height / 50.0).max(3.0));
+        let ticks =
+            Ticks::new(values.min / divisor, values.max / divisor, (self.frame.height / TICK_DISTANCE).max(3.0));
         for &value in &ticks.values {
             let y = self.frame.bottom() - values.fraction(value * divisor) * self.frame.height;
             draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
@@ -175,7 +176,7 @@ impl Chart {
 
     fn draw_value_title(&self, sheet: &mut Svg, title: &str) {
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
-        sheet.text([LEFT - 52.0, self.frame.top + 0.5 * self.frame.height], title, style);
+        sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
     }
 
     fn draw_lines(&self, sheet: &mut Svg, group: &[&Series], times: Range, values: Range) {

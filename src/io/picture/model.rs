@@ -6,8 +6,8 @@ use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
 use super::colour::{ACCENT, BLOCKS, COVERS, Colour, GREY, INK, LINES, WHITE};
 use super::slope::{
-    BELOW_FRAME, LEFT, LINE_HEIGHT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_block_outlines, draw_filled,
-    draw_title, outlines, time_text,
+    BELOW_FRAME, LEFT, LINE_HEIGHT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines,
+    draw_filled, draw_title, outlines, time_text,
 };
 use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
 use crate::geometry::Point;
@@ -22,7 +22,9 @@ const STARS_MAX: usize = 3000;
 /// Stars along a side of the detail, about.
 const STARS_ACROSS: f64 = 9.0;
 /// Mean element area (px²) below which the mesh would only grey the picture.
-const MESH_AREA: f64 = 14.0;
+const MESH_AREA: f64 = 60.0;
+/// More pieces of joint traces than this are drawn as thin lines.
+const TRACES_MANY: usize = 2500;
 /// Distance (px) of marks of supports at least.
 const SUPPORT_DISTANCE: f64 = 11.0;
 /// Lines of a legend at most.
@@ -94,11 +96,12 @@ impl Model<'_> {
         let element_area = view.area.width * view.area.height / elements;
         sheet.clipped(&view.area, |sheet| {
             self.draw_blocks(sheet, view, element_area > MESH_AREA);
-            self.draw_traces(sheet, view, 2.0);
+            self.draw_traces(sheet, view, if self.decor.trace_segments.len() > TRACES_MANY { 1.1 } else { 1.8 });
             if self.decor.stars.len() <= STARS_MAX {
-                self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 3.0));
+                self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 2.2));
             }
         });
+        draw_absence(sheet, view, &self.snapshot.elements);
         self.draw_supports(sheet, view);
         self.draw_monitors(sheet, view);
         view.draw_axes(sheet);

@@ -2,7 +2,7 @@
 
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable, number_text};
 use super::colour::{Colour, GREY, INK};
-use super::svg::{Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
+use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
 use crate::geometry::Point;
 use crate::model::Snapshot;
 use crate::model::snapshot::Polygons;
@@ -10,7 +10,7 @@ use crate::model::snapshot::Polygons;
 /// Width (px) of every picture.
 pub const WIDTH: f64 = 1600.0;
 /// Left of every frame (px): room for numbers and the title of the axis.
-pub const LEFT: f64 = 92.0;
+pub const LEFT: f64 = 116.0;
 /// Top of every frame (px): room for title and caption.
 pub const TOP: f64 = 100.0;
 /// Right and bottom margin (px).
@@ -25,6 +25,14 @@ pub fn draw_title(sheet: &mut Svg, title: &str, caption: &str) {
     let width = WIDTH - LEFT - MARGIN;
     sheet.text([LEFT, 46.0], &fitted(title, 27.0, width), TextStyle::new(27.0));
     sheet.text([LEFT, 78.0], &fitted(caption, 18.0, width), TextStyle::new(18.0).colour(GREY));
+}
+
+/// Says so if there is no element.
+pub fn draw_absence(sheet: &mut Svg, view: &View, elements: &Polygons) {
+    if elements.is_empty() {
+        let middle = [view.area.left + 0.5 * view.area.width, view.area.top + 0.5 * view.area.height];
+        sheet.text(middle, "no elements", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
+    }
 }
 
 /// `t = 1.5 s`.
