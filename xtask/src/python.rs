@@ -68,5 +68,5 @@ fn system_python() -> Result<(&'static str, String), String> {
         text.starts_with("Python 3.").then_some(text)
     };
     let found = ["python3", "python"].into_iter().find_map(|name| version(name).map(|text| (name, text)));
-    found.ok_or_else(|| format!("python3 was not found: install Python 3.10 or newer {REMEDY}"))
+    found.ok_or_else(|| format!("python3 was not found: install Python 3.11 or newer {REMEDY}"))
 }
