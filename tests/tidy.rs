@@ -352,7 +352,7 @@ fn is_of_word(letter: char) -> bool {
 fn names_after(code: &str, prefix: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices(prefix) {
-        if code[..at].ends_with(|c| is_of_word(c)) {
+        if code[..at].ends_with(is_of_word) {
             continue;
         }
         let line = 1 + code[..at].matches('\n').count();
