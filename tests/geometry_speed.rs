@@ -1,4 +1,4 @@
-//! Claim: the arrangement grows about linearly; ten thousand joints take a fraction of a second, with or without a mesh.
+//! Claim: the arrangement grows about linearly; ten thousand joints take a fraction of a second, mesh or not.
 
 use std::time::Instant;
 

@@ -224,8 +224,8 @@ impl Arrangement {
 /// round the faces and floods the winding from outside.
 ///
 /// Vertices within 1.5 tolerances become one, at the place of the first in input order; edges are split at vertices
-/// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the box
-/// of outline and mesh, where they can bound no rock.
+/// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the
+/// box of outline and mesh, where they can bound no rock.
 ///
 /// # Errors
 /// A coordinate that is not finite, a tolerance within round-off, outlines that do not close, or a noder that does not

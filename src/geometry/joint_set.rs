@@ -38,9 +38,9 @@ pub struct JointSetParameters {
 
 /// Generates the traces of a joint set inside a polygon (m), line by line from one side of the region to the other.
 ///
-/// Lines follow each other at spacings drawn from a normal distribution cut off at 0.1 and 1.9 of its mean, the first one
-/// at a random part of a spacing. A line of finite traces starts at a random phase; each trace turns about its own middle
-/// by the scatter of the direction. What lies outside the region, which need not be convex, is cut away.
+/// Lines follow each other at spacings drawn from a normal distribution cut off at 0.1 and 1.9 of its mean, the first
+/// one at a random part of a spacing. A line of finite traces starts at a random phase; each trace turns about its own
+/// middle by the scatter of the direction. What lies outside the region, which need not be convex, is cut away.
 ///
 /// # Errors
 /// A parameter out of its range, a region that is no loop, or more than a million traces.
@@ -49,7 +49,8 @@ pub struct JointSetParameters {
 /// ```
 /// use enmm::geometry::{Point, joint_set::{JointSetParameters, generate}};
 /// let set = JointSetParameters {
-///     dip: 0.0, dip_sd: 0.0, spacing: 1.0, spacing_sd: 0.0, trace_length: None, trace_length_sd: 0.0, gap: 0.0, seed: 7,
+///     dip: 0.0, dip_sd: 0.0, spacing: 1.0, spacing_sd: 0.0, trace_length: None, trace_length_sd: 0.0,
+///     gap: 0.0, seed: 7,
 /// };
 /// let region = [[0.0, 0.0], [4.0, 0.0], [4.0, 10.0], [0.0, 10.0]].map(|p| Point::new(p[0], p[1]));
 /// let traces = generate(&set, &region).unwrap();
@@ -229,7 +230,7 @@ mod tests {
 
     #[test]
     fn generator_gives_the_published_numbers() {
-        // First outputs for seed 1234567, as listed with the reference implementation (Vigna, splitmix64.c; Rosetta Code).
+        // The test values for seed 1234567 that go round with the reference implementation (splitmix64.c).
         let mut random = Random::new(1234567);
         assert_eq!([random.bits(), random.bits()], [6457827717110365317, 3203168211198807973]);
     }
@@ -242,8 +243,8 @@ mod tests {
 
     #[test]
     fn density_follows_spacing_length_and_gap() {
-        // Length per area is (length/(length+gap))/spacing = 1.7647 per metre. About 100 lines of 50 m: the mean spacing
-        // scatters by 0.2/sqrt(100) of 0.5, 4 %; so 10 % is 2.5 standard deviations, for one fixed seed.
+        // Length per area is (length/(length+gap))/spacing = 1.7647 per metre. About 100 lines of 50 m: the mean
+        // spacing scatters by 0.2/sqrt(100) of 0.5, 4 %; so 10 % is 2.5 standard deviations, for one fixed seed.
         let traces = generate(&SET, &square()).unwrap();
         let length: f64 = traces.iter().map(|t| (t[1] - t[0]).norm()).sum();
         let density = length / 2500.0;

@@ -14,7 +14,7 @@ const OVERLAP_RATIO_MAX: f64 = 1e-9;
 /// Returns a loop counter-clockwise and without repeated points, or says why it is none.
 ///
 /// # Errors
-/// A coordinate that is not finite, fewer than three distinct points, no area, or a loop that crosses or touches itself.
+/// A coordinate that is not finite, fewer than three points, no area, or a loop that crosses or touches itself.
 pub fn validate_loop(points: &[Point], name: &str) -> Result<Vec<Point>, GeometryError> {
     if let Some(index) = points.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
         let p = points[index];

@@ -23,7 +23,7 @@ pub struct Moments {
 
 impl Moments {
     /// Integrates over a polygon about a place (m) by Green's theorem: ½Σc, Σc(p+q)/6 and Σc(p⊗p+q⊗q+½(p⊗q+q⊗p))/12
-    /// over the sides pq with c = p×q. The sums run about the first point, so that a far origin costs no digits of area.
+    /// over the sides pq with c = p×q. The sums run about the first point, so that a far origin costs the area no digits.
     pub fn of(polygon: &[Point], about: Point) -> Self {
         let mut sum = Self { area: 0.0, first: Vector::zeros(), second: [0.0; 3] };
         let Some(&base) = polygon.first() else { return sum };
@@ -104,8 +104,8 @@ pub fn overlap_area(p: &[Point], q: &[Point]) -> f64 {
 
 /// Returns how deep two simple polygons (either sense) overlap (m), 0 when they do not.
 ///
-/// It is the larger of two lengths: the distance from the deepest corner of one inside the other to the boundary of that
-/// other, and the minimal width of the widest convex piece of the overlap. Neither exceeds the shortest translation that
+/// It is the larger of two lengths: the distance from the deepest corner of one inside the other to the boundary of the
+/// other, and the minimal width of the widest convex piece of the overlap. Neither exceeds the least translation that
 /// parts the polygons; for a corner or a face pushed into a face, and for bars across each other that are convex, the
 /// depth is equal to it. Polygons that are not convex are cut into triangles, which narrows the pieces.
 pub fn overlap_depth(p: &[Point], q: &[Point]) -> f64 {

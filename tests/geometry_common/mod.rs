@@ -2,8 +2,8 @@
 
 use enmm::geometry::{Arrangement, NONE, Point, orientation, polygon};
 
-/// Asserts what holds for every arrangement: twins, cycles, faces, labels, winding, areas, Euler's formula and that edges
-/// meet in common vertices only (the last by testing every pair: for small inputs).
+/// Asserts what holds for every arrangement: twins, cycles, faces, labels, winding, areas, Euler's formula, and edges
+/// that meet in common vertices only (the last by testing every pair: for small inputs).
 pub fn sanity_check(arrangement: &Arrangement) {
     let half_edges = 2 * arrangement.edges.len() as u32;
     assert_eq!((arrangement.next.len(), arrangement.face.len()), (half_edges as usize, half_edges as usize));
