@@ -23,7 +23,7 @@ pub struct Moments {
 
 impl Moments {
     /// Integrates over a polygon about a place (m) by Green's theorem: ½Σc, Σc(p+q)/6 and Σc(p⊗p+q⊗q+½(p⊗q+q⊗p))/12
-    /// over the sides pq with c = p×q. The sums run about the first point, so that a far origin costs the area no digits.
+    /// over the sides pq with c = p×q. The sums run about the first point: a far origin costs no digits.
     pub fn of(polygon: &[Point], about: Point) -> Self {
         let mut sum = Self { area: 0.0, first: Vector::zeros(), second: [0.0; 3] };
         let Some(&base) = polygon.first() else { return sum };
