@@ -68,7 +68,7 @@ fn add_mesh(mesh: &Value, all: &mut Vec<Segment>) {
     let mut count = 0;
     for i in -2 * reach..=2 * reach {
         for j in -2 * reach..=2 * reach {
-            // Edges of up triangles only: they hold every edge once. A triangle is taken whole, so that nothing dangles.
+            // Edges of up triangles only: they hold every edge once. Triangles are taken whole: nothing dangles.
             let corners = [node(i, j), node(i + 1, j), node(i, j + 1)];
             if !corners.iter().any(|&p| inside(p)) {
                 continue;
@@ -132,7 +132,7 @@ fn cover_cases_have_the_expected_elements_and_blocks() {
         assert_eq!(elements as u64, expected["n_elements"].as_u64().expect("a number"), "{path:?}: elements");
         assert_eq!(blocks(&arrangement) as u64, expected["n_blocks"].as_u64().expect("a number"), "{path:?}: blocks");
         let total = expected["total_area"].as_f64().expect("a number");
-        // Cutting adds up the same area in another order: round-off only, except that vertices snap by 1.5e-6 m at most.
+        // Cutting adds up the same area in another order: round-off only, except that vertices snap by up to 1.5e-6 m.
         assert!((area - total).abs() < 1e-6 * total, "{path:?}: area {area} against {total}");
     }
 }

@@ -116,6 +116,8 @@ pub struct NodingReport {
     pub trimmed_edges: usize,
     /// Length of the dead ends removed (m).
     pub trimmed_length: f64,
+    /// Length along which outlines of opposite sense coincide without a trace (m): there two regions of rock are one.
+    pub fused_outline_length: f64,
     /// What became of each trace.
     pub traces: Vec<TraceLength>,
     /// Pairs of traces that coincide along an edge, lower index first, sorted; the lower one holds the edge.
@@ -222,8 +224,8 @@ impl Arrangement {
 /// round the faces and floods the winding from outside.
 ///
 /// Vertices within 1.5 tolerances become one, at the place of the first in input order; edges are split at vertices
-/// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the box
-/// of outline and mesh, where they can bound no rock.
+/// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the
+/// box of outline and mesh, where they can bound no rock.
 ///
 /// # Errors
 /// A coordinate that is not finite, a tolerance within round-off, outlines that do not close, or a noder that does not
@@ -234,7 +236,8 @@ pub fn arrange(segments: &[Segment], tolerance: f64) -> Result<Arrangement, Geom
     let (points, work) = (noder.points, noder.edges);
     let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
     report.traces = vec![TraceLength::default(); traces as usize];
-    let (edges, members) = merge_coincident(points.len(), &work);
+    let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
+    report.fused_outline_length = fused_length;
     let kept = prune(&points, &edges, &mut report);
     let (points_kept, edges_kept) = compact(&points, &edges, &kept);
     let mut arrangement = faces::build(points_kept, edges_kept, report)?;
@@ -248,28 +251,38 @@ struct Member {
     trace: u32,
 }
 
+/// Edges each of which is the only one between its vertices.
+struct Merged {
+    edges: Vec<Edge>,
+    members: Vec<Member>,
+    /// Length along which outlines cancel without a trace (m).
+    fused_length: f64,
+}
+
 /// Merges edges between the same vertices, drops those whose outlines cancel, and lists which traces run where.
-fn merge_coincident(vertices: usize, edges: &[WorkEdge]) -> (Vec<Edge>, Vec<Member>) {
-    let mut groups = Groups::build(vertices, |put| {
+fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
+    let mut groups = Groups::build(points.len(), |put| {
         for (k, edge) in edges.iter().enumerate() {
             put(edge.a.min(edge.b) as usize, k as u32);
         }
     });
-    let (mut merged, mut members) = (Vec::with_capacity(edges.len()), Vec::new());
-    for vertex in 0..vertices {
+    let mut merged = Merged { edges: Vec::with_capacity(edges.len()), members: Vec::new(), fused_length: 0.0 };
+    let far = |k: u32| edges[k as usize].a.max(edges[k as usize].b);
+    for vertex in 0..points.len() {
         let group = groups.get_mut(vertex);
-        group.sort_unstable_by_key(|&k| (edges[k as usize].a.max(edges[k as usize].b), k));
-        for run in group.chunk_by(|&i, &j| {
-            let far = |k: u32| edges[k as usize].a.max(edges[k as usize].b);
-            far(i) == far(j)
-        }) {
-            let edge = merge_run(edges, run, merged.len() as u32, &mut members);
+        group.sort_unstable_by_key(|&k| (far(k), k));
+        for run in group.chunk_by(|&i, &j| far(i) == far(j)) {
+            let edge = merge_run(edges, run, merged.edges.len() as u32, &mut merged.members);
+            let cancels = edge.label.outline == 0 && edge.label.trace == NONE;
+            if cancels && run.iter().any(|&k| edges[k as usize].label.outline != 0) {
+                merged.fused_length += length(points, &edge);
+            }
             if !edge.label.is_empty() {
-                merged.push(edge);
+                merged.edges.push(edge);
             }
         }
     }
-    (merged, members)
+    merged
 }
 
 /// Merges a run of edges between the same two vertices and lists its traces, each once.

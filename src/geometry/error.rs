@@ -59,4 +59,99 @@ pub enum GeometryError {
         /// Change of winding that the edge carries.
         expected: i32,
     },
+    /// A loop has no inside.
+    #[error("{name} has {found} distinct points, at least 3 are needed: add the missing ones")]
+    TooFewPoints {
+        /// Loop.
+        name: String,
+        /// Distinct points.
+        found: usize,
+    },
+    /// A loop is flat.
+    #[error("{name} has an area of {area} m², not above {limit} m²: give it a width or leave it out")]
+    NoArea {
+        /// Loop.
+        name: String,
+        /// Signed area (m²).
+        area: f64,
+        /// Smallest area that counts (m²).
+        limit: f64,
+    },
+    /// A loop crosses or touches itself.
+    #[error(
+        "{name} meets itself at ({x}, {y}), sides {first} and {second} counted from 0: a loop may not; part it there"
+    )]
+    SelfIntersection {
+        /// Loop.
+        name: String,
+        /// One side.
+        first: usize,
+        /// The other side.
+        second: usize,
+        /// Abscissa (m).
+        x: f64,
+        /// Ordinate (m).
+        y: f64,
+    },
+    /// A hole crosses or touches the outline or another hole.
+    #[error("{first} and {second} meet at ({x}, {y}): move them apart or join them into one loop")]
+    LoopsMeet {
+        /// One loop.
+        first: String,
+        /// The other loop.
+        second: String,
+        /// Abscissa (m).
+        x: f64,
+        /// Ordinate (m).
+        y: f64,
+    },
+    /// A hole is not cut out of rock.
+    #[error("hole {hole} at ({x}, {y}) lies {place}: holes lie in the rock of the outline; move it or leave it out")]
+    HoleMisplaced {
+        /// Index of the hole.
+        hole: usize,
+        /// Where it lies instead.
+        place: String,
+        /// Abscissa of its first point (m).
+        x: f64,
+        /// Ordinate of its first point (m).
+        y: f64,
+    },
+    /// An island lies on other rock.
+    #[error(
+        "island {island} at ({x}, {y}) overlaps the rock of {other} by {overlap} m² (limit {limit} m²): move it into a \
+         hole or beside the outline"
+    )]
+    IslandOnRock {
+        /// Index of the island.
+        island: usize,
+        /// The loop whose rock it overlaps.
+        other: String,
+        /// Overlap (m²).
+        overlap: f64,
+        /// Overlap that counts as contact (m²).
+        limit: f64,
+        /// Abscissa of its first point (m).
+        x: f64,
+        /// Ordinate of its first point (m).
+        y: f64,
+    },
+    /// A parameter of a joint set is out of range.
+    #[error("joint set: {parameter} is {value}, must be {rule}: correct it")]
+    JointSet {
+        /// Parameter.
+        parameter: &'static str,
+        /// Value given (SI, rad).
+        value: f64,
+        /// What it must be.
+        rule: &'static str,
+    },
+    /// A joint set fills its region with too many traces.
+    #[error("joint set with spacing {spacing} m has more than {limit} traces: raise spacing, length or gap")]
+    TooManyTraces {
+        /// Spacing given (m).
+        spacing: f64,
+        /// Traces allowed.
+        limit: usize,
+    },
 }

@@ -7,6 +7,8 @@ mod arrangement;
 mod error;
 mod faces;
 mod grid;
+pub mod joint_set;
+pub mod loops;
 mod noder;
 pub mod polygon;
 

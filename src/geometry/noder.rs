@@ -13,8 +13,8 @@ const MERGE_RATIO: f64 = 1.5;
 const PASSES_MAX: usize = 100;
 /// A split vertex off the line by more than this part of the tolerance bends the edge, which is then tested anew.
 const BEND_RATIO: f64 = 1e-3;
-/// Traces are cut off this part of the box of outline and mesh beyond it.
-const MARGIN_RATIO: f64 = 0.05;
+/// Traces are cut off beyond the box of outline and mesh by this part of its diagonal, so that only the endless are.
+const MARGIN_RATIO: f64 = 1.0;
 /// The tolerance must exceed this many units of round-off of the largest coordinate.
 const ROUND_OFF_RATIO: f64 = 64.0;
 
