@@ -11,6 +11,7 @@ pub mod joint_set;
 pub mod loops;
 mod noder;
 pub mod polygon;
+pub mod segment;
 
 pub use arrangement::{Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange};
 pub use error::GeometryError;

@@ -146,9 +146,10 @@ impl Simulation {
         self.excavate(stage)?;
         self.change_laws(stage);
         self.change_fixities(stage);
+        let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
         let (slope, state) = (&self.built.slope, &mut self.built.state);
-        step::begin_stage(slope, self.regime, state, stage as u32, start);
+        step::begin_stage(slope, self.regime, state, stage as u32, start, at_rest);
         step::prepare(slope, state, &mut self.scratch);
         let after = self.energies();
         let sum = |l: &Ledger| l.kinetic + l.strain + l.potential;

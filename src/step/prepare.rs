@@ -58,7 +58,13 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.
-pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32, start: f64) {
+///
+/// Velocities count as those of the start itself when they are `at_rest`, so that a sudden change of strength acts for
+/// half a step only in the first kick; otherwise the leapfrog goes on.
+pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
+    if at_rest {
+        state.dt_last = 0.0;
+    }
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;

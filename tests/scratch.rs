@@ -1,0 +1,58 @@
+//! scratch
+mod common;
+use common::*;
+
+#[test]
+fn incline() {
+    for (young, phi, h) in [("50e6", 20.0, 0.5), ("1e9", 20.0, 0.5), ("1e9",25.0,0.3), ("1e9",10.0,0.7),("1e9",30.5,0.5)] {
+    let text = format!(r#"
+title = "incline"
+[domain]
+outline = [[0,0],[20,0],[20,11.547005383792516],[8.82,5.0922],[8.32,5.958],[6.588,4.958],[7.088,4.0922]]
+joint_law = "j"
+snap_tolerance = 1e-3
+[[joint]]
+points = [[0,0],[20,11.547005383792516]]
+[mesh]
+size = {h}
+angle_deg = 0
+[rock.r]
+density = 2500
+young = {young}
+poisson = 0.25
+[joint_law.j]
+friction_deg = 45
+[[fix]]
+block = [18, 1]
+[[stage]]
+name = "settle"
+kind = "static"
+duration = 5.0
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = 1.0
+[[stage.law]]
+law = "j"
+friction_deg = {phi}
+[[monitor]]
+name = "m"
+point = [7.7, 5.0]
+"#);
+    let mut s = simulation(&text);
+    println!("blocks {} elements {} covers {} dt {}", s.slope().covers.block_count(), s.slope().covers.element_count(), s.slope().covers.cover_count(), s.slope().dt);
+    let r = run_stage(&mut s);
+    println!("settled at t={} unb {:.2e} kin {:.2e} pot {:.3e} pen {:.2e} contacts {}", r.time, r.unbalanced, r.ledger.kinetic, r.ledger.potential, r.penetration_max, s.state().contacts.len());
+    for c in s.scratch().contacts.iter() { println!("  node {} side {} N {:.1} T {:.1} l {:.4} gap {:.2e} {:?}", c.history.node, c.history.side, c.history.normal_force, c.history.shear_force, c.length, c.gap, c.history.state); }
+    let (u0,_) = s.monitor(0);
+    s.next_stage().unwrap();
+    let t0 = s.time();
+    let r = run_stage(&mut s);
+    let (u1,_) = s.monitor(0);
+    let t = s.time()-t0;
+    let a = 30f64.to_radians(); let f: f64 = phi;
+    let exact = 0.5*9.81*(a.sin()-a.cos()*f.to_radians().tan())*t*t;
+    println!("slid {:.8} exact {:.8} rel {:.2e}  residual {:.2e} of {:.2e} fric {:.3e} sweeps {} / {} unsettled {} halved {}", (u1-u0).norm(), exact, (u1-u0).norm()/exact-1.0, r.ledger.residual(), r.ledger.largest(), r.ledger.friction, s.state().counters.sweeps, s.state().counters.substeps, s.state().counters.unsettled, s.state().counters.halved);
+    println!("{:?}", r.ledger);
+    }
+}
