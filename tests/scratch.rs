@@ -4,7 +4,7 @@ use common::*;
 
 #[test]
 fn incline() {
-    for (young, phi, h) in [("50e6", 20.0, 0.5), ("1e9", 20.0, 0.5), ("1e9",25.0,0.3), ("1e9",10.0,0.7),("1e9",30.5,0.5)] {
+    for (young, phi, h) in [("1e9", 20.0, 0.3), ("1e9",25.0,0.5), ("1e9",25.0,0.3), ("10e9",25.0,0.3)] {
     let text = format!(r#"
 title = "incline"
 [domain]
@@ -47,11 +47,16 @@ point = [7.7, 5.0]
     let (u0,_) = s.monitor(0);
     s.next_stage().unwrap();
     let t0 = s.time();
-    let r = run_stage(&mut s);
+    let a = 30f64.to_radians(); let f: f64 = phi;
+    let acc = 9.81*(a.sin()-a.cos()*f.to_radians().tan());
+    for k in 1..=10 { while s.time()-t0 < 0.1*k as f64 - 1e-9 { s.advance(false).unwrap(); }
+     let (u1,v1) = s.monitor(0); let t = s.time()-t0;
+     let fall: f64 = s.scratch().contacts.iter().map(|c| c.history.normal_force).sum();
+     println!("  t {:.3} err {:.3e} verr {:.3e} N {:.4}", t, (u1-u0).norm()-0.5*acc*t*t, v1.norm()-acc*(t-0.5*s.slope().dt), fall); }
+    let r = s.advance(true).unwrap();
     let (u1,_) = s.monitor(0);
     let t = s.time()-t0;
-    let a = 30f64.to_radians(); let f: f64 = phi;
-    let exact = 0.5*9.81*(a.sin()-a.cos()*f.to_radians().tan())*t*t;
+    let exact = 0.5*acc*t*t;
     println!("slid {:.8} exact {:.8} rel {:.2e}  residual {:.2e} of {:.2e} fric {:.3e} sweeps {} / {} unsettled {} halved {}", (u1-u0).norm(), exact, (u1-u0).norm()/exact-1.0, r.ledger.residual(), r.ledger.largest(), r.ledger.friction, s.state().counters.sweeps, s.state().counters.substeps, s.state().counters.unsettled, s.state().counters.halved);
     println!("{:?}", r.ledger);
     }
