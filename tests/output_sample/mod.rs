@@ -145,7 +145,7 @@ fn complete(snapshot: &mut Snapshot) {
 /// Parts of the profile between the joints of both sets.
 fn blocks(spacing: f64) -> Vec<Vec<Point>> {
     let [along, across] = DIPS.map(|dip| Vector::new(dip.to_radians().cos(), dip.to_radians().sin()));
-    let profile = PROFILE.map(Point::from);
+    let profile = profile().points;
     let count = (140.0 / spacing) as i64;
     let jitter = |k: i64, seed: f64| spacing * (k as f64 + 0.25 * (k as f64 * 2.3 + seed).sin());
     let cells = (-count..count).flat_map(|i| (-count..count).map(move |j| (i, j)));
