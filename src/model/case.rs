@@ -1,11 +1,16 @@
 //! The case: all that a user writes about one model. Plain data with SI units; angles in degrees only under keys that
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `build`.
 
+pub mod key;
+mod validate;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+pub use validate::Invalid;
 
 /// A closed or open list of points (m).
 pub type PointList = Vec<[f64; 2]>;

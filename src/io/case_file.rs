@@ -1,0 +1,130 @@
+//! Reading of case files: TOML to [`Case`], geometry file merged, every value checked, every error with its line.
+
+mod reader;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::case_error::{CaseError, read_text};
+use super::geometry_file::{self, Geometry, Trace};
+use super::lines::{LineMap, beginnings};
+use crate::model::case::{Case, JointTrace};
+
+/// A case that has been read and checked.
+#[derive(Debug, Clone)]
+pub struct LoadedCase {
+    /// The case; outline and joints of the geometry file are part of it, and `domain.geometry_file` is empty.
+    pub case: Case,
+    /// Where each value came from.
+    pub source: CaseSource,
+    /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
+    pub hash: String,
+    /// What the user should know though it is no error.
+    pub warnings: Vec<String>,
+}
+
+/// Where the values of a case came from.
+#[derive(Debug, Clone, Default)]
+pub struct CaseSource {
+    file: String,
+    lines: LineMap,
+    geometry_file: String,
+    geometry_lines: LineMap,
+    /// Keys of the geometry file by those of the case.
+    geometry: BTreeMap<String, String>,
+}
+
+impl CaseSource {
+    /// Returns the case file as the user named it.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
+    /// beginning of the key that is known; a value from the geometry file is located there.
+    pub fn locate(&self, key: &str, message: &str) -> CaseError {
+        let of_geometry = beginnings(key).find_map(|part| Some((self.geometry.get(part)?, &key[part.len()..])));
+        let (file, lines, key) = match of_geometry {
+            Some((place, rest)) => {
+                let rest = rest.strip_prefix(".points").unwrap_or(rest);
+                (&self.geometry_file, &self.geometry_lines, format!("{place}{rest}"))
+            }
+            None => (&self.file, &self.lines, key.to_string()),
+        };
+        CaseError::at(file, lines.line(&key), &key, message)
+    }
+
+    fn note(&mut self, key: String, place: String) {
+        self.geometry.insert(key, place);
+    }
+}
+
+/// Reads a case file and the geometry file that it names, and checks every value.
+///
+/// # Errors
+/// The first thing that cannot be used, with file, line and key.
+pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
+    let file = path.display().to_string();
+    let text = read_text(path).map_err(|message| CaseError::Unreadable { file: file.clone(), message })?;
+    parse_case(&text, &file, path.parent().unwrap_or(Path::new("")))
+}
+
+/// Reads a case from text; `file_name` stands in messages, and `base_dir` is where relative paths start.
+///
+/// # Errors
+/// See [`load_case`].
+pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<LoadedCase, CaseError> {
+    let (mut case, lines) = reader::read(text, file_name)?;
+    let file = file_name.to_string();
+    let mut source = CaseSource { file, lines, ..CaseSource::default() };
+    let warnings = merge_geometry_file(&mut case, &mut source, base_dir)?;
+    case.validate().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
+    let hash = fingerprint(&case).map_err(|message| source.locate("", &message))?;
+    Ok(LoadedCase { case, source, hash, warnings })
+}
+
+/// Moves outline, loops and traces of `domain.geometry_file` into the case; returns the warnings.
+fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<Vec<String>, CaseError> {
+    let Some(name) = case.domain.geometry_file.take() else { return Ok(Vec::new()) };
+    let key = "domain.geometry_file";
+    let path = base_dir.join(&name);
+    source.geometry_file = path.display().to_string();
+    let text =
+        read_text(&path).map_err(|message| source.locate(key, &format!("{:?}: {message}", source.geometry_file)))?;
+    let geometry = geometry_file::parse(&path, &text, case)?;
+    if !case.domain.outline.is_empty() && geometry.outline.is_some() {
+        let message = format!("the outline is also in {:?}, only one can be; remove this one", source.geometry_file);
+        return Err(source.locate("domain.outline", &message));
+    }
+    let Geometry { outline, holes, islands, traces, warnings, lines } = geometry;
+    source.geometry_lines = lines;
+    if let Some((points, place)) = outline {
+        case.domain.outline = points;
+        source.note("domain.outline".to_string(), place);
+    }
+    for (name, target, loops) in
+        [("holes", &mut case.domain.holes, holes), ("islands", &mut case.domain.islands, islands)]
+    {
+        for (points, place) in loops {
+            source.note(format!("domain.{name}[{}]", target.len()), place);
+            target.push(points);
+        }
+    }
+    for Trace { points: (points, place), law } in traces {
+        let key = format!("joint[{}]", case.joints.len());
+        let law = law.map(|(law, place)| {
+            source.note(format!("{key}.law"), place);
+            law
+        });
+        source.note(key, place);
+        case.joints.push(JointTrace { points, law });
+    }
+    Ok(warnings.into_iter().map(|warning| format!("{}: {warning}", source.geometry_file)).collect())
+}
+
+/// Returns the 64-bit FNV-1a hash of the case as JSON, whose fields and maps have a fixed order.
+fn fingerprint(case: &Case) -> Result<String, String> {
+    let bytes = serde_json::to_vec(case).map_err(|error| format!("the case cannot be written as JSON: {error}"))?;
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    Ok(format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)))
+}

@@ -1,0 +1,266 @@
+//! Checks of everything that can be known from the case alone: signs, ranges, alternatives, references. What needs the
+//! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
+
+mod checks;
+mod loads;
+mod stages;
+
+use thiserror::Error;
+
+use super::key::Key;
+use super::{Case, Domain, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Rock, Solver};
+use checks::{
+    COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, number, optional, point, points, polygon, region,
+    unique, whole,
+};
+
+/// A value of a case that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{key}: {message}")]
+pub struct Invalid {
+    /// Place in the case, such as `rock.granite.young` or `joint[3].points[1]`.
+    pub key: String,
+    /// What is wrong, the value, the limit and the remedy.
+    pub message: String,
+}
+
+impl Case {
+    /// Checks every value and reference of the case.
+    ///
+    /// # Errors
+    /// The first value that cannot be used, in the order of the fields of [`Case`].
+    pub fn validate(&self) -> Result<(), Invalid> {
+        let root = Key::root();
+        domain(&root.field("domain"), &self.domain)?;
+        mesh(&root.field("mesh"), &self.mesh)?;
+        self.validate_joints(&root)?;
+        self.validate_rocks(&root.field("rock"))?;
+        for (name, law) in &self.joint_laws {
+            joint_law(&root.field("joint_law").field(name), law)?;
+        }
+        gravity(&root.field("gravity"), &self.gravity)?;
+        loads::validate_fixes(&root.field("fix"), &self.fixes)?;
+        loads::validate_loads(&root.field("load"), &self.loads)?;
+        for (i, start) in self.initial_velocities.iter().enumerate() {
+            initial_velocity(&root.field("initial_velocity").index(i), start)?;
+        }
+        if let Some(stress) = &self.in_situ {
+            in_situ(&root.field("in_situ"), stress)?;
+        }
+        stages::validate_stages(&root.field("stage"), self)?;
+        self.validate_monitors(&root.field("monitor"))?;
+        output(&root.field("output"), &self.output)?;
+        solver(&root.field("solver"), &self.solver)
+    }
+
+    /// Returns the law of joints that name none: `domain.joint_law`, else the only law of the case, else none.
+    pub fn default_joint_law(&self) -> Option<&str> {
+        let only = || self.joint_laws.keys().next().filter(|_| self.joint_laws.len() == 1);
+        self.domain.joint_law.as_ref().or_else(only).map(String::as_str)
+    }
+
+    fn validate_joints(&self, root: &Key) -> Check {
+        let laws = Names::of_laws(self);
+        if let Some(law) = &self.domain.joint_law {
+            laws.must_hold(&root.field("domain").field("joint_law"), law)?;
+        }
+        for (i, trace) in self.joints.iter().enumerate() {
+            let key = root.field("joint").index(i);
+            points(&key.field("points"), &trace.points, 2, "a joint trace")?;
+            self.validate_law_of_joint(&laws, &key, trace.law.as_deref())?;
+        }
+        for (i, set) in self.joint_sets.iter().enumerate() {
+            let key = root.field("joint_set").index(i);
+            joint_set(&key, set)?;
+            self.validate_law_of_joint(&laws, &key, set.law.as_deref())?;
+        }
+        if self.domain.islands.is_empty() {
+            return Ok(());
+        }
+        self.validate_law_of_joint(&laws, &root.field("domain").field("islands"), None)
+    }
+
+    fn validate_law_of_joint(&self, laws: &Names, key: &Key, law: Option<&str>) -> Check {
+        if let Some(law) = law {
+            return laws.must_hold(&key.field("law"), law);
+        }
+        if self.default_joint_law().is_some() {
+            return Ok(());
+        }
+        if self.joint_laws.is_empty() {
+            let remedy = "add `[joint_law.NAME]` with `friction_deg = 30.0`";
+            return fail(
+                &Key::root().field("joint_law"),
+                format!("{key} needs a joint law, but there is none; {remedy}"),
+            );
+        }
+        let message =
+            format!("is missing, {key} names no law and there are several ({laws}); add `joint_law` or the name");
+        fail(&Key::root().field("domain").field("joint_law"), message)
+    }
+
+    fn validate_rocks(&self, key: &Key) -> Check {
+        if self.rocks.is_empty() {
+            let remedy = "add `[rock.NAME]` with `density`, `young` and `poisson`";
+            return fail(key, format!("the case has no rock, at least 1 is needed; {remedy}"));
+        }
+        let mut background: Option<&str> = None;
+        for (name, properties) in &self.rocks {
+            rock(&key.field(name), properties)?;
+            if properties.region.is_some() || !properties.blocks.is_empty() {
+                continue;
+            }
+            if let Some(other) = background.replace(name) {
+                let message = format!(
+                    "neither this rock nor rock {other:?} has `region` or `blocks`, at most 1 rock can be the \
+                     background; add `region` or `blocks` to one of them"
+                );
+                return fail(&key.field(name), message);
+            }
+        }
+        Ok(())
+    }
+
+    fn validate_monitors(&self, key: &Key) -> Check {
+        for (i, monitor) in self.monitors.iter().enumerate() {
+            point(&key.index(i).field("point"), &monitor.point)?;
+        }
+        unique(key, "monitor", self.monitors.iter().map(|monitor| Some(monitor.name.as_str())))
+    }
+}
+
+fn domain(key: &Key, domain: &Domain) -> Check {
+    if domain.geometry_file.is_some() {
+        return fail(
+            &key.field("geometry_file"),
+            "the file is not merged into the case; load the case through `io::load_case`, or give `outline` and joints",
+        );
+    }
+    if domain.outline.is_empty() {
+        return fail(
+            &key.field("outline"),
+            "there is no outline; give `outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]` or a `geometry_file` with one",
+        );
+    }
+    polygon(&key.field("outline"), &domain.outline)?;
+    for (name, loops) in [("holes", &domain.holes), ("islands", &domain.islands)] {
+        for (i, ring) in loops.iter().enumerate() {
+            polygon(&key.field(name).index(i), ring)?;
+        }
+    }
+    optional(key, "snap_tolerance", domain.snap_tolerance, Range::above(0.0).to(1e3), "m", "1e-6 of the model's size")
+}
+
+fn mesh(key: &Key, mesh: &Mesh) -> Check {
+    number(key, "size", mesh.size, Range::above(0.0).to(1e6), "m", "about a fifth of the smallest block is usual")?;
+    number(key, "angle_deg", mesh.angle_deg, Range::within(360.0), "degrees", "0 to 60 gives every lattice")?;
+    point(&key.field("origin"), &mesh.origin)
+}
+
+fn joint_set(key: &Key, set: &super::JointSet) -> Check {
+    let length = Range::above(0.0).to(COORDINATE_MAX);
+    let spread = Range::from(0.0).to(COORDINATE_MAX);
+    number(key, "dip_deg", set.dip_deg, Range::within(360.0), "degrees", "counter-clockwise from the x axis")?;
+    number(key, "dip_sd_deg", set.dip_sd_deg, Range::from(0.0).to(90.0), "degrees", "0 for parallel joints")?;
+    number(key, "spacing", set.spacing, length, "m", "the mean distance between joints")?;
+    number(key, "spacing_sd", set.spacing_sd, spread, "m", "0 for equal distances")?;
+    optional(key, "trace_length", set.trace_length, length, "m", "leave it out for joints through the whole region")?;
+    number(key, "trace_length_sd", set.trace_length_sd, spread, "m", "0 for equal lengths")?;
+    number(key, "gap", set.gap, spread, "m", "0 for no rock bridges")?;
+    for (name, value) in [("trace_length_sd", set.trace_length_sd), ("gap", set.gap)] {
+        if set.trace_length.is_none() && value > 0.0 {
+            let message = format!("is {value} m, but joints without `trace_length` do not end; add `trace_length`");
+            return fail(&key.field(name), message);
+        }
+    }
+    set.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
+}
+
+fn rock(key: &Key, rock: &Rock) -> Check {
+    number(key, "density", rock.density, Range::above(0.0).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
+    number(key, "young", rock.young, Range::above(0.0).to(1e15), "Pa", "rock has 1e8 to 1e11")?;
+    number(key, "poisson", rock.poisson, Range::above(-1.0).below(0.5), "", "rock has 0.1 to 0.4")?;
+    if let Some(ring) = &rock.region {
+        region(&key.field("region"), ring)?;
+    }
+    points(&key.field("blocks"), &rock.blocks, 0, "a list of blocks")
+}
+
+fn joint_law(key: &Key, law: &JointLaw) -> Check {
+    optional(key, "normal_stiffness", law.normal_stiffness, Law::STIFFNESS, "Pa/m", "leave it out for the solver's")?;
+    optional(key, "shear_stiffness", law.shear_stiffness, Law::STIFFNESS, "Pa/m", "leave it out for the solver's")?;
+    number(key, "friction_deg", law.friction_deg, Law::ANGLE, "degrees", "rock joints have 15 to 50")?;
+    number(key, "cohesion", law.cohesion, Law::STRENGTH, "Pa", "0 for a clean joint")?;
+    number(key, "tension", law.tension, Law::STRENGTH, "Pa", "the tensile strength is written positive")?;
+    optional(
+        key,
+        "residual_friction_deg",
+        law.residual_friction_deg,
+        Law::ANGLE,
+        "degrees",
+        "leave it out for the peak",
+    )?;
+    optional(key, "residual_cohesion", law.residual_cohesion, Law::STRENGTH, "Pa", "leave it out for the peak")?;
+    number(key, "residual_tension", law.residual_tension, Law::STRENGTH, "Pa", "0 for a broken joint")?;
+    number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
+    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")
+}
+
+fn gravity(key: &Key, gravity: &Gravity) -> Check {
+    number(key, "x", gravity.x, Range::within(1e4), "m/s²", "the standard is 0")?;
+    number(key, "y", gravity.y, Range::within(1e4), "m/s²", "the standard is -9.81")
+}
+
+fn initial_velocity(key: &Key, start: &InitialVelocity) -> Check {
+    if let Some(block) = &start.block {
+        point(&key.field("block"), block)?;
+    }
+    for (i, &value) in start.velocity.iter().enumerate() {
+        number(&key.field("velocity").index(i), "", value, Range::within(1e5), "m/s", "rock falls at 1 to 100")?;
+    }
+    number(key, "angular_velocity", start.angular_velocity, Range::within(1e5), "rad/s", "0 for no rotation")
+}
+
+fn in_situ(key: &Key, stress: &InSitu) -> Check {
+    let hint = "tension is positive, compression negative";
+    for (name, value) in [("sxx", stress.sxx), ("syy", stress.syy), ("sxy", stress.sxy)] {
+        number(key, name, value, Range::within(1e12), "Pa", hint)?;
+    }
+    for (i, &value) in stress.gradient.iter().enumerate() {
+        number(
+            &key.field("gradient").index(i),
+            "",
+            value,
+            Range::within(1e9),
+            "Pa/m",
+            "density times gravity is usual",
+        )?;
+    }
+    number(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
+}
+
+fn output(key: &Key, output: &Output) -> Check {
+    for (name, value) in [
+        ("frame_interval", output.frame_interval),
+        ("history_interval", output.history_interval),
+        ("checkpoint_interval", output.checkpoint_interval),
+    ] {
+        optional(key, name, value, Range::above(0.0).to(1e12), "s", "leave it out for the default")?;
+    }
+    Ok(())
+}
+
+fn solver(key: &Key, solver: &Solver) -> Check {
+    let share = Range::above(0.0).to(1.0);
+    let time = Range::above(0.0).to(1e9);
+    optional(key, "communication_step", solver.communication_step, time, "s", "leave it out for the default")?;
+    optional(key, "dt_max", solver.dt_max, time, "s", "leave it out for the stability limit")?;
+    number(key, "dt_safety", solver.dt_safety, share, "", "0.9 is the default")?;
+    number(key, "contact_stiffness", solver.contact_stiffness, Range::above(0.0).to(1e6), "", "0.5 is the default")?;
+    number(key, "shear_ratio", solver.shear_ratio, Range::above(0.0).to(10.0), "", "0.5 is the default")?;
+    number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
+    number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
+    whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "8 is the default")?;
+    number(key, "penetration_limit", solver.penetration_limit, share, "", "0.5 is the default")?;
+    whole(key, "memory_limit", solver.memory_limit, (1, u64::MAX), "8589934592 (8 GiB) is the default")
+}

@@ -1,0 +1,88 @@
+//! Checks of stages: what fits the kind, and references to laws and fixities.
+
+use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
+use crate::model::case::key::Key;
+use crate::model::case::{Case, LawChange, LawSwitch, Stage, StageKind};
+
+/// Checks the stages of a case.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_stages(key: &Key, case: &Case) -> Check {
+    if case.stages.is_empty() {
+        let remedy = "add [[stage]] with `name`, `kind` and `duration`";
+        return fail(key, format!("the case has no stage, at least 1 is needed; {remedy}"));
+    }
+    let laws = Names::of_laws(case);
+    let fixes = Names::of_fixes(case);
+    for (i, stage) in case.stages.iter().enumerate() {
+        let key = key.index(i);
+        validate_motion(&key, stage)?;
+        points(&key.field("excavate"), &stage.excavate, 0, "a list of blocks")?;
+        stage.excavate_region.as_ref().map_or(Ok(()), |ring| region(&key.field("excavate_region"), ring))?;
+        validate_laws(&key, stage, &laws)?;
+        validate_fixities(&key, stage, &fixes)?;
+    }
+    unique(key, "stage", case.stages.iter().map(|stage| Some(stage.name.as_str())))
+}
+
+fn validate_motion(key: &Key, stage: &Stage) -> Check {
+    number(key, "duration", stage.duration, Range::above(0.0).to(1e9), "s", "give the simulated time of the stage")?;
+    let (kind, other, refused) = match stage.kind {
+        StageKind::Static => ("static", "dynamic", [("damping", stage.damping), ("", None)]),
+        StageKind::Dynamic => ("dynamic", "static", [("convergence", stage.convergence), ("ramp", stage.ramp)]),
+    };
+    for (name, value) in refused {
+        if let Some(value) = value {
+            let message = format!("is {value}, but only {other} stages have it and this one is {kind}; remove it");
+            return fail(&key.field(name), message);
+        }
+    }
+    let share = Range::above(0.0).below(1.0);
+    optional(key, "convergence", stage.convergence, share, "", "1e-3 to 1e-5 is usual")?;
+    optional(key, "ramp", stage.ramp, Range::from(0.0).to(stage.duration), "s", "it ends within the stage's duration")?;
+    optional(key, "damping", stage.damping, Range::from(0.0).to(1.0), "", "0 to 0.1 is usual")
+}
+
+fn validate_laws(key: &Key, stage: &Stage, laws: &Names) -> Check {
+    for (i, change) in stage.law_changes.iter().enumerate() {
+        validate_change(&key.field("law").index(i), change, laws)?;
+    }
+    for (i, LawSwitch { from, to }) in stage.law_switches.iter().enumerate() {
+        let key = key.field("switch_law").index(i);
+        laws.must_hold(&key.field("from"), from)?;
+        laws.must_hold(&key.field("to"), to)?;
+        if from == to {
+            return fail(&key.field("to"), format!("is {to:?}, the law to replace; name another law or remove it"));
+        }
+    }
+    Ok(())
+}
+
+fn validate_change(key: &Key, change: &LawChange, laws: &Names) -> Check {
+    laws.must_hold(&key.field("law"), &change.law)?;
+    if change.friction_deg.is_none() && change.cohesion.is_none() && change.tension.is_none() {
+        return fail(key, "changes nothing; give `friction_deg`, `cohesion` or `tension`, or remove it");
+    }
+    optional(key, "friction_deg", change.friction_deg, Law::ANGLE, "degrees", "rock joints have 15 to 50")?;
+    optional(key, "cohesion", change.cohesion, Law::STRENGTH, "Pa", "0 for a clean joint")?;
+    optional(key, "tension", change.tension, Law::STRENGTH, "Pa", "the tensile strength is written positive")
+}
+
+fn validate_fixities(key: &Key, stage: &Stage, fixes: &Names) -> Check {
+    for (list, names) in [("fix", &stage.fix), ("free", &stage.free)] {
+        for (i, name) in names.iter().enumerate() {
+            fixes.must_hold(&key.field(list).index(i), name)?;
+        }
+    }
+    match stage.free.iter().position(|name| stage.fix.contains(name)) {
+        Some(i) => fail(
+            &key.field("free").index(i),
+            format!(
+                "{:?} is also in `fix` of this stage, it can be in one only; remove it from the other",
+                stage.free[i]
+            ),
+        ),
+        None => Ok(()),
+    }
+}
