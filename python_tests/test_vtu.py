@@ -1,10 +1,5 @@
-"""Frames of a finished run open in VTK, which is what ParaView reads them with, and in meshio.
+"""Frames of a finished run open in VTK, which is what ParaView reads them with; meshio finds the same numbers."""
 
-ENMM_RESULTS names the directory of the run.
-"""
-
-import os
-import pathlib
 import xml.etree.ElementTree
 
 import meshio
@@ -20,20 +15,15 @@ JOINT_FIELDS = {"normal_stress": 1, "shear_stress": 1, "length": 1, "normal": 3,
 
 
 @pytest.fixture(scope="module")
-def run() -> pathlib.Path:
-    return pathlib.Path(os.environ["ENMM_RESULTS"])
-
-
-@pytest.fixture(scope="module")
-def entries(run) -> list[dict]:
+def entries(results) -> list[dict]:
     """Entries of the collection: timestep, part, file."""
-    root = xml.etree.ElementTree.parse(run / "run.pvd").getroot()
+    root = xml.etree.ElementTree.parse(results / "run.pvd").getroot()
     assert root.get("type") == "Collection"
     return [entry.attrib for entry in root.iter("DataSet")]
 
 
-def files_of_part(run, entries, part):
-    files = [(float(entry["timestep"]), run / entry["file"]) for entry in entries if entry["part"] == part]
+def files_of_part(results, entries, part):
+    files = [(float(entry["timestep"]), results / entry["file"]) for entry in entries if entry["part"] == part]
     assert files
     return files
 
@@ -55,17 +45,17 @@ def array(fields, name):
     return vtk_to_numpy(fields.GetArray(name))
 
 
-def test_the_collection_lists_both_parts_of_every_time(run, entries):
-    elements, joints = (files_of_part(run, entries, part) for part in "01")
+def test_the_collection_lists_both_parts_of_every_time(results, entries):
+    elements, joints = (files_of_part(results, entries, part) for part in "01")
     times = [time for time, _ in elements]
     assert times == sorted(times)
     assert times == [time for time, _ in joints]
     listed = {path for _, path in elements + joints}
-    assert listed == set((run / "frames").glob("*.vtu"))
+    assert listed == set((results / "frames").glob("*.vtu"))
 
 
-def test_vtk_reads_the_elements(run, entries):
-    for time, path in files_of_part(run, entries, "0"):
+def test_vtk_reads_the_elements(results, entries):
+    for time, path in files_of_part(results, entries, "0"):
         grid = read_with_vtk(path)
         assert grid.GetNumberOfCells() > 0
         assert {grid.GetCellType(k) for k in range(grid.GetNumberOfCells())} == {POLYGON}
@@ -77,8 +67,8 @@ def test_vtk_reads_the_elements(run, entries):
             assert len(array(grid.GetCellData(), name)) == grid.GetNumberOfCells()
 
 
-def test_polygons_are_counter_clockwise_and_share_no_points(run, entries):
-    _, path = files_of_part(run, entries, "0")[0]
+def test_polygons_are_counter_clockwise_and_share_no_points(results, entries):
+    _, path = files_of_part(results, entries, "0")[0]
     grid = read_with_vtk(path)
     points = vtk_to_numpy(grid.GetPoints().GetData())
     ends = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
@@ -88,9 +78,9 @@ def test_polygons_are_counter_clockwise_and_share_no_points(run, entries):
         assert 0.5 * (x @ numpy.roll(y, -1) - y @ numpy.roll(x, -1)) > 0.0
 
 
-def test_vtk_reads_the_joints(run, entries):
+def test_vtk_reads_the_joints(results, entries):
     found = 0
-    for time, path in files_of_part(run, entries, "1"):
+    for time, path in files_of_part(results, entries, "1"):
         grid = read_with_vtk(path)
         assert array(grid.GetFieldData(), "TimeValue").tolist() == [time]
         count = grid.GetNumberOfPoints()
@@ -106,10 +96,10 @@ def test_vtk_reads_the_joints(run, entries):
     assert found, "no frame has a joint point"
 
 
-def test_meshio_reads_the_same_numbers_as_vtk(run, entries):
+def test_meshio_reads_the_same_numbers_as_vtk(results, entries):
     for entry in entries:
-        grid = read_with_vtk(run / entry["file"])
-        mesh = meshio.read(run / entry["file"])
+        grid = read_with_vtk(results / entry["file"])
+        mesh = meshio.read(results / entry["file"])
         assert len(mesh.points) == grid.GetNumberOfPoints()
         if len(mesh.points) == 0:
             continue
