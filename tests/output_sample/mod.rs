@@ -1,4 +1,4 @@
-//! A made-up jointed slope, 100 m × 60 m, and what pictures need of it: no mechanics, only shapes and a plausible slide.
+//! A made-up jointed slope, 100 m × 60 m, and what decorates its picture: no mechanics, only shapes and a slide.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56
 /// Directions (degrees) of the two joint sets.
 const DIPS: [f64; 2] = [38.0, 112.0];
 
-/// A slope before it moves, what decorates its picture, and a way to let it move.
+/// A slope before it moves, and what decorates its picture.
 pub struct Sample {
     pub reference: Snapshot,
     pub decor: ModelDecor,
