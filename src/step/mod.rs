@@ -8,7 +8,7 @@ mod report;
 
 pub use guard::{Failure, StepError};
 pub use prepare::{begin_stage, prepare};
-pub use report::{StepReport, energies, momentum};
+pub use report::{StepReport, block_motion, energies, momentum};
 
 use std::time::Instant;
 

@@ -91,3 +91,11 @@ pub fn momentum(slope: &Slope, state: &State, metric: &Metric) -> (Vector, f64) 
     }
     (linear, angular)
 }
+
+/// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
+pub fn block_motion(slope: &Slope, state: &State, metric: &Metric, block: usize) -> (Point, Vector, f64, f64) {
+    let kick = resting(slope, metric, &state.displacement, &state.velocity, block);
+    let (centre, velocity, spin) = mechanics::rigid_motion(&kick);
+    let kinetic = if metric.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&kick) };
+    (centre, velocity, spin, kinetic)
+}
