@@ -117,7 +117,9 @@ fn names_with_markup_stay_text() {
     let mut slope = sample(20.0, 10.0);
     slope.decor.title = "a < b & \"c\" > d \u{1} \u{0}".to_owned();
     slope.decor.monitors[0].0 = "</text><script>".to_owned();
+    slope.decor.monitors[1].0 = "岩盤 \u{1f3d4}".to_owned();
     let picture = model_picture(&slope.reference, &slope.decor);
+    check(&picture, "markup.png");
     resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
 }
 

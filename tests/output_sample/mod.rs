@@ -1,4 +1,4 @@
-//! A made-up jointed slope, 100 m × 60 m, and what pictures need of it: no mechanics, only shapes and a plausible slide.
+//! A made-up jointed slope, 100 m × 60 m, and what decorates its picture: no mechanics, only shapes and a slide.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56
 /// Directions (degrees) of the two joint sets.
 const DIPS: [f64; 2] = [38.0, 112.0];
 
-/// A slope before it moves, what decorates its picture, and a way to let it move.
+/// A slope before it moves, and what decorates its picture.
 pub struct Sample {
     pub reference: Snapshot,
     pub decor: ModelDecor,
@@ -145,7 +145,7 @@ fn complete(snapshot: &mut Snapshot) {
 /// Parts of the profile between the joints of both sets.
 fn blocks(spacing: f64) -> Vec<Vec<Point>> {
     let [along, across] = DIPS.map(|dip| Vector::new(dip.to_radians().cos(), dip.to_radians().sin()));
-    let profile = PROFILE.map(Point::from);
+    let profile = profile().points;
     let count = (140.0 / spacing) as i64;
     let jitter = |k: i64, seed: f64| spacing * (k as f64 + 0.25 * (k as f64 * 2.3 + seed).sin());
     let cells = (-count..count).flat_map(|i| (-count..count).map(move |j| (i, j)));

@@ -26,7 +26,9 @@ pub fn is_drawable(point: &Point) -> bool {
 /// A box in the plane (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
+    /// Lower left corner.
     pub min: Point,
+    /// Upper right corner.
     pub max: Point,
 }
 
@@ -45,18 +47,22 @@ impl Bounds {
         Self { min: centre - half, max: centre + half }
     }
 
+    /// Width and height (m).
     pub fn size(&self) -> Vector {
         self.max - self.min
     }
 
+    /// Distance (m) of opposite corners.
     pub fn diagonal(&self) -> f64 {
         self.size().norm()
     }
 
+    /// Whether the point lies inside or on the edge.
     pub fn contains(&self, point: &Point) -> bool {
         (self.min.x..=self.max.x).contains(&point.x) && (self.min.y..=self.max.y).contains(&point.y)
     }
 
+    /// Whether the two share a point.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
     }
@@ -76,7 +82,9 @@ impl Bounds {
 /// A part of the plane shown in a part of the picture, with equal axes.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
+    /// What is shown (m).
     pub world: Bounds,
+    /// Where it is shown (px).
     pub area: Rect,
     /// Pixels per metre.
     pub scale: f64,
@@ -97,6 +105,7 @@ impl View {
         Self { world, area, scale: area.width / world.size().x }
     }
 
+    /// Where a point appears.
     pub fn pixel(&self, point: &Point) -> Pixel {
         let from_corner = (point - self.world.min) * self.scale;
         [self.area.left + from_corner.x, self.area.bottom() - from_corner.y]
@@ -153,6 +162,7 @@ pub fn draw_grid_line(sheet: &mut Svg, from: Pixel, to: Pixel) {
 /// Round values along an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ticks {
+    /// The round values, ascending.
     pub values: Vec<f64>,
     decimals: usize,
 }
@@ -169,6 +179,7 @@ impl Ticks {
         Self { values, decimals: (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize }
     }
 
+    /// A value in as many decimals as the step needs.
     pub fn label(&self, value: f64) -> String {
         // Adding zero turns -0 into 0.
         with_minus(format!("{:.*}", self.decimals, value + 0.0))

@@ -4,6 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
+/// Paper.
 pub const WHITE: Colour = Colour(255, 255, 255);
 /// Text and axes.
 pub const INK: Colour = Colour(34, 38, 43);

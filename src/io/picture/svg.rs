@@ -14,25 +14,33 @@ pub type Pixel = [f64; 2];
 /// A rectangle of the picture (px).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rect {
+    /// Left edge.
     pub left: f64,
+    /// Upper edge.
     pub top: f64,
+    /// Size from left to right.
     pub width: f64,
+    /// Size from top to bottom.
     pub height: f64,
 }
 
 impl Rect {
+    /// Right edge (px).
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
+    /// Lower edge (px).
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
+    /// Whether the place lies inside or on the edge.
     pub fn contains(&self, [x, y]: Pixel) -> bool {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
+    /// Whether the two share more than an edge.
     pub fn overlaps(&self, other: &Rect) -> bool {
         self.left < other.right() && other.left < self.right() && self.top < other.bottom() && other.top < self.bottom()
     }
@@ -59,6 +67,7 @@ pub struct Style {
 }
 
 impl Style {
+    /// An area without an edge.
     pub fn fill(colour: Colour) -> Self {
         Self { fill: Some(colour), ..Self::default() }
     }
@@ -73,10 +82,12 @@ impl Style {
         Self { stroke: Some((colour, width)), ..self }
     }
 
+    /// The same, let through: 0 invisible, 1 solid.
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity: Some(opacity), ..self }
     }
 
+    /// The same with a broken line.
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
     }
@@ -139,10 +150,12 @@ impl TextStyle {
         Self { size, anchor: Anchor::Start, colour: INK, halo: false, upward: false }
     }
 
+    /// The same, held at another end.
     pub fn anchor(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
 
+    /// The same in another colour.
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
@@ -165,14 +178,17 @@ pub struct Path {
 }
 
 impl Path {
+    /// Whether nothing would be drawn.
     pub fn is_empty(&self) -> bool {
         self.data.is_empty()
     }
 
+    /// Adds the outlines of another shape.
     pub fn append(&mut self, other: Path) {
         self.data.push_str(&other.data);
     }
 
+    /// Adds a closed outline.
     pub fn polygon(&mut self, corners: impl IntoIterator<Item = Pixel>) {
         let before = self.data.len();
         self.line(corners);
@@ -181,6 +197,7 @@ impl Path {
         }
     }
 
+    /// Adds an open line.
     pub fn line(&mut self, places: impl IntoIterator<Item = Pixel>) {
         for (k, [x, y]) in places.into_iter().enumerate() {
             self.data.push(if k == 0 { 'M' } else { 'L' });
@@ -222,6 +239,7 @@ impl Svg {
         sheet
     }
 
+    /// Draws a rectangle.
     pub fn rect(&mut self, area: &Rect, style: Style) {
         let Rect { left, top, width, height } = area;
         let shape =
@@ -229,10 +247,12 @@ impl Svg {
         self.body.push_str(&shape);
     }
 
+    /// Draws a circle of the given radius (px).
     pub fn circle(&mut self, [x, y]: Pixel, radius: f64, style: Style) {
         let _ = writeln!(self.body, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\"{style}/>");
     }
 
+    /// Draws gathered outlines; none if there are none.
     pub fn path(&mut self, path: &Path, style: Style) {
         if !path.is_empty() {
             let _ = writeln!(self.body, "<path d=\"{}\"{style}/>", path.data);
@@ -251,6 +271,7 @@ impl Svg {
         let _ = writeln!(self.body, "<path d=\"{}\" fill=\"url(#id{id})\" fill-rule=\"evenodd\"/>", path.data);
     }
 
+    /// Draws a straight line.
     pub fn line(&mut self, from: Pixel, to: Pixel, style: Style) {
         let mut path = Path::default();
         path.line([from, to]);
@@ -293,6 +314,7 @@ impl Svg {
         self.ids
     }
 
+    /// The finished sheet.
     pub fn finish(self) -> Picture {
         let Self { width, height, definitions, body, .. } = self;
         let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"");
