@@ -4,15 +4,20 @@ use common::*;
 
 #[test]
 fn incline() {
-    for (young, phi, h) in [("1e9", 20.0, 0.3), ("1e9",25.0,0.5), ("1e9",25.0,0.3), ("10e9",25.0,0.3)] {
+    for (young, phi, h) in [("50e6", 20.0, 0.5), ("1e9",25.0,0.3), ("10e9",25.0,0.3),("10e9",10.0,0.3),("10e9",25.0,0.5),("1e9",25.0,1.0),("10e9",25.0,1.0)] {
+    let w = 2500.0*9.81*2.0*1.0;
+    let a = 30f64.to_radians(); let fh = w*(a.sin()-a.cos()*(phi as f64).to_radians().tan());
+    let _ = fh;
+    let at = |u: f64, v: f64| (u*a.cos()-v*a.sin(), u*a.sin()+v*a.cos());
+    let ytop = 20.0*a.tan();
+    let ((x4,y4),(x1,y1),(x2,y2),(x3,y3)) = (at(8.0,0.0),at(10.0,0.0),at(10.0,1.0),at(8.0,1.0));
     let text = format!(r#"
 title = "incline"
 [domain]
-outline = [[0,0],[20,0],[20,11.547005383792516],[8.82,5.0922],[8.32,5.958],[6.588,4.958],[7.088,4.0922]]
+outline = [[0,0],[20,0],[20,{ytop}],[{x1},{y1}],[{x2},{y2}],[{x3},{y3}],[{x4},{y4}]]
 joint_law = "j"
-snap_tolerance = 1e-3
 [[joint]]
-points = [[0,0],[20,11.547005383792516]]
+points = [[0,0],[20,{ytop}]]
 [mesh]
 size = {h}
 angle_deg = 0
@@ -27,7 +32,8 @@ block = [18, 1]
 [[stage]]
 name = "settle"
 kind = "static"
-duration = 5.0
+
+duration = 1.0
 [[stage]]
 name = "slide"
 kind = "dynamic"
