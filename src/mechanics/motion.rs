@@ -25,14 +25,17 @@ pub struct BlockMotion {
     pub centre: Point,
     /// Kinetic energy taken by damping in this step (J/m).
     pub damped: f64,
+    /// C = (J_D/J − 1)/J_D' of a free block, J_D' at the current places; 0 of a held one.
+    pub spin: f64,
 }
 
 /// Sums over the covers of a block that describe its motion.
 struct Sums {
     velocity: Vector,
-    spin: f64,
     moment: f64,
     square: f64,
+    /// Polar inertia of the lumped masses about their own centroid at the current places.
+    polar: f64,
 }
 
 /// One block's slices of the cover arrays, and the block's place in the metric.
@@ -74,7 +77,7 @@ impl Kick<'_> {
         let total = metric.total[self.block];
         let velocity =
             self.covers.clone().map(|i| self.velocity[i] * metric.inertial[i]).sum::<Vector>() / total;
-        let (mut moment, mut square) = (0.0, 0.0);
+        let (mut moment, mut square, mut polar) = (0.0, 0.0, 0.0);
         let (mut first, mut linear) = (Vector::zeros(), Vector::zeros());
         for i in self.covers.clone() {
             let (m, d, u) = (metric.mass[i], self.place(i) - centre, self.velocity[i] - velocity);
@@ -82,10 +85,25 @@ impl Kick<'_> {
             linear += u * m;
             moment += m * d.perp(&u);
             square += m * u.norm_squared();
+            polar += m * d.norm_squared();
         }
         moment -= first.perp(&linear) / total;
         square -= linear.norm_squared() / total;
-        Sums { velocity, spin: moment / metric.polar_lumped[self.block], moment, square }
+        polar -= first.norm_squared() / total;
+        Sums { velocity, moment, square, polar }
+    }
+
+    /// C of a free block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
+    fn spin(&self, centre: Point) -> f64 {
+        let (metric, block) = (self.metric, self.block);
+        let (mut first, mut polar) = (Vector::zeros(), 0.0);
+        for i in self.covers.clone() {
+            let d = self.place(i) - centre;
+            first += d * metric.mass[i];
+            polar += metric.mass[i] * d.norm_squared();
+        }
+        polar -= first.norm_squared() / metric.total[block];
+        (metric.polar_lumped[block] / metric.polar[block] - 1.0) / polar
     }
 }
 
@@ -99,14 +117,14 @@ pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
     0.5 * metric.total[block] * sums.velocity.norm_squared()
         + 0.5 * sums.square
-        + 0.5 * (polar - lumped) / (lumped * lumped) * sums.moment * sums.moment
+        + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
 
 /// Rigid motion of a block in its metric: centroid (m), its velocity (m/s) and the spin (rad/s).
 pub fn rigid_motion(kick: &Kick) -> (Point, Vector, f64) {
     let centre = kick.centre();
     let sums = kick.sums(centre);
-    (centre, sums.velocity, sums.spin)
+    (centre, sums.velocity, sums.moment / kick.metric.polar_lumped[kick.block])
 }
 
 /// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
@@ -123,15 +141,17 @@ pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mu
     let centre = kick.centre();
     let loss = damp(kick, centre, predicted);
     damped.copy_from_slice(predicted);
+    let mut spin = 0.0;
     if kick.metric.is_free(kick.block) {
-        push_free(kick, centre, force, predicted);
+        spin = kick.spin(centre);
+        push_free(kick, centre, spin, force, predicted);
     } else {
         for (k, i) in kick.covers.clone().enumerate() {
             let force = force[k] + kick.acceleration * kick.metric.row_sum[i];
             predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
         }
     }
-    BlockMotion { centre, damped: loss }
+    BlockMotion { centre, damped: loss, spin }
 }
 
 fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {
@@ -139,12 +159,13 @@ fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {
     match kick.damping {
         Damping::Deformation(factor) if factor < 1.0 => {
             let sums = kick.sums(centre);
+            let spin = sums.moment / sums.polar;
             for (k, i) in kick.covers.clone().enumerate() {
-                let rigid = sums.velocity + turned(kick.place(i) - centre) * sums.spin;
+                let rigid = sums.velocity + turned(kick.place(i) - centre) * spin;
                 let held = kick.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
                 predicted[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
-            let deforming = 0.5 * (sums.square - sums.moment * sums.moment / kick.metric.polar_lumped[kick.block]);
+            let deforming = 0.5 * (sums.square - sums.moment * spin);
             (1.0 - factor * factor) * deforming
         }
         Damping::Deformation(_) => {
@@ -161,7 +182,7 @@ fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {
 }
 
 /// Adds dt·a of a free block, theory Eq. (3).
-fn push_free(kick: &Kick, centre: Point, force: &[Vector], predicted: &mut [Vector]) {
+fn push_free(kick: &Kick, centre: Point, spin: f64, force: &[Vector], predicted: &mut [Vector]) {
     let metric = kick.metric;
     let share = metric.inverse_total[kick.block];
     let total: Vector = force.iter().sum();
@@ -172,7 +193,7 @@ fn push_free(kick: &Kick, centre: Point, force: &[Vector], predicted: &mut [Vect
         mean += own * (metric.inertial[i] * share);
     }
     let common = total * share - mean + kick.acceleration;
-    let spin = metric.spin[kick.block] * torque;
+    let spin = spin * torque;
     for (k, i) in kick.covers.clone().enumerate() {
         let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];
         predicted[k] += (own + common + turned(kick.place(i) - centre) * spin) * kick.dt;

@@ -127,6 +127,9 @@ impl Step<'_> {
         let damping = self.damping(dt);
         let pass = blocks::Pass { slope, state: self.state, acceleration, damping, dt: kick_dt };
         pass.run(self.scratch);
+        for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
+            *spin = motion.spin;
+        }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
