@@ -4,6 +4,11 @@
 //! [`model`], [`io`]. `ARCHITECTURE.md` draws the graph; `docs/theory.md` numbers the equations that the code cites.
 #![forbid(unsafe_code)]
 
+pub mod contact;
+pub mod cover;
 pub mod geometry;
 pub mod io;
+pub mod mechanics;
 pub mod model;
+pub mod state;
+pub mod step;

@@ -1,6 +1,35 @@
-//! Points, loops, planar arrangement and the shapes that cut it. Knows nothing of rock.
+//! Points, exact predicates, loops, planar arrangement and the joint sets that cut it.
+//!
+//! Knows the plane: coordinates in metres, angles in radians, tolerances in metres. Must not know rock, covers, stress,
+//! time or files; a label carries plain indices whose meaning belongs to the caller.
+
+mod arrangement;
+mod error;
+mod faces;
+mod grid;
+pub mod joint_set;
+pub mod loops;
+mod noder;
+pub mod polygon;
+pub mod segment;
+
+pub use arrangement::{Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange};
+pub use error::GeometryError;
 
 /// A place in the plane (m).
 pub type Point = nalgebra::Vector2<f64>;
 /// A direction, a displacement, a velocity or a force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;
+
+/// Returns twice the signed area of the triangle `a`, `b`, `c`; its sign is exact, positive counter-clockwise.
+#[inline]
+pub fn orientation(a: Point, b: Point, c: Point) -> f64 {
+    let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Returns the third component of the cross product `a` × `b`.
+#[inline]
+pub fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}

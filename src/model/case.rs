@@ -287,7 +287,7 @@ pub struct Fix {
     /// What is held.
     #[serde(default)]
     pub axes: Axes,
-    /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 and 100 times the contact stiffness.
+    /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 times the contact stiffness.
     #[serde(default)]
     pub stiffness: Option<f64>,
     /// Whether it holds from the start.
@@ -542,7 +542,7 @@ impl Default for Solver {
             contact_theta: 4.0,
             contact_tolerance: 1e-2,
             sweeps_max: 8,
-            penetration_limit: 0.5,
+            penetration_limit: 0.2,
             memory_limit: 8 << 30,
         }
     }

@@ -1,7 +1,11 @@
-//! What the user wrote ([`Case`]), how it is built, and the façade that callers hold.
+//! What the user wrote ([`Case`]), how it is built, and the façade that callers hold ([`Simulation`]).
 
+pub mod build;
 pub mod case;
+mod simulation;
 pub mod snapshot;
 
+pub use build::{Built, build};
 pub use case::Case;
+pub use simulation::Simulation;
 pub use snapshot::Snapshot;

@@ -1,2 +1,34 @@
-//! House keeping.
-fn main() {}
+//! House keeping: `cargo xtask test` is the one command that tests everything; the others write what is committed but
+//! generated, or run what takes too long for every change.
+
+mod counts;
+mod house;
+mod python;
+mod tasks;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask TASK
+
+  test [--quick]   format, lints, build, tests, documentation, schema, Python; --quick leaves out the last three
+  long             the long campaigns: tests named long_*, with ENMM_LONG=1
+  schema           writes docs/case.schema.json
+  pictures         runs the main case and writes the README's pictures into docs/pictures";
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let done = house::House::find().and_then(|house| match words[..] {
+        ["test"] => Ok(tasks::test(&house, tasks::Extent::Full)),
+        ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
+        ["long"] => Ok(tasks::long(&house)),
+        ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),
+        ["pictures"] => tasks::write_pictures(&house).map(|()| ExitCode::SUCCESS),
+        _ => Err(USAGE.to_owned()),
+    });
+    done.unwrap_or_else(|message| {
+        eprintln!("{message}");
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,254 @@
+//! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
+
+use crate::cover::{BoundaryPiece, Covers, Weights};
+use crate::geometry::{NONE, Point};
+
+/// What the end of a side is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corner {
+    /// Rock within less than half a turn.
+    Convex,
+    /// Rock within more than half a turn, crack tips included.
+    Reflex,
+}
+
+/// Angles and lengths that shape the boundary.
+#[derive(Debug, Clone, Copy)]
+pub struct BoundaryOptions {
+    /// Turn (rad) from which a boundary point is a corner.
+    pub corner_angle: f64,
+    /// Turn (rad) from which a boundary point is a node.
+    pub kink_angle: f64,
+    /// Turn (rad) summed along a side at which the side ends.
+    pub side_turn: f64,
+}
+
+impl Default for BoundaryOptions {
+    fn default() -> Self {
+        Self { corner_angle: 0.05, kink_angle: 1e-3, side_turn: 0.3 }
+    }
+}
+
+/// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]`, rock on its left, inside one element.
+#[derive(Debug, Clone, Default)]
+pub struct Boundary {
+    /// Covers of the element of edge `k`; they carry point `k` as well.
+    pub covers: Vec<[u32; 3]>,
+    /// Weights of those covers at point `k`.
+    pub weights: Vec<Weights>,
+    /// Reference position of point `k` (m).
+    pub reference: Vec<Point>,
+    /// The point after `k` on its loop.
+    pub next: Vec<u32>,
+    /// Block of edge and point `k`.
+    pub block: Vec<u32>,
+    /// Side that edge `k` is part of.
+    pub side: Vec<u32>,
+    /// Node at or before point `k`.
+    pub node_before: Vec<u32>,
+    /// Joint trace of edge `k`, `NONE` on an outline.
+    pub trace: Vec<u32>,
+    /// Whether both sides of edge `k` belong to one block.
+    pub partial: Vec<bool>,
+    /// Boundary point of each node.
+    pub node_point: Vec<u32>,
+    /// Node before each node on its loop.
+    pub node_previous: Vec<u32>,
+    /// Node after each node on its loop.
+    pub node_next: Vec<u32>,
+    /// First edge of each side.
+    pub side_first: Vec<u32>,
+    /// Last edge of each side.
+    pub side_last: Vec<u32>,
+    /// Corner at the start of each side.
+    pub side_corner: Vec<Corner>,
+    /// Side before each side on its loop.
+    pub side_previous: Vec<u32>,
+    /// Side after each side on its loop.
+    pub side_next: Vec<u32>,
+}
+
+/// A point of a loop while it is laid out: the piece that starts there and the turn onto it.
+struct Station {
+    piece: BoundaryPiece,
+    turn: f64,
+    node: bool,
+    corner: bool,
+}
+
+impl Boundary {
+    /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
+    pub fn new(covers: &Covers, options: &BoundaryOptions) -> Self {
+        let mut boundary = Self::default();
+        for k in 0..covers.outlines.len() {
+            let mut stations = stations(covers.outlines.of_loop(k), options);
+            place_nodes(&mut stations, covers.mesh.size);
+            boundary.push_loop(covers, covers.outlines.loop_block[k], &stations);
+        }
+        boundary
+    }
+
+    /// Number of points, and of edges.
+    pub fn len(&self) -> usize {
+        self.covers.len()
+    }
+
+    /// Whether there is no boundary.
+    pub fn is_empty(&self) -> bool {
+        self.covers.is_empty()
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.node_point.len()
+    }
+
+    /// Point after point `k`.
+    pub fn after(&self, k: usize) -> usize {
+        self.next[k] as usize
+    }
+
+    /// Joint trace of a node: that of the edge after it, or else of the edge before it.
+    pub fn node_trace(&self, node: usize) -> u32 {
+        let point = self.node_point[node] as usize;
+        if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.point_before(node)] }
+    }
+
+    /// Whether the node lies on a partial cut.
+    pub fn node_partial(&self, node: usize) -> bool {
+        self.partial[self.node_point[node] as usize] || self.partial[self.point_before(node)]
+    }
+
+    /// Side that ends at or passes through a node.
+    pub fn side_of_node_before(&self, node: usize) -> u32 {
+        self.side[self.point_before(node)]
+    }
+
+    /// The last point before a node on its loop.
+    fn point_before(&self, node: usize) -> usize {
+        let mut k = self.node_point[self.node_previous[node] as usize] as usize;
+        while self.next[k] != self.node_point[node] {
+            k = self.after(k);
+        }
+        k
+    }
+
+    fn push_loop(&mut self, covers: &Covers, block: u32, stations: &[Station]) {
+        let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_first.len());
+        let last = first + stations.len() - 1;
+        for (k, station) in stations.iter().enumerate() {
+            let index = (first + k) as u32;
+            if station.corner {
+                self.side_first.push(index);
+                self.side_last.push(index);
+                self.side_corner.push(if station.turn > 0.0 { Corner::Convex } else { Corner::Reflex });
+            }
+            if station.node {
+                self.node_point.push(index);
+            }
+            let element = station.piece.element as usize;
+            self.covers.push(covers.element_covers[element]);
+            self.weights.push(covers.weights(element, station.piece.a));
+            self.reference.push(station.piece.a);
+            self.next.push(if first + k == last { first as u32 } else { index + 1 });
+            self.block.push(block);
+            self.side.push(self.side_first.len() as u32 - 1);
+            self.node_before.push(self.node_count() as u32 - 1);
+            self.trace.push(station.piece.trace);
+            self.partial.push(station.piece.partial);
+            if let Some(end) = self.side_last.last_mut() {
+                *end = index;
+            }
+        }
+        ring(&mut self.node_previous, &mut self.node_next, first_node, self.node_point.len());
+        ring(&mut self.side_previous, &mut self.side_next, first_side, self.side_first.len());
+    }
+}
+
+/// Appends the neighbours of a ring of indices `first..end`.
+fn ring(previous: &mut Vec<u32>, next: &mut Vec<u32>, first: usize, end: usize) {
+    for k in first..end {
+        previous.push(if k == first { end - 1 } else { k - 1 } as u32);
+        next.push(if k + 1 == end { first } else { k + 1 } as u32);
+    }
+}
+
+/// Turn (rad) from one direction to the next; half a turn back is a crack tip, hence negative.
+fn turn(before: &BoundaryPiece, after: &BoundaryPiece) -> f64 {
+    let (d, e) = (before.b - before.a, after.b - after.a);
+    let angle = d.perp(&e).atan2(d.dot(&e));
+    if angle.abs() > std::f64::consts::PI - 1e-6 { -std::f64::consts::PI } else { angle }
+}
+
+/// Pieces of a loop with their turns, corners marked, beginning at a corner.
+fn stations(pieces: &[BoundaryPiece], options: &BoundaryOptions) -> Vec<Station> {
+    let n = pieces.len();
+    let mut stations: Vec<Station> = (0..n)
+        .map(|k| {
+            let turn = turn(&pieces[(k + n - 1) % n], &pieces[k]);
+            Station {
+                piece: pieces[k],
+                turn,
+                node: turn.abs() > options.kink_angle,
+                corner: turn.abs() > options.corner_angle,
+            }
+        })
+        .collect();
+    let start = stations.iter().position(|s| s.corner).unwrap_or(0);
+    stations.rotate_left(start);
+    stations[0].corner = true;
+    let mut along = 0.0;
+    for station in &mut stations[1..] {
+        along = if station.corner { 0.0 } else { along + station.turn };
+        if along.abs() > options.side_turn {
+            station.corner = true;
+            along = 0.0;
+        }
+    }
+    for station in &mut stations {
+        station.node |= station.corner;
+    }
+    stations
+}
+
+/// Adds nodes so that none are farther apart than `size` (m), on existing points where one is near.
+fn place_nodes(stations: &mut Vec<Station>, size: f64) {
+    let mut placed = Vec::with_capacity(stations.len() + 8);
+    let old = std::mem::take(stations);
+    let mut spans = old.into_iter().peekable();
+    while let Some(first) = spans.next() {
+        let mut span = vec![first];
+        while let Some(next) = spans.next_if(|s| !s.node) {
+            span.push(next);
+        }
+        divide(span, size, &mut placed);
+    }
+    *stations = placed;
+}
+
+/// Divides one span between two nodes evenly.
+fn divide(span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
+    let length: f64 = span.iter().map(|s| (s.piece.b - s.piece.a).norm()).sum();
+    let parts = (length / size - 1e-6).ceil().max(1.0);
+    let step = length / parts;
+    let (mut at, mut target) = (0.0, 1.0);
+    for mut station in span {
+        let end = at + (station.piece.b - station.piece.a).norm();
+        if target < parts && (at - target * step).abs() <= 0.1 * step {
+            station.node = true;
+            target += 1.0;
+        }
+        while target < parts && target * step < end - 0.1 * step {
+            let along = (target * step - at) / (end - at);
+            let split = station.piece.a + (station.piece.b - station.piece.a) * along;
+            let rest = BoundaryPiece { a: split, ..station.piece };
+            station.piece.b = split;
+            placed.push(station);
+            station = Station { piece: rest, turn: 0.0, node: true, corner: false };
+            at = target * step;
+            target += 1.0;
+        }
+        placed.push(station);
+        at = end;
+    }
+}

@@ -1,0 +1,361 @@
+//! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
+
+use crate::cover::Weights;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{BlockMotion, Metric};
+
+use super::{Boundary, Candidate, ContactHistory, ContactState, Corner, JointLaw, VertexEdge};
+
+/// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
+const ENTRANCE_SINE: f64 = 0.17;
+/// Depth, relative to the mesh size, from which a contact at first sight starts without force.
+const FIRST_SIGHT_DEPTH: f64 = 3e-3;
+/// Distance beyond a corner, relative to the mesh size, up to which a contact that carries force is kept.
+const HELD_BEYOND: f64 = 1e-3;
+/// Distance beyond a corner, relative to the mesh size, that counts as the corner.
+const CORNER_TOLERANCE: f64 = 1e-9;
+/// Distance by which a foot may miss an edge inside a side, relative to the mesh size.
+const WEDGE_TOLERANCE: f64 = 0.05;
+/// Least tributary length, relative to the mean of the neighbouring node segments.
+const LENGTH_FLOOR: f64 = 0.05;
+
+/// What the narrow phase reads.
+pub struct Narrow<'a> {
+    /// Boundary of the blocks.
+    pub boundary: &'a Boundary,
+    /// Current places of the boundary points (m).
+    pub place: &'a [Point],
+    /// Star positions (m).
+    pub star: &'a [Point],
+    /// Displacements of the covers (m).
+    pub displacement: &'a [Vector],
+    /// Masses.
+    pub metric: &'a Metric,
+    /// Centroids of the blocks.
+    pub motion: &'a [BlockMotion],
+    /// Joint laws.
+    pub laws: &'a [JointLaw],
+    /// Law of each joint trace, after switches.
+    pub trace_law: &'a [u32],
+    /// Law of contacts between faces that were no joints.
+    pub default_law: u32,
+    /// Mesh size (m).
+    pub size: f64,
+    /// Gap (m) below which a contact takes part in the iteration.
+    pub reach: f64,
+    /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
+    pub first: bool,
+    /// Stress xx, yy, xy (Pa) before the first step, by place.
+    pub in_situ: Option<&'a (dyn Fn(Point) -> [f64; 3] + Sync)>,
+}
+
+/// A node over an edge of one side.
+#[derive(Debug, Clone, Copy)]
+struct Pick {
+    side: u32,
+    edge: u32,
+    gap: f64,
+    along: f64,
+    length: f64,
+    tangent: Vector,
+    held: Option<ContactHistory>,
+    dropped: bool,
+}
+
+/// Judges every candidate and appends the contacts that take part in this step, ordered by node and side.
+///
+/// `history` is that of the last step in the same order.
+pub fn entrance_edges(
+    narrow: &Narrow,
+    candidates: &[Candidate],
+    history: &[ContactHistory],
+    contacts: &mut Vec<VertexEdge>,
+) {
+    let mut picks: [Option<Pick>; 12] = [None; 12];
+    let mut known = history;
+    let mut rest = candidates;
+    while let Some(first) = rest.first() {
+        let (group, others) = rest.split_at(rest.partition_point(|c| c.node == first.node));
+        rest = others;
+        known = &known[known.partition_point(|h| h.node < first.node)..];
+        let mine = &known[..known.partition_point(|h| h.node == first.node)];
+        let count = narrow.pick_edges(first.node as usize, group, mine, &mut picks);
+        narrow.drop_round_corners(&mut picks[..count]);
+        for pick in picks[..count].iter().flatten().filter(|p| !p.dropped) {
+            contacts.push(narrow.contact(first.node as usize, pick));
+        }
+    }
+}
+
+impl Narrow<'_> {
+    /// The best edge of each side near a node, as far as the vertex rule admits it.
+    fn pick_edges(
+        &self,
+        node: usize,
+        group: &[Candidate],
+        known: &[ContactHistory],
+        picks: &mut [Option<Pick>; 12],
+    ) -> usize {
+        let (mut count, mut rest) = (0, group);
+        while let Some(first) = rest.first() {
+            let (edges, others) = rest.split_at(rest.partition_point(|c| c.side == first.side));
+            rest = others;
+            let held = known.iter().find(|h| h.side == first.side).copied();
+            if let Some(pick) = self.pick(node, edges, held)
+                && count < picks.len()
+            {
+                picks[count] = Some(pick);
+                count += 1;
+            }
+        }
+        count
+    }
+
+    fn pick(&self, node: usize, edges: &[Candidate], held: Option<ContactHistory>) -> Option<Pick> {
+        let p = self.node_place(node);
+        let over = |c: &Candidate| {
+            let (a, b) = self.ends(c.edge as usize);
+            let length = (b - a).norm();
+            let tangent = (b - a) / length;
+            let along = (p - a).dot(&tangent);
+            let gap = (p - a).dot(&Vector::new(tangent.y, -tangent.x));
+            let beyond = (-along).max(along - length).max(0.0);
+            let pick = Pick { side: c.side, edge: c.edge, gap, along, length, tangent, held, dropped: false };
+            (beyond.hypot(gap), beyond, pick)
+        };
+        let (_, beyond, pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
+        let bonded = held.is_some_and(|h| h.intact && h.normal_force < 0.0);
+        (bonded || pick.gap - self.allowance(&pick) < self.reach)
+            .then_some(())
+            .filter(|()| self.within(&pick, p, beyond) && self.enters(node, &pick, p))
+            .map(|()| pick)
+    }
+
+    /// Closure that the contact's springs do not see (m).
+    fn allowance(&self, pick: &Pick) -> f64 {
+        pick.held.map_or(0.0, |h| h.rest - h.offset)
+    }
+
+    fn node_place(&self, node: usize) -> Point {
+        self.place[self.boundary.node_point[node] as usize]
+    }
+
+    fn ends(&self, edge: usize) -> (Point, Point) {
+        (self.place[edge], self.place[self.boundary.after(edge)])
+    }
+
+    fn is_held(pick: &Pick) -> bool {
+        pick.held.is_some_and(|h| h.state != ContactState::Open)
+    }
+
+    /// Rule (ii): the node is neither beyond a convex end of the side nor outside the line of the side round it.
+    fn within(&self, pick: &Pick, p: Point, beyond: f64) -> bool {
+        let boundary = self.boundary;
+        let tolerance = self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE };
+        let side = pick.side as usize;
+        let next = boundary.side_next[side] as usize;
+        let start = (boundary.side_first[side] == pick.edge, boundary.side_corner[side], self.place[pick.edge as usize]);
+        let end_point = self.ends(pick.edge as usize).1;
+        let end = (boundary.side_last[side] == pick.edge, boundary.side_corner[next], end_point);
+        let round = [
+            boundary.side_last[boundary.side_previous[side] as usize] as usize,
+            boundary.side_first[next] as usize,
+        ];
+        let past = [pick.along < 0.0, pick.along > pick.length];
+        for (k, (ends_here, corner, point)) in [start, end].into_iter().enumerate() {
+            let strict = ends_here && corner == Corner::Convex;
+            if past[k] && beyond > if strict { tolerance } else { WEDGE_TOLERANCE * self.size } {
+                return false;
+            }
+            if strict && (p - point).norm() < self.size {
+                let (a, b) = self.ends(round[k]);
+                let outward = Vector::new(b.y - a.y, a.x - b.x);
+                if (p - point).dot(&outward) > tolerance * outward.norm() {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Rule (i): both neighbours of the node lie outside the edge, or hardly inside.
+    fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
+        let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
+        [self.boundary.node_previous[node], self.boundary.node_next[node]].into_iter().all(|n| {
+            let d = self.node_place(n as usize) - p;
+            d.dot(&normal) >= -ENTRANCE_SINE * d.norm()
+        })
+    }
+
+    /// Rule (iii): of two sides round a convex corner the node keeps the one that carries force, else the shallower.
+    fn drop_round_corners(&self, picks: &mut [Option<Pick>]) {
+        let corner = |s: u32, t: u32| {
+            let boundary = self.boundary;
+            (boundary.side_next[s as usize] == t && boundary.side_corner[t as usize] == Corner::Convex)
+                || (boundary.side_next[t as usize] == s && boundary.side_corner[s as usize] == Corner::Convex)
+        };
+        for i in 0..picks.len() {
+            for j in i + 1..picks.len() {
+                let (Some(a), Some(b)) = (picks[i], picks[j]) else { continue };
+                if a.dropped || b.dropped || !corner(a.side, b.side) || (a.gap > 0.0 && b.gap > 0.0) {
+                    continue;
+                }
+                let first_wins = match (Self::is_held(&a), Self::is_held(&b)) {
+                    (true, false) => true,
+                    (false, true) => false,
+                    _ => a.gap >= b.gap,
+                };
+                if let Some(loser) = &mut picks[if first_wins { j } else { i }] {
+                    loser.dropped = true;
+                }
+            }
+        }
+    }
+
+    /// Tributary length (m) of a node over an edge, theory Eq. (13).
+    fn tributary(&self, node: usize, pick: &Pick) -> f64 {
+        let boundary = self.boundary;
+        let p = self.node_place(node).dot(&pick.tangent);
+        let before = boundary.node_before[pick.edge as usize] as usize;
+        let from = self.node_place(before).dot(&pick.tangent);
+        let to = self.node_place(boundary.node_next[before] as usize).dot(&pick.tangent);
+        let overlap = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
+        let previous = self.node_place(boundary.node_previous[node] as usize);
+        let next = self.node_place(boundary.node_next[node] as usize);
+        let here = self.node_place(node);
+        let span = 0.5 * ((previous - here).norm() + (next - here).norm());
+        let (q, r) = (previous.dot(&pick.tangent), next.dot(&pick.tangent));
+        let facing = if q > p { overlap(q) } else { 0.0 } + if r < p { overlap(r) } else { 0.0 };
+        (0.5 * facing).max(LENGTH_FLOOR * span) * self.share_at_corner(pick)
+    }
+
+    /// 1 inside a side, falling to ½ at its convex ends: there the corner itself is a contact as well.
+    fn share_at_corner(&self, pick: &Pick) -> f64 {
+        let (boundary, side) = (self.boundary, pick.side as usize);
+        let band = HELD_BEYOND * self.size;
+        let convex = |s: usize| boundary.side_corner[s] == Corner::Convex;
+        let mut share = 1.0f64;
+        if boundary.side_first[side] == pick.edge && convex(side) {
+            share = share.min(0.5 + 0.5 * pick.along / band);
+        }
+        if boundary.side_last[side] == pick.edge && convex(boundary.side_next[side] as usize) {
+            share = share.min(0.5 + 0.5 * (pick.length - pick.along) / band);
+        }
+        share.clamp(1e-3, 1.0)
+    }
+
+    fn contact(&self, node: usize, pick: &Pick) -> VertexEdge {
+        let boundary = self.boundary;
+        let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
+        let p = self.place[point];
+        let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
+        let covers = [boundary.covers[point], boundary.covers[edge]];
+        let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
+        let blocks = [boundary.block[point], boundary.block[edge]];
+        let arms = blocks.map(|b| p - self.motion[b as usize].centre);
+        let length = self.tributary(node, pick);
+        let law = self.law(node, edge);
+        let stiffness =
+            [self.laws[law as usize].normal_stiffness * length, self.laws[law as usize].shear_stiffness * length];
+        let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, stiffness, normal));
+        let history = ContactHistory { edge: pick.edge, ..history };
+        let mut contact = VertexEdge {
+            limits: self.laws[law as usize].limits(length, history.intact),
+            gap: pick.gap + history.offset - history.rest,
+            penetration: -pick.gap,
+            history,
+            blocks,
+            covers,
+            weights,
+            normal,
+            arms,
+            z: [0.0; 2],
+            length,
+            stiffness,
+            compliance: [0.0; 2],
+            law,
+            approach: [0.0; 2],
+            torn: false,
+            fresh: pick.held.is_none(),
+        };
+        self.weigh(&mut contact);
+        contact
+    }
+
+    /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
+    fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
+        let [x0, x1, x2] = covers.map(|i| self.star[i as usize] + self.displacement[i as usize]);
+        let (d1, d2, d) = (x1 - x0, x2 - x0, p - x0);
+        let area = d1.perp(&d2);
+        let (w1, w2) = (d.perp(&d2) / area, d1.perp(&d) / area);
+        [1.0 - w1 - w2, w1, w2]
+    }
+
+    /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
+    fn law(&self, node: usize, edge: usize) -> u32 {
+        let law = |trace: u32| self.trace_law.get(trace as usize).copied();
+        law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
+    }
+
+    fn first_sight(
+        &self,
+        node: usize,
+        pick: &Pick,
+        length: f64,
+        stiffness: [f64; 2],
+        normal: Vector,
+    ) -> ContactHistory {
+        let mut history = ContactHistory {
+            node: node as u32,
+            side: pick.side,
+            edge: pick.edge,
+            normal_force: 0.0,
+            shear_force: 0.0,
+            shear_stored: 0.0,
+            offset: 0.0,
+            rest: 0.0,
+            slip: 0.0,
+            state: ContactState::Open,
+            intact: self.first,
+        };
+        if -pick.gap > FIRST_SIGHT_DEPTH * self.size {
+            history.offset = -pick.gap;
+        }
+        if let (true, Some(stress)) = (self.first, self.in_situ) {
+            let [xx, yy, xy] = stress(self.boundary.reference[self.boundary.node_point[node] as usize]);
+            let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
+            history.normal_force = -traction.dot(&normal);
+            history.rest = history.normal_force / stiffness[0];
+            history.shear_force = -traction.dot(&pick.tangent);
+            history.shear_stored = history.shear_force;
+            history.state = ContactState::Lock;
+        }
+        history
+    }
+
+    /// z and the inverse effective masses of both bodies, theory Eq. (4).
+    fn weigh(&self, contact: &mut VertexEdge) {
+        let axes = [contact.normal, contact.tangent()];
+        for body in 0..2 {
+            let block = contact.blocks[body] as usize;
+            let metric = self.metric;
+            let share = metric.inverse_total[block];
+            let mut own = Vector::zeros();
+            let mut z = 0.0;
+            for (&i, w) in contact.covers[body].iter().zip(contact.weights[body]) {
+                let inverse = metric.inverse[i as usize];
+                own += inverse * (w * w);
+                z += w * metric.inertial[i as usize] * inverse.x;
+            }
+            contact.z[body] = z;
+            let common = share * (1.0 - 2.0 * z + metric.square[block] * share);
+            for (k, axis) in axes.iter().enumerate() {
+                let lever = contact.arms[body].perp(axis);
+                contact.compliance[k] += own.x * axis.x * axis.x
+                    + own.y * axis.y * axis.y
+                    + common
+                    + metric.spin[block] * lever * lever;
+            }
+        }
+    }
+}

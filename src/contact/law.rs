@@ -1,0 +1,54 @@
+//! Joint laws: stiffness and strength of a joint.
+
+/// Mohr–Coulomb joint with tension cut-off, peak and residual strength and dilation, theory Eqs. (14), (15).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct JointLaw {
+    /// Normal stiffness (Pa/m).
+    pub normal_stiffness: f64,
+    /// Shear stiffness (Pa/m).
+    pub shear_stiffness: f64,
+    /// tan φ, peak.
+    pub friction: f64,
+    /// Cohesion (Pa), peak.
+    pub cohesion: f64,
+    /// Tensile strength (Pa), peak.
+    pub tension: f64,
+    /// tan φ after failure.
+    pub residual_friction: f64,
+    /// Cohesion after failure (Pa).
+    pub residual_cohesion: f64,
+    /// Tensile strength after failure (Pa).
+    pub residual_tension: f64,
+    /// tan ψ.
+    pub dilation: f64,
+    /// Slip (m) at which dilation ends.
+    pub dilation_slip: f64,
+}
+
+/// Forces (N/m) that a contact of some length can carry.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Limits {
+    /// tan φ.
+    pub friction: f64,
+    /// Cohesive shear force (N/m).
+    pub cohesion: f64,
+    /// Tensile force (N/m).
+    pub tension: f64,
+}
+
+impl JointLaw {
+    /// Limits of a contact of tributary length `length` (m), peak while `intact`.
+    pub fn limits(&self, length: f64, intact: bool) -> Limits {
+        let [friction, cohesion, tension] = if intact {
+            [self.friction, self.cohesion, self.tension]
+        } else {
+            [self.residual_friction, self.residual_cohesion, self.residual_tension]
+        };
+        Limits { friction, cohesion: cohesion * length, tension: tension * length }
+    }
+
+    /// Opening (m) by dilation between two values of accumulated slip (m).
+    pub fn dilate(&self, from: f64, to: f64) -> f64 {
+        (to.min(self.dilation_slip) - from.min(self.dilation_slip)) * self.dilation
+    }
+}

@@ -1,0 +1,18 @@
+//! Search, vertex–edge contacts, entrance edge, joint laws, supports and the open–close iteration.
+//! Knows nothing of files or FMI.
+
+mod boundary;
+mod entrance;
+mod law;
+mod search;
+mod support;
+mod sweep;
+mod vertex_edge;
+
+pub use boundary::{Boundary, BoundaryOptions, Corner};
+pub use entrance::{Narrow, entrance_edges};
+pub use law::{JointLaw, Limits};
+pub use search::{Candidate, SearchGrid};
+pub use support::{Support, SupportRow};
+pub use sweep::{BlockPush, OpenClose, SweepOptions, SweepReport, open_close};
+pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

@@ -1,0 +1,60 @@
+//! Supports: bilateral springs that hold a material point along one direction, judged in the same iteration.
+
+use crate::cover::Weights;
+use crate::geometry::Vector;
+use crate::mechanics::Metric;
+
+/// A spring between a material point and the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// Fixity of the case that it belongs to.
+    pub fix: u32,
+    /// Block.
+    pub block: u32,
+    /// Covers of the point.
+    pub covers: [u32; 3],
+    /// Their weights at the point.
+    pub weights: Weights,
+    /// Unit direction that is held.
+    pub direction: Vector,
+    /// Stiffness (N/m per metre).
+    pub stiffness: f64,
+    /// Force (N/m) that it bears at no displacement, from in-situ stress.
+    pub preload: f64,
+}
+
+/// A support during one step.
+#[derive(Debug, Clone, Copy)]
+pub struct SupportRow {
+    /// Index of the support.
+    pub support: u32,
+    /// Displacement along the held direction (m).
+    pub displacement: f64,
+    /// Predicted velocity along it (m/s).
+    pub approach: f64,
+    /// Inverse effective mass (m/kg).
+    pub compliance: f64,
+    /// Force on the rock along the direction (N/m).
+    pub force: f64,
+}
+
+impl Support {
+    /// Sum of a cover field at the point, along the direction.
+    pub fn sample(&self, field: &[Vector]) -> f64 {
+        let at: Vector = self.covers.iter().zip(self.weights).map(|(&i, w)| field[i as usize] * w).sum();
+        at.dot(&self.direction)
+    }
+
+    /// Inverse effective mass of the point along the direction (m/kg); its block has the plain lumped metric.
+    pub fn compliance(&self, metric: &Metric) -> f64 {
+        let square = self.direction.component_mul(&self.direction);
+        self.covers.iter().zip(self.weights).map(|(&i, w)| metric.inverse[i as usize].dot(&square) * w * w).sum()
+    }
+
+    /// Adds an impulse (N·s/m) along the direction to the velocity increments of the covers.
+    pub fn push(&self, impulse: f64, metric: &Metric, increment: &mut [Vector]) {
+        for (&i, w) in self.covers.iter().zip(self.weights) {
+            increment[i as usize] += metric.inverse[i as usize].component_mul(&self.direction) * (w * impulse);
+        }
+    }
+}

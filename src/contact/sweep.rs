@@ -1,0 +1,172 @@
+//! The open–close iteration: Gauss–Seidel sweeps over contacts and supports, theory Eqs. (14)–(17).
+
+use crate::geometry::Vector;
+use crate::mechanics::Metric;
+
+use super::{ContactState, Support, SupportRow, VertexEdge};
+
+/// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time, Eq. (17).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockPush {
+    /// P = Σ impulses (N·s/m).
+    pub impulse: Vector,
+    /// Z = Σ z·impulse (N·s/m).
+    pub weighted: Vector,
+    /// L = Σ arm × impulse (N·m·s/m).
+    pub moment: f64,
+}
+
+/// Numerical choices of the iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepOptions {
+    /// Step (s).
+    pub dt: f64,
+    /// θ of the contact springs.
+    pub theta: f64,
+    /// Settled when no force changes by more than this share of the largest.
+    pub tolerance: f64,
+    /// Most sweeps.
+    pub sweeps_max: u32,
+}
+
+/// What the iteration did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SweepReport {
+    /// Sweeps done.
+    pub sweeps: u32,
+    /// Largest change of a force in the last sweep over the largest force.
+    pub unsettled: f64,
+}
+
+/// State of the iteration: velocity increments of covers and impulse sums of blocks.
+pub struct OpenClose<'a> {
+    /// Masses.
+    pub metric: &'a Metric,
+    /// Numerical choices.
+    pub options: SweepOptions,
+    /// Velocity increments p/m of the covers by their own impulses (m/s).
+    pub increment: &'a mut [Vector],
+    /// Impulse sums of the blocks.
+    pub push: &'a mut [BlockPush],
+}
+
+/// Sweeps until forces settle, warm-started from the last step's forces.
+pub fn open_close(
+    mut iteration: OpenClose,
+    contacts: &mut [VertexEdge],
+    supports: &[Support],
+    rows: &mut [SupportRow],
+) -> SweepReport {
+    iteration.warm_start(contacts, supports, rows);
+    let mut report = SweepReport::default();
+    while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty()) {
+        let change = iteration.sweep_contacts(contacts);
+        let support_change = iteration.sweep_supports(supports, rows);
+        report.sweeps += 1;
+        report.unsettled = change.max(support_change);
+        if report.unsettled <= iteration.options.tolerance {
+            break;
+        }
+    }
+    report
+}
+
+impl OpenClose<'_> {
+    fn warm_start(&mut self, contacts: &mut [VertexEdge], supports: &[Support], rows: &mut [SupportRow]) {
+        for contact in contacts {
+            let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
+            self.push(contact, force * self.options.dt);
+        }
+        for row in rows {
+            supports[row.support as usize].push(row.force * self.options.dt, self.metric, self.increment);
+        }
+    }
+
+    /// One sweep in order; returns the largest change of a force over the largest normal force.
+    fn sweep_contacts(&mut self, contacts: &mut [VertexEdge]) -> f64 {
+        let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
+        for contact in contacts {
+            change = change.max(self.judge(contact));
+            largest = largest.max(contact.history.normal_force.abs());
+        }
+        change / largest
+    }
+
+    fn sweep_supports(&mut self, supports: &[Support], rows: &mut [SupportRow]) -> f64 {
+        let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
+        for row in rows {
+            let support = &supports[row.support as usize];
+            let dt = self.options.dt;
+            let velocity = row.approach + support.sample(self.increment);
+            let (k, w) = (support.stiffness, row.compliance);
+            let force = (support.preload - k * (row.displacement + dt * velocity) + k * dt * dt * w * row.force)
+                / (1.0 + k * dt * dt * w);
+            support.push((force - row.force) * dt, self.metric, self.increment);
+            change = change.max((force - row.force).abs());
+            row.force = force;
+            largest = largest.max(force.abs());
+        }
+        change / largest
+    }
+
+    /// Judges one contact open, slip or lock; returns the change of its force (N/m).
+    fn judge(&mut self, contact: &mut VertexEdge) -> f64 {
+        let dt = self.options.dt;
+        let relative = self.increment_at(contact, 0) - self.increment_at(contact, 1);
+        let tangent = contact.tangent();
+        let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
+        let shear_velocity = contact.approach[1] + relative.dot(&tangent);
+        let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
+        let [a, b] = [0, 1].map(|k| contact.stiffness[k] * self.options.theta * dt);
+        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * dt);
+        let normal = (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
+        let shear = (contact.history.shear_stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
+        contact.decide(normal, shear);
+        let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
+        if step != [0.0; 2] {
+            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * dt);
+        }
+        step[0].abs().max(step[1].abs())
+    }
+
+    /// Velocity (m/s) that all impulses so far give to body `k` of a contact at the contact's place, Eq. (17).
+    fn increment_at(&self, contact: &VertexEdge, k: usize) -> Vector {
+        let block = contact.blocks[k] as usize;
+        let (metric, push) = (self.metric, &self.push[block]);
+        let own: Vector =
+            contact.covers[k].iter().zip(contact.weights[k]).map(|(&i, w)| self.increment[i as usize] * w).sum();
+        let share = metric.inverse_total[block];
+        let common = (push.impulse * (1.0 + metric.square[block] * share - contact.z[k]) - push.weighted) * share;
+        let spin = metric.spin[block] * push.moment;
+        own + common + Vector::new(-contact.arms[k].y, contact.arms[k].x) * spin
+    }
+
+    /// Adds an impulse (N·s/m) on the node and its reaction on the edge.
+    fn push(&mut self, contact: &VertexEdge, impulse: Vector) {
+        for (k, impulse) in [impulse, -impulse].into_iter().enumerate() {
+            for (&i, w) in contact.covers[k].iter().zip(contact.weights[k]) {
+                self.increment[i as usize] += self.metric.inverse[i as usize].component_mul(&impulse) * w;
+            }
+            let push = &mut self.push[contact.blocks[k] as usize];
+            push.impulse += impulse;
+            push.weighted += impulse * contact.z[k];
+            push.moment += contact.arms[k].perp(&impulse);
+        }
+    }
+}
+
+impl VertexEdge {
+    /// Clamps the forces that the springs ask for to what the joint can carry.
+    fn decide(&mut self, normal: f64, shear: f64) {
+        let history = &mut self.history;
+        self.torn = normal < -self.limits.tension;
+        if self.torn || (normal <= 0.0 && self.limits.tension == 0.0) {
+            (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
+            return;
+        }
+        let limit = (normal * self.limits.friction + self.limits.cohesion).max(0.0);
+        history.normal_force = normal;
+        history.shear_force = shear.clamp(-limit, limit);
+        history.state = if shear.abs() >= limit { ContactState::Slip } else { ContactState::Lock };
+    }
+}

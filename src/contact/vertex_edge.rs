@@ -1,0 +1,115 @@
+//! One contact between a boundary node and the edge that it may enter.
+
+use crate::cover::Weights;
+use crate::geometry::Vector;
+
+use super::Limits;
+
+/// What a contact does at the end of a step.
+#[doc(alias = "sliding")]
+#[doc(alias = "locked")]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum ContactState {
+    /// No force.
+    #[default]
+    Open,
+    /// Shear at the limit.
+    Slip,
+    /// Shear below the limit.
+    Lock,
+}
+
+/// What a contact remembers from step to step; identified by node and side.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactHistory {
+    /// Boundary node that may enter.
+    pub node: u32,
+    /// Side of the other block (or of a partial cut) that it may enter.
+    pub side: u32,
+    /// Edge of that side in the last step.
+    pub edge: u32,
+    /// Normal force at the end of the last step (N/m), compression positive.
+    pub normal_force: f64,
+    /// Shear force at the end of the last step (N/m), on the node along the edge.
+    pub shear_force: f64,
+    /// Shear force that the spring has stored (N/m).
+    pub shear_stored: f64,
+    /// Penetration at first sight that carries no force (m); it fades.
+    pub offset: f64,
+    /// Closure that is at rest: from pre-stress and dilation (m).
+    pub rest: f64,
+    /// Accumulated slip (m).
+    pub slip: f64,
+    /// Open, slip or lock.
+    pub state: ContactState,
+    /// Whether the joint has its peak strength.
+    pub intact: bool,
+}
+
+/// A contact during one step: geometry, compliance and forces.
+#[derive(Debug, Clone, Copy)]
+pub struct VertexEdge {
+    /// What it remembers; forces are updated by the sweeps.
+    pub history: ContactHistory,
+    /// Blocks of node and edge.
+    pub blocks: [u32; 2],
+    /// Covers of the node and of the edge's element.
+    pub covers: [[u32; 3]; 2],
+    /// Weights of those covers at the node's current place.
+    pub weights: [Weights; 2],
+    /// Outward unit normal of the edge.
+    pub normal: Vector,
+    /// Arms from the blocks' centroids to the contact (m).
+    pub arms: [Vector; 2],
+    /// z = Σwμ/m of both blocks.
+    pub z: [f64; 2],
+    /// Gap along the normal that the springs see (m); negative in penetration.
+    pub gap: f64,
+    /// Penetration of the node (m), with no allowance.
+    pub penetration: f64,
+    /// Tributary length (m).
+    pub length: f64,
+    /// Springs normal and shear (N/m per metre).
+    pub stiffness: [f64; 2],
+    /// Inverse effective masses normal and shear (m/kg).
+    pub compliance: [f64; 2],
+    /// Limits of the joint law for this length.
+    pub limits: Limits,
+    /// Law of the joint.
+    pub law: u32,
+    /// Predicted relative velocity normal and shear without contact forces (m/s).
+    pub approach: [f64; 2],
+    /// Whether the normal force asked for more tension than the joint has.
+    pub torn: bool,
+    /// Whether the contact is seen for the first time.
+    pub fresh: bool,
+}
+
+impl VertexEdge {
+    /// Unit tangent of the edge.
+    pub fn tangent(&self) -> Vector {
+        Vector::new(-self.normal.y, self.normal.x)
+    }
+}
+
+impl VertexEdge {
+    /// Normal and shear component of a cover field at the node relative to the edge.
+    pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
+        let at = |k: usize| -> Vector {
+            self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
+        };
+        let relative = at(0) - at(1);
+        [relative.dot(&self.normal), relative.dot(&self.tangent())]
+    }
+
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m), theory Eq. (15).
+    pub fn shear_after(&self, shear: f64) -> (f64, f64) {
+        if self.history.state == ContactState::Open {
+            return (0.0, 0.0);
+        }
+        let limit = (self.history.normal_force * self.limits.friction + self.limits.cohesion).max(0.0);
+        let trial = self.history.shear_stored - self.stiffness[1] * shear;
+        let stored = trial.clamp(-limit, limit);
+        (stored, (trial - stored).abs() / self.stiffness[1])
+    }
+}

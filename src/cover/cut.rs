@@ -1,0 +1,386 @@
+//! Cuts mathematical covers into physical covers, manifold elements and blocks.
+
+use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
+
+use super::mesh::{RegularMesh, Triangle};
+use super::order::morton;
+use super::outlines::{Outlines, mesh_only};
+use super::Weights;
+
+/// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
+#[derive(Debug, Clone)]
+pub struct Covers {
+    /// The lattice of mathematical covers.
+    pub mesh: RegularMesh,
+    /// Weight gradients (1/m) of the up and the down triangle.
+    pub gradients: [[Vector; 3]; 2],
+    /// Three physical covers of each element, counter-clockwise.
+    pub element_covers: Vec<[u32; 3]>,
+    /// Lattice triangle of each element.
+    pub element_triangle: Vec<Triangle>,
+    /// Cut area of each element (m²).
+    pub element_area: Vec<f64>,
+    /// Area centroid of each element (m).
+    pub element_centroid: Vec<Point>,
+    /// Polar second moment of area of each element about its centroid (m⁴).
+    pub element_polar: Vec<f64>,
+    /// Block of each element.
+    pub element_block: Vec<u32>,
+    /// First point of each element's polygon in `polygon_points`, and their number at the end.
+    pub polygon_start: Vec<u32>,
+    /// Corners of the elements (m), counter-clockwise; holes are joined by bridges.
+    pub polygon_points: Vec<Point>,
+    /// Lattice node of each physical cover.
+    pub star: Vec<[i32; 2]>,
+    /// Position of that node (m).
+    pub star_position: Vec<Point>,
+    /// Block of each physical cover.
+    pub cover_block: Vec<u32>,
+    /// First element of each block, and the number of elements at the end.
+    pub block_elements: Vec<u32>,
+    /// First physical cover of each block, and the number of covers at the end.
+    pub block_covers: Vec<u32>,
+    /// Boundary loops of the blocks.
+    pub outlines: Outlines,
+}
+
+impl Covers {
+    /// Number of blocks.
+    pub fn block_count(&self) -> usize {
+        self.block_elements.len() - 1
+    }
+
+    /// Number of elements.
+    pub fn element_count(&self) -> usize {
+        self.element_covers.len()
+    }
+
+    /// Number of physical covers.
+    pub fn cover_count(&self) -> usize {
+        self.star.len()
+    }
+
+    /// Elements of a block.
+    pub fn elements_of(&self, block: usize) -> std::ops::Range<usize> {
+        self.block_elements[block] as usize..self.block_elements[block + 1] as usize
+    }
+
+    /// Physical covers of a block.
+    pub fn covers_of(&self, block: usize) -> std::ops::Range<usize> {
+        self.block_covers[block] as usize..self.block_covers[block + 1] as usize
+    }
+
+    /// Reference polygon of an element.
+    pub fn polygon(&self, element: usize) -> &[Point] {
+        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element + 1] as usize]
+    }
+
+    /// Weights of an element's covers at a reference point, theory Eq. (1).
+    pub fn weights(&self, element: usize, p: Point) -> Weights {
+        self.mesh.weights(self.element_triangle[element], p)
+    }
+
+    /// Area of a block (m²).
+    pub fn block_area(&self, block: usize) -> f64 {
+        self.element_area[self.elements_of(block)].iter().sum()
+    }
+
+    /// Area centroid of a block in the reference configuration (m).
+    pub fn block_centroid(&self, block: usize) -> Point {
+        let first: Point = self.elements_of(block).map(|e| self.element_centroid[e] * self.element_area[e]).sum();
+        first / self.block_area(block)
+    }
+
+    /// The element that holds a reference point, on its boundary included; the lowest when several do.
+    pub fn element_at(&self, p: Point) -> Option<usize> {
+        let reach = self.mesh.size * 1.01;
+        (0..self.element_count())
+            .filter(|&e| (self.element_centroid[e] - p).norm() < reach)
+            .find(|&e| polygon::contains(self.polygon(e), p))
+    }
+
+    /// The element that holds a reference point, or else the nearest one within `reach` (m).
+    pub fn element_near(&self, p: Point, reach: f64) -> Option<usize> {
+        let distance = |e: usize| -> f64 {
+            let points = self.polygon(e);
+            let sides = points.iter().zip(points.iter().cycle().skip(1));
+            sides.map(|(a, b)| segment::distance(p, *a, *b)).fold(f64::INFINITY, f64::min)
+        };
+        self.element_at(p).or_else(|| {
+            let near = (0..self.element_count())
+                .filter(|&e| (self.element_centroid[e] - p).norm() < self.mesh.size * 1.01 + reach)
+                .map(|e| (distance(e), e))
+                .min_by(|a, b| a.0.total_cmp(&b.0))?;
+            (near.0 <= reach).then_some(near.1)
+        })
+    }
+
+    /// Number of physical covers of each star, as (star, number), ordered by star.
+    pub fn covers_by_star(&self) -> Vec<([i32; 2], u32)> {
+        let mut stars = self.star.clone();
+        stars.sort_unstable();
+        let mut counts: Vec<([i32; 2], u32)> = Vec::new();
+        for star in stars {
+            match counts.last_mut() {
+                Some((last, n)) if *last == star => *n += 1,
+                _ => counts.push((star, 1)),
+            }
+        }
+        counts
+    }
+}
+
+/// Cuts the covers of `mesh` by the outlines and joints that are arranged with its edges.
+pub fn cut(mesh: RegularMesh, arrangement: &Arrangement) -> Covers {
+    let raw = RawElements::collect(&mesh, arrangement);
+    let joined = Joined::new(arrangement, &raw);
+    let blocks = order_blocks(&raw, &joined);
+    let mut covers = lay_out_elements(mesh, &raw, &blocks);
+    let slot_cover = lay_out_covers(&mut covers, &raw, &joined, &blocks);
+    for (new, &old) in blocks.order.iter().enumerate() {
+        covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[3 * old as usize + k]);
+    }
+    let mut element_of_face = vec![NONE; arrangement.faces.len()];
+    for (new, &old) in blocks.order.iter().enumerate() {
+        element_of_face[raw.face[old as usize] as usize] = new as u32;
+    }
+    covers.outlines = Outlines::trace(arrangement, &element_of_face, &covers.element_block);
+    covers
+}
+
+/// Elements in the order of the arrangement's faces.
+struct RawElements {
+    face: Vec<u32>,
+    of_face: Vec<u32>,
+    triangle: Vec<Triangle>,
+    area: Vec<f64>,
+    centroid: Vec<Point>,
+    polar: Vec<f64>,
+    polygon: Vec<Vec<Point>>,
+}
+
+impl RawElements {
+    fn collect(mesh: &RegularMesh, arrangement: &Arrangement) -> Self {
+        let triangles = triangles_of_faces(mesh, arrangement);
+        let face: Vec<u32> =
+            (0..arrangement.faces.len() as u32).filter(|&f| arrangement.faces[f as usize].winding == 1).collect();
+        let mut of_face = vec![NONE; arrangement.faces.len()];
+        let mut raw = Self {
+            triangle: face.iter().map(|&f| triangles[f as usize]).collect(),
+            area: Vec::with_capacity(face.len()),
+            centroid: Vec::with_capacity(face.len()),
+            polar: Vec::with_capacity(face.len()),
+            polygon: Vec::with_capacity(face.len()),
+            face: Vec::new(),
+            of_face: Vec::new(),
+        };
+        for (k, &f) in face.iter().enumerate() {
+            of_face[f as usize] = k as u32;
+            let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
+            raw.integrate(&loops);
+        }
+        raw.face = face;
+        raw.of_face = of_face;
+        raw
+    }
+
+    fn integrate(&mut self, loops: &[Vec<Point>]) {
+        let base = loops[0][0];
+        let total = loops
+            .iter()
+            .map(|points| polygon::Moments::of(points, base))
+            .reduce(|a, b| a + b)
+            .expect("a face of rock has an outer loop");
+        let centroid = total.first / total.area;
+        self.area.push(total.area);
+        self.centroid.push(base + centroid);
+        self.polar.push(total.second[0] + total.second[1] - total.area * centroid.norm_squared());
+        self.polygon.push(bridge(loops));
+    }
+}
+
+/// Joins the holes of a face to its outer loop by bridges between nearest corners.
+fn bridge(loops: &[Vec<Point>]) -> Vec<Point> {
+    let mut outer = loops[0].clone();
+    for hole in &loops[1..] {
+        let pairs = (0..outer.len()).flat_map(|i| (0..hole.len()).map(move |j| (i, j)));
+        let nearest = pairs.min_by(|&(i, j), &(k, l)| {
+            (outer[i] - hole[j]).norm_squared().total_cmp(&(outer[k] - hole[l]).norm_squared())
+        });
+        let Some((i, j)) = nearest else { continue };
+        let mut way: Vec<Point> = hole[j..].iter().chain(&hole[..=j]).copied().collect();
+        way.push(outer[i]);
+        outer.splice(i + 1..i + 1, way);
+    }
+    outer
+}
+
+/// The lattice triangle in which each face lies, from the mesh edges on its loops or from its neighbours.
+fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Triangle> {
+    let nowhere = Triangle { i: i32::MIN, j: i32::MIN, set: 0 };
+    let mut triangles = vec![nowhere; arrangement.faces.len()];
+    let half_edges = 0..arrangement.next.len() as u32;
+    let mut open = Vec::new();
+    for h in half_edges.clone() {
+        let label = arrangement.label_of(h);
+        let face = arrangement.face[h as usize];
+        if label.mesh != NONE && face != 0 && triangles[face as usize] == nowhere {
+            triangles[face as usize] = mesh.triangle_beside(label.mesh, label.mesh_reversed);
+            open.push(face);
+        }
+    }
+    let mut of_face: Vec<Vec<u32>> = vec![Vec::new(); arrangement.faces.len()];
+    for h in half_edges.filter(|&h| arrangement.label_of(h).mesh == NONE) {
+        of_face[arrangement.face[h as usize] as usize].push(arrangement.face[(h ^ 1) as usize]);
+    }
+    while let Some(face) = open.pop() {
+        for &neighbour in &of_face[face as usize] {
+            if neighbour != 0 && triangles[neighbour as usize] == nowhere {
+                triangles[neighbour as usize] = triangles[face as usize];
+                open.push(neighbour);
+            }
+        }
+    }
+    triangles
+}
+
+/// Disjoint sets of small integers.
+struct UnionFind(Vec<u32>);
+
+impl UnionFind {
+    fn new(n: usize) -> Self {
+        Self((0..n as u32).collect())
+    }
+
+    fn root(&mut self, mut k: u32) -> u32 {
+        while self.0[k as usize] != k {
+            self.0[k as usize] = self.0[self.0[k as usize] as usize];
+            k = self.0[k as usize];
+        }
+        k
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+
+    fn roots(mut self) -> Vec<u32> {
+        (0..self.0.len() as u32).map(|k| self.root(k)).collect()
+    }
+}
+
+/// Which elements form a block, and which corners of elements (3·element + corner) share a physical cover.
+struct Joined {
+    block_root: Vec<u32>,
+    slot_root: Vec<u32>,
+}
+
+impl Joined {
+    /// Joins across every edge that is a mesh edge and nothing else: it is a spoke of both its stars.
+    fn new(arrangement: &Arrangement, raw: &RawElements) -> Self {
+        let mut blocks = UnionFind::new(raw.face.len());
+        let mut slots = UnionFind::new(3 * raw.face.len());
+        for e in 0..arrangement.edges.len() as u32 {
+            let label = arrangement.label_of(2 * e);
+            let [a, b] = [2 * e, 2 * e + 1].map(|h| raw.of_face[arrangement.face[h as usize] as usize]);
+            if !mesh_only(&label) || a == NONE || b == NONE {
+                continue;
+            }
+            blocks.join(a, b);
+            let [nodes_a, nodes_b] = [a, b].map(|e| raw.triangle[e as usize].nodes());
+            for (k, star) in nodes_a.iter().enumerate() {
+                if let Some(l) = nodes_b.iter().position(|s| s == star) {
+                    slots.join(3 * a + k as u32, 3 * b + l as u32);
+                }
+            }
+        }
+        Self { block_root: blocks.roots(), slot_root: slots.roots() }
+    }
+}
+
+/// Order of the elements: by block, blocks and elements along a Morton curve.
+struct BlockOrder {
+    order: Vec<u32>,
+    block: Vec<u32>,
+    count: usize,
+    low: Point,
+    high: Point,
+}
+
+fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
+    let low = raw.centroid.iter().fold(Point::repeat(f64::INFINITY), |a, p| a.inf(p));
+    let high = raw.centroid.iter().fold(Point::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
+    let n = raw.face.len();
+    let mut first = vec![Vector::zeros(); n];
+    let mut area = vec![0.0; n];
+    for e in 0..n {
+        let root = joined.block_root[e] as usize;
+        first[root] += raw.centroid[e] * raw.area[e];
+        area[root] += raw.area[e];
+    }
+    let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
+    roots.sort_by_key(|&r| (morton(first[r as usize] / area[r as usize], low, high), r));
+    let mut block_of_root = vec![NONE; n];
+    for (k, &r) in roots.iter().enumerate() {
+        block_of_root[r as usize] = k as u32;
+    }
+    let block: Vec<u32> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_by_key(|&e| (block[e as usize], morton(raw.centroid[e as usize], low, high), e));
+    BlockOrder { order, block, count: roots.len(), low, high }
+}
+
+fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -> Covers {
+    let take = |k: &u32| *k as usize;
+    let mut polygon_start = vec![0];
+    let mut polygon_points = Vec::new();
+    for k in &blocks.order {
+        polygon_points.extend_from_slice(&raw.polygon[take(k)]);
+        polygon_start.push(polygon_points.len() as u32);
+    }
+    let element_block: Vec<u32> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
+    Covers {
+        gradients: mesh.gradients(),
+        mesh,
+        element_covers: vec![[0; 3]; blocks.order.len()],
+        element_triangle: blocks.order.iter().map(|k| raw.triangle[take(k)]).collect(),
+        element_area: blocks.order.iter().map(|k| raw.area[take(k)]).collect(),
+        element_centroid: blocks.order.iter().map(|k| raw.centroid[take(k)]).collect(),
+        element_polar: blocks.order.iter().map(|k| raw.polar[take(k)]).collect(),
+        block_elements: starts(&element_block, blocks.count),
+        element_block,
+        polygon_start,
+        polygon_points,
+        star: Vec::new(),
+        star_position: Vec::new(),
+        cover_block: Vec::new(),
+        block_covers: Vec::new(),
+        outlines: Outlines::default(),
+    }
+}
+
+/// Creates the physical covers and returns the cover of each slot (3·raw element + corner).
+fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<u32> {
+    let star_of = |slot: u32| raw.triangle[slot as usize / 3].nodes()[slot as usize % 3];
+    let mut roots: Vec<u32> =
+        (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
+    roots.sort_by_key(|&s| {
+        let place = morton(covers.mesh.node(star_of(s)), blocks.low, blocks.high);
+        (blocks.block[s as usize / 3], place, star_of(s), s)
+    });
+    let mut cover_of_root = vec![NONE; joined.slot_root.len()];
+    for (k, &s) in roots.iter().enumerate() {
+        cover_of_root[s as usize] = k as u32;
+        covers.star.push(star_of(s));
+        covers.star_position.push(covers.mesh.node(star_of(s)));
+        covers.cover_block.push(blocks.block[s as usize / 3]);
+    }
+    covers.block_covers = starts(&covers.cover_block, blocks.count);
+    joined.slot_root.iter().map(|&r| cover_of_root[r as usize]).collect()
+}
+
+/// First index of each group in a sorted list of group numbers, and the length at the end.
+fn starts(groups: &[u32], count: usize) -> Vec<u32> {
+    (0..=count as u32).map(|g| groups.partition_point(|&x| x < g) as u32).collect()
+}

@@ -1,0 +1,91 @@
+//! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
+
+use crate::geometry::{Arrangement, Label, NONE, Point};
+
+/// A straight piece of a block's boundary inside one element; rock lies to its left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundaryPiece {
+    /// Start (m).
+    pub a: Point,
+    /// End (m).
+    pub b: Point,
+    /// Element on the left.
+    pub element: u32,
+    /// Joint trace that made it, `NONE` on an outline.
+    pub trace: u32,
+    /// Element on the right, `NONE` outside the rock.
+    pub opposite: u32,
+    /// Whether both sides belong to one block.
+    pub partial: bool,
+}
+
+/// Boundary loops stored end to end, ordered by block; rock on the left.
+#[derive(Debug, Clone, Default)]
+pub struct Outlines {
+    /// Pieces, consecutive along each loop.
+    pub pieces: Vec<BoundaryPiece>,
+    /// First piece of each loop, and the number of pieces at the end.
+    pub loop_start: Vec<u32>,
+    /// Block of each loop.
+    pub loop_block: Vec<u32>,
+}
+
+/// Whether an edge carries the mesh and nothing that cuts.
+pub(super) fn mesh_only(label: &Label) -> bool {
+    label.mesh != NONE && label.trace == NONE && label.outline == 0
+}
+
+impl Outlines {
+    /// Number of loops.
+    pub fn len(&self) -> usize {
+        self.loop_block.len()
+    }
+
+    /// Whether there is no loop.
+    pub fn is_empty(&self) -> bool {
+        self.loop_block.is_empty()
+    }
+
+    /// Pieces of a loop.
+    pub fn of_loop(&self, k: usize) -> &[BoundaryPiece] {
+        &self.pieces[self.loop_start[k] as usize..self.loop_start[k + 1] as usize]
+    }
+
+    /// Walks all boundary loops of the elements that `element_of_face` names.
+    pub(super) fn trace(arrangement: &Arrangement, element_of_face: &[u32], element_block: &[u32]) -> Self {
+        let element = |h: u32| element_of_face[arrangement.face[h as usize] as usize];
+        let block = |e: u32| if e == NONE { NONE } else { element_block[e as usize] };
+        let bounds = |h: u32| element(h) != NONE && !mesh_only(&arrangement.label_of(h));
+        let mut starts: Vec<u32> = (0..arrangement.next.len() as u32).filter(|&h| bounds(h)).collect();
+        starts.sort_by_key(|&h| (block(element(h)), h));
+        let mut seen = vec![false; arrangement.next.len()];
+        let mut outlines = Self { loop_start: vec![0], ..Self::default() };
+        for start in starts {
+            if seen[start as usize] {
+                continue;
+            }
+            let mut h = start;
+            while !seen[h as usize] {
+                seen[h as usize] = true;
+                let [a, b] = [h, h ^ 1].map(|h| arrangement.points[arrangement.origin(h) as usize]);
+                let (own, opposite) = (element(h), element(h ^ 1));
+                let partial = block(own) == block(opposite);
+                let trace = arrangement.label_of(h).trace;
+                outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
+                h = next_boundary(arrangement, h);
+            }
+            outlines.loop_start.push(outlines.pieces.len() as u32);
+            outlines.loop_block.push(block(element(start)));
+        }
+        outlines
+    }
+}
+
+/// The boundary half-edge after `h`, turning across mesh-only edges.
+fn next_boundary(arrangement: &Arrangement, h: u32) -> u32 {
+    let mut next = arrangement.next[h as usize];
+    while mesh_only(&arrangement.label_of(next)) {
+        next = arrangement.next[(next ^ 1) as usize];
+    }
+    next
+}

@@ -1,0 +1,355 @@
+//! The planar arrangement: segments with provenance in, half-edges and faces out.
+//!
+//! Knows where an edge comes from only as plain indices (outline, joint trace, mesh edge). `noder` makes edges that
+//! meet in common vertices only, this file merges and prunes them, `faces` walks round them.
+
+use super::grid::Groups;
+use super::noder::{Noder, WorkEdge};
+use super::{GeometryError, Point, faces};
+
+/// The index that stands for nothing.
+pub const NONE: u32 = u32::MAX;
+
+/// Where an edge comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Label {
+    /// Change of winding: +1 when rock lies to the left of a→b, -1 to the right, 0 not an outline.
+    pub outline: i8,
+    /// Joint trace, [`NONE`] when none; where traces coincide the lowest index.
+    pub trace: u32,
+    /// Mesh edge, [`NONE`] when none.
+    pub mesh: u32,
+    /// Whether a→b runs against the direction of the mesh edge.
+    pub mesh_reversed: bool,
+}
+
+impl Label {
+    /// Labels an outline edge with rock on its left.
+    pub const OUTLINE: Self = Self { outline: 1, trace: NONE, mesh: NONE, mesh_reversed: false };
+
+    /// Labels a piece of a joint trace.
+    pub const fn trace(trace: u32) -> Self {
+        Self { outline: 0, trace, mesh: NONE, mesh_reversed: false }
+    }
+
+    /// Labels a mesh edge in its own direction.
+    pub const fn mesh(mesh: u32) -> Self {
+        Self { outline: 0, trace: NONE, mesh, mesh_reversed: false }
+    }
+
+    /// Returns the label as read from b to a.
+    pub const fn reversed(self) -> Self {
+        let mesh_reversed = self.mesh_reversed != (self.mesh != NONE);
+        Self { outline: -self.outline, trace: self.trace, mesh: self.mesh, mesh_reversed }
+    }
+
+    /// Tells whether nothing is left: two outlines that cancel, no trace, no mesh.
+    const fn is_empty(self) -> bool {
+        self.outline == 0 && self.trace == NONE && self.mesh == NONE
+    }
+
+    /// Adds the label of an edge that coincides and runs the same way.
+    fn absorb(&mut self, other: Self) {
+        self.outline = self.outline.saturating_add(other.outline);
+        self.trace = self.trace.min(other.trace);
+        if other.mesh < self.mesh {
+            self.mesh = other.mesh;
+            self.mesh_reversed = other.mesh_reversed;
+        }
+    }
+}
+
+/// A straight piece given to [`arrange`].
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Segment {
+    /// Start (m).
+    pub a: Point,
+    /// End (m).
+    pub b: Point,
+    /// Where it comes from.
+    pub label: Label,
+}
+
+/// An edge of the arrangement; it meets others in its ends only.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Edge {
+    /// Start vertex.
+    pub a: u32,
+    /// End vertex.
+    pub b: u32,
+    /// Where it comes from, read from a to b.
+    pub label: Label,
+}
+
+/// A face: the region between an outer cycle and the cycles inside it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Face {
+    /// A half-edge of the outer cycle, [`NONE`] for the unbounded face.
+    pub outer: u32,
+    /// A half-edge of each inner cycle.
+    pub inner: Vec<u32>,
+    /// How often the outlines wind round the face: 1 rock, 0 none.
+    pub winding: i32,
+}
+
+/// What became of one joint trace.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct TraceLength {
+    /// Length before pruning (m), without the parts that lie far outside outline and mesh.
+    pub noded: f64,
+    /// Length that bounds faces after pruning (m); 0 for a trace that has no effect at all.
+    pub kept: f64,
+    /// Part of the kept length with rock on both sides (m); 0 for a trace that cuts no rock.
+    pub in_rock: f64,
+}
+
+/// What the noder did to the input.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct NodingReport {
+    /// Snap tolerance (m).
+    pub tolerance: f64,
+    /// Rounds of splitting and crossing until nothing changed.
+    pub passes: usize,
+    /// Segment ends that became one with another end at a different place.
+    pub merged_vertices: usize,
+    /// Dead ends removed.
+    pub trimmed_edges: usize,
+    /// Length of the dead ends removed (m).
+    pub trimmed_length: f64,
+    /// Length along which outlines of opposite sense coincide without a trace (m): there two regions of rock are one.
+    pub fused_outline_length: f64,
+    /// What became of each trace.
+    pub traces: Vec<TraceLength>,
+    /// Pairs of traces that coincide along an edge, lower index first, sorted; the lower one holds the edge.
+    pub overlapping_traces: Vec<[u32; 2]>,
+}
+
+/// A planar subdivision with provenance. Half-edge 2e runs along edge e, 2e+1 against it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Arrangement {
+    /// Vertices (m), each with at least two edges.
+    pub points: Vec<Point>,
+    /// Edges.
+    pub edges: Vec<Edge>,
+    /// Next half-edge round the face on the left of each half-edge.
+    pub next: Vec<u32>,
+    /// Face on the left of each half-edge.
+    pub face: Vec<u32>,
+    /// Faces; face 0 is the unbounded one.
+    pub faces: Vec<Face>,
+    /// What the noder did.
+    pub report: NodingReport,
+}
+
+impl Arrangement {
+    /// Returns the vertex where a half-edge starts.
+    pub fn origin(&self, half_edge: u32) -> u32 {
+        let edge = &self.edges[half_edge as usize / 2];
+        if half_edge & 1 == 0 { edge.a } else { edge.b }
+    }
+
+    /// Returns the vertex where a half-edge ends.
+    pub fn target(&self, half_edge: u32) -> u32 {
+        self.origin(self.twin(half_edge))
+    }
+
+    /// Returns the half-edge that runs the other way.
+    pub const fn twin(&self, half_edge: u32) -> u32 {
+        half_edge ^ 1
+    }
+
+    /// Returns the label read along a half-edge.
+    pub fn label_of(&self, half_edge: u32) -> Label {
+        let label = self.edges[half_edge as usize / 2].label;
+        if half_edge & 1 == 0 { label } else { label.reversed() }
+    }
+
+    /// Returns the half-edges round the loop of a half-edge, that one first.
+    pub fn cycle(&self, half_edge: u32) -> impl Iterator<Item = u32> + '_ {
+        std::iter::successors(Some(half_edge), move |&h| {
+            let next = self.next[h as usize];
+            (next != half_edge).then_some(next)
+        })
+    }
+
+    /// Returns one half-edge of each loop of a face: the outer loop, if any, then the inner ones.
+    pub fn face_loops(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
+        let face = &self.faces[face as usize];
+        Some(face.outer).filter(|&h| h != NONE).into_iter().chain(face.inner.iter().copied())
+    }
+
+    /// Returns the points round the loop of a half-edge (m).
+    pub fn loop_points(&self, half_edge: u32) -> Vec<Point> {
+        self.cycle(half_edge).map(|h| self.points[self.origin(h) as usize]).collect()
+    }
+
+    /// Tells whether rock lies on both sides of an edge.
+    pub fn in_rock(&self, edge: u32) -> bool {
+        [2 * edge, 2 * edge + 1].iter().all(|&h| self.faces[self.face[h as usize] as usize].winding != 0)
+    }
+
+    /// Returns the area of a face (m²), holes taken out; negative for the unbounded face.
+    pub fn face_area(&self, face: u32) -> f64 {
+        self.face_loops(face).map(|h| super::polygon::area(&self.loop_points(h))).sum()
+    }
+}
+
+impl Arrangement {
+    /// Adds up what became of each trace and which traces coincide; `edges` are those before pruning.
+    fn report_traces(&mut self, points: &[Point], edges: &[Edge], kept: &[bool], members: &[Member]) {
+        let mut overlaps = Vec::new();
+        let mut ranked = (0, 0u32); // edges looked at, and how many of them were kept
+        for member in members {
+            let edge = member.edge as usize;
+            ranked.1 += kept[ranked.0..edge].iter().filter(|&&kept| kept).count() as u32;
+            ranked.0 = edge;
+            let length = length(points, &edges[edge]);
+            let in_rock = kept[edge] && self.in_rock(ranked.1);
+            let report = &mut self.report.traces[member.trace as usize];
+            report.noded += length;
+            report.kept += if kept[edge] { length } else { 0.0 };
+            report.in_rock += if in_rock { length } else { 0.0 };
+            let holder = edges[edge].label.trace;
+            if holder != member.trace {
+                overlaps.push([holder, member.trace]);
+            }
+        }
+        overlaps.sort_unstable();
+        overlaps.dedup();
+        self.report.overlapping_traces = overlaps;
+    }
+}
+
+/// Cuts the plane along segments: merges what lies within `tolerance` (m), inserts crossings, trims dead ends, walks
+/// round the faces and floods the winding from outside.
+///
+/// Vertices within 1.5 tolerances become one, at the place of the first in input order; edges are split at vertices
+/// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the
+/// box of outline and mesh, where they can bound no rock.
+///
+/// # Errors
+/// A coordinate that is not finite, a tolerance within round-off, outlines that do not close, or a noder that does not
+/// settle within its passes.
+pub fn arrange(segments: &[Segment], tolerance: f64) -> Result<Arrangement, GeometryError> {
+    let mut noder = Noder::new(segments, tolerance)?;
+    let mut report = noder.run()?;
+    let (points, work) = (noder.points, noder.edges);
+    let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
+    report.traces = vec![TraceLength::default(); traces as usize];
+    let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
+    report.fused_outline_length = fused_length;
+    let kept = prune(&points, &edges, &mut report);
+    let (points_kept, edges_kept) = compact(&points, &edges, &kept);
+    let mut arrangement = faces::build(points_kept, edges_kept, report)?;
+    arrangement.report_traces(&points, &edges, &kept, &members);
+    Ok(arrangement)
+}
+
+/// A trace that runs along an edge.
+struct Member {
+    edge: u32,
+    trace: u32,
+}
+
+/// Edges each of which is the only one between its vertices.
+struct Merged {
+    edges: Vec<Edge>,
+    members: Vec<Member>,
+    /// Length along which outlines cancel without a trace (m).
+    fused_length: f64,
+}
+
+/// Merges edges between the same vertices, drops those whose outlines cancel, and lists which traces run where.
+fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
+    let mut groups = Groups::build(points.len(), |put| {
+        for (k, edge) in edges.iter().enumerate() {
+            put(edge.a.min(edge.b) as usize, k as u32);
+        }
+    });
+    let mut merged = Merged { edges: Vec::with_capacity(edges.len()), members: Vec::new(), fused_length: 0.0 };
+    let far = |k: u32| edges[k as usize].a.max(edges[k as usize].b);
+    for vertex in 0..points.len() {
+        let group = groups.get_mut(vertex);
+        group.sort_unstable_by_key(|&k| (far(k), k));
+        for run in group.chunk_by(|&i, &j| far(i) == far(j)) {
+            let edge = merge_run(edges, run, merged.edges.len() as u32, &mut merged.members);
+            let cancels = edge.label.outline == 0 && edge.label.trace == NONE;
+            if cancels && run.iter().any(|&k| edges[k as usize].label.outline != 0) {
+                merged.fused_length += length(points, &edge);
+            }
+            if !edge.label.is_empty() {
+                merged.edges.push(edge);
+            }
+        }
+    }
+    merged
+}
+
+/// Merges a run of edges between the same two vertices and lists its traces, each once.
+fn merge_run(edges: &[WorkEdge], run: &[u32], id: u32, members: &mut Vec<Member>) -> Edge {
+    let WorkEdge { a, b, mut label, .. } = edges[run[0] as usize];
+    for &k in &run[1..] {
+        let other = &edges[k as usize];
+        label.absorb(if other.a == a { other.label } else { other.label.reversed() });
+    }
+    let first = members.len();
+    for trace in run.iter().map(|&k| edges[k as usize].label.trace).filter(|&trace| trace != NONE) {
+        if members[first..].iter().all(|member| member.trace != trace) {
+            members.push(Member { edge: id, trace });
+        }
+    }
+    Edge { a, b, label }
+}
+
+/// Finds the edges that are left when dead ends are removed again and again.
+fn prune(points: &[Point], edges: &[Edge], report: &mut NodingReport) -> Vec<bool> {
+    let mut degree = vec![0u32; points.len()];
+    let mut incident = vec![0u32; points.len()]; // exclusive or of the incident edges: the edge itself at degree one
+    for (k, edge) in edges.iter().enumerate() {
+        for v in [edge.a, edge.b] {
+            degree[v as usize] += 1;
+            incident[v as usize] ^= k as u32;
+        }
+    }
+    let mut kept = vec![true; edges.len()];
+    for start in 0..points.len() {
+        let mut vertex = start;
+        while degree[vertex] == 1 {
+            let id = incident[vertex] as usize;
+            let edge = &edges[id];
+            kept[id] = false;
+            report.trimmed_edges += 1;
+            report.trimmed_length += length(points, edge);
+            for v in [edge.a, edge.b] {
+                degree[v as usize] -= 1;
+                incident[v as usize] ^= id as u32;
+            }
+            vertex = if edge.a as usize == vertex { edge.b } else { edge.a } as usize;
+        }
+    }
+    kept
+}
+
+fn length(points: &[Point], edge: &Edge) -> f64 {
+    (points[edge.b as usize] - points[edge.a as usize]).norm()
+}
+
+/// Keeps the edges asked for and the vertices that they use, both in order.
+fn compact(points: &[Point], edges: &[Edge], kept: &[bool]) -> (Vec<Point>, Vec<Edge>) {
+    let mut edges: Vec<Edge> = edges.iter().zip(kept).filter(|(_, kept)| **kept).map(|(edge, _)| *edge).collect();
+    let mut number = vec![NONE; points.len()];
+    for edge in &edges {
+        number[edge.a as usize] = 0;
+        number[edge.b as usize] = 0;
+    }
+    let mut used = Vec::new();
+    for (k, id) in number.iter_mut().enumerate().filter(|(_, id)| **id == 0) {
+        *id = used.len() as u32;
+        used.push(points[k]);
+    }
+    for edge in &mut edges {
+        edge.a = number[edge.a as usize];
+        edge.b = number[edge.b as usize];
+    }
+    (used, edges)
+}

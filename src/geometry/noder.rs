@@ -1,0 +1,332 @@
+//! The noder: makes segments meet in common vertices only, within a tolerance.
+//!
+//! Knows points, edges and which edges are still where the mesh put them; nothing of faces. Vertices are never moved
+//! and lie more than the merge radius apart, so that their number, and with it the work, is bounded.
+
+use super::arrangement::{Label, NONE, NodingReport, Segment};
+use super::grid::{CellGrid, Groups, PointChains};
+use super::{GeometryError, Point, cross, orientation};
+
+/// Merge radius of vertices over the snap tolerance. With 1 more than half of adversarial inputs never settle.
+const MERGE_RATIO: f64 = 1.5;
+/// Passes allowed; adversarial inputs settle in about ten.
+const PASSES_MAX: usize = 100;
+/// A split vertex off the line by more than this part of the tolerance bends the edge, which is then tested anew.
+const BEND_RATIO: f64 = 1e-3;
+/// Traces are cut off beyond the box of outline and mesh by this part of its diagonal, so that only the endless are.
+const MARGIN_RATIO: f64 = 1.0;
+/// The tolerance must exceed this many units of round-off of the largest coordinate.
+const ROUND_OFF_RATIO: f64 = 64.0;
+
+/// An edge in the making.
+#[derive(Clone, Copy)]
+pub(super) struct WorkEdge {
+    pub a: u32,
+    pub b: u32,
+    pub label: Label,
+    /// Not yet tested against all vertices.
+    unsplit: bool,
+    /// Not yet tested against all edges.
+    uncrossed: bool,
+    /// Still on the line where the caller put it, among edges known not to cross each other.
+    lattice: bool,
+}
+
+/// A vertex that splits an edge.
+struct Hit {
+    edge: u32,
+    vertex: u32,
+    /// Place along the edge, 0 to 1.
+    at: f64,
+    /// Whether the vertex lies off the line.
+    bends: bool,
+}
+
+/// A vertex made at the crossing of two edges.
+struct Crossing {
+    vertex: u32,
+    edges: [u32; 2],
+}
+
+/// The noder and its search structures.
+pub(super) struct Noder {
+    pub points: Vec<Point>,
+    pub edges: Vec<WorkEdge>,
+    tolerance: f64,
+    merged: usize,
+    grid: CellGrid,
+    chains: PointChains,
+}
+
+impl Noder {
+    /// Merges the ends of the segments; segments that shrink to a point vanish.
+    pub fn new(segments: &[Segment], tolerance: f64) -> Result<Self, GeometryError> {
+        check(segments, tolerance)?;
+        let reach = reach(segments);
+        let cut = segments.iter().filter_map(|segment| clip(segment, &reach));
+        let grid = CellGrid::for_edges(cut.clone().map(|s| (s.a, s.b)), 4.0 * tolerance);
+        let chains = PointChains::new(grid.len());
+        let mut noder = Self { points: vec![], edges: vec![], tolerance, merged: 0, grid, chains };
+        for Segment { a, b, label } in cut {
+            let (a, b) = (noder.vertex(a), noder.vertex(b));
+            if a != b {
+                let lattice = label.mesh != NONE && label.trace == NONE && label.outline == 0;
+                noder.edges.push(WorkEdge { a, b, label, unsplit: true, uncrossed: true, lattice });
+            }
+        }
+        Ok(noder)
+    }
+
+    /// Splits and crosses until nothing changes.
+    pub fn run(&mut self) -> Result<NodingReport, GeometryError> {
+        let mut passes = 1;
+        while let Some(hits) = self.hits() {
+            if passes == PASSES_MAX {
+                let (p, tolerance) = (self.points[hits[0].vertex as usize], self.tolerance);
+                return Err(GeometryError::Unsettled { passes, limit: PASSES_MAX, x: p.x, y: p.y, tolerance });
+            }
+            self.split(hits);
+            passes += 1;
+        }
+        let (tolerance, merged_vertices) = (self.tolerance, self.merged);
+        Ok(NodingReport { tolerance, passes, merged_vertices, ..Default::default() })
+    }
+
+    /// Finds what splits edges: vertices near them, and crossings only when there are none of those.
+    fn hits(&mut self) -> Option<Vec<Hit>> {
+        let mut hits = self.near_vertices();
+        if hits.is_empty() {
+            hits = self.crossings();
+        }
+        (!hits.is_empty()).then_some(hits)
+    }
+
+    fn ends(&self, edge: &WorkEdge) -> (Point, Point) {
+        (self.points[edge.a as usize], self.points[edge.b as usize])
+    }
+
+    /// Returns the vertex within the merge radius of a point, or makes one there.
+    fn vertex(&mut self, p: Point) -> u32 {
+        let radius = MERGE_RATIO * self.tolerance;
+        let mut nearest = (radius * radius, NONE);
+        self.grid.visit_square(p, radius, |cell| {
+            for id in self.chains.get(cell) {
+                let distance = (self.points[id as usize] - p).norm_squared();
+                if distance < nearest.0 || (distance == nearest.0 && id < nearest.1) {
+                    nearest = (distance, id);
+                }
+            }
+        });
+        if nearest.1 != NONE {
+            self.merged += usize::from(nearest.0 > 0.0);
+            return nearest.1;
+        }
+        self.chains.push(self.grid.cell_of(p));
+        self.points.push(p);
+        self.points.len() as u32 - 1
+    }
+
+    /// Judges whether a vertex lies within the tolerance of the inside of an edge.
+    fn near(&self, edge: u32, vertex: u32) -> Option<Hit> {
+        let work = &self.edges[edge as usize];
+        if vertex == work.a || vertex == work.b {
+            return None;
+        }
+        let (hit, off_squared) = self.hit(edge, vertex);
+        (off_squared < self.tolerance * self.tolerance && hit.at > 0.0 && hit.at < 1.0).then_some(hit)
+    }
+
+    /// Projects a vertex onto an edge; returns the hit and the squared distance from the line.
+    #[inline]
+    fn hit(&self, edge: u32, vertex: u32) -> (Hit, f64) {
+        let (a, b) = self.ends(&self.edges[edge as usize]);
+        let (along, to) = (b - a, self.points[vertex as usize] - a);
+        let length_squared = along.norm_squared();
+        let off = cross(along, to);
+        let off_squared = off * off / length_squared;
+        let bend = BEND_RATIO * self.tolerance;
+        let at = along.dot(&to) / length_squared;
+        (Hit { edge, vertex, at, bends: off_squared > bend * bend }, off_squared)
+    }
+
+    /// Finds the vertices near the edges that have not been tested yet.
+    fn near_vertices(&mut self) -> Vec<Hit> {
+        let mut hits = Vec::new();
+        for (id, edge) in (0u32..).zip(&self.edges).filter(|(_, edge)| edge.unsplit) {
+            let (a, b) = self.ends(edge);
+            self.grid.visit_edge(a, b, self.tolerance, |cell| {
+                hits.extend(self.chains.get(cell).filter_map(|vertex| self.near(id, vertex)));
+            });
+        }
+        for edge in &mut self.edges {
+            edge.unsplit = false;
+        }
+        hits
+    }
+
+    /// Finds the crossings of edges that have not been tested yet, and the edges near the vertices made there.
+    fn crossings(&mut self) -> Vec<Hit> {
+        if self.edges.iter().all(|edge| !edge.uncrossed || edge.lattice) {
+            return Vec::new();
+        }
+        let ends = self.edges.iter().map(|edge| self.ends(edge));
+        let cells = Groups::of_edges(&self.grid, ends, self.tolerance);
+        let first_new = self.points.len();
+        let crossings = self.cross_all(&cells);
+        let mut hits = Vec::with_capacity(2 * crossings.len());
+        for crossing in &crossings {
+            for edge in crossing.edges {
+                let work = &self.edges[edge as usize];
+                if crossing.vertex != work.a && crossing.vertex != work.b {
+                    hits.push(self.hit(edge, crossing.vertex).0);
+                }
+            }
+        }
+        for vertex in first_new as u32..self.points.len() as u32 {
+            let cell = self.grid.cell_of(self.points[vertex as usize]);
+            hits.extend(cells.get(cell).iter().filter_map(|&edge| self.near(edge, vertex)));
+        }
+        for edge in &mut self.edges {
+            edge.uncrossed = false;
+        }
+        hits
+    }
+
+    /// Makes a vertex at each proper crossing of an untested edge with any other.
+    fn cross_all(&mut self, cells: &Groups) -> Vec<Crossing> {
+        let mut crossings = Vec::new();
+        let mut seen = vec![NONE; self.edges.len()];
+        let mut near = Vec::new();
+        for e in 0..self.edges.len() as u32 {
+            let edge = self.edges[e as usize];
+            if !edge.uncrossed || edge.lattice {
+                continue;
+            }
+            near.clear();
+            let (a, b) = self.ends(&edge);
+            self.grid.visit_edge(a, b, self.tolerance, |cell| {
+                for &f in cells.get(cell) {
+                    let other = &self.edges[f as usize];
+                    let taken = f <= e && other.uncrossed && !other.lattice;
+                    if !taken && std::mem::replace(&mut seen[f as usize], e) != e {
+                        near.push(f);
+                    }
+                }
+            });
+            for &f in &near {
+                if let Some(place) = self.crossing(&edge, &self.edges[f as usize]) {
+                    crossings.push(Crossing { vertex: self.vertex(place), edges: [e, f] });
+                }
+            }
+        }
+        crossings
+    }
+
+    /// Returns the point where two edges cross inside both, decided by exact signs.
+    fn crossing(&self, e: &WorkEdge, f: &WorkEdge) -> Option<Point> {
+        let ((a, b), (c, d)) = (self.ends(e), self.ends(f));
+        let apart = |a: f64, b: f64, c: f64, d: f64| a.max(b) < c.min(d) || c.max(d) < a.min(b);
+        if apart(a.x, b.x, c.x, d.x) || apart(a.y, b.y, c.y, d.y) {
+            return None;
+        }
+        let (side_c, side_d) = (orientation(a, b, c), orientation(a, b, d));
+        if !opposite(side_c, side_d) {
+            return None;
+        }
+        let (side_a, side_b) = (orientation(c, d, a), orientation(c, d, b));
+        opposite(side_a, side_b).then(|| a + (b - a) * (side_a / (side_a - side_b)))
+    }
+
+    /// Replaces each edge that is hit by the chain through its vertices.
+    fn split(&mut self, mut hits: Vec<Hit>) {
+        hits.sort_unstable_by(|p, q| (p.edge.cmp(&q.edge)).then(p.at.total_cmp(&q.at)).then(p.vertex.cmp(&q.vertex)));
+        hits.dedup_by_key(|hit| (hit.edge, hit.vertex));
+        let mut edges = Vec::with_capacity(self.edges.len() + hits.len());
+        let mut rest = hits.as_slice();
+        for (k, edge) in self.edges.iter().enumerate() {
+            let count = rest.iter().take_while(|hit| hit.edge == k as u32).count();
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            push_chain(edge, own, &mut edges);
+        }
+        self.edges = edges;
+    }
+}
+
+/// Appends the pieces of an edge through its hits, in order; bent pieces must be tested anew.
+fn push_chain(edge: &WorkEdge, hits: &[Hit], edges: &mut Vec<WorkEdge>) {
+    let (mut from, mut bent_from) = (edge.a, false);
+    let end = (edge.b, false);
+    for (to, bends) in hits.iter().map(|hit| (hit.vertex, hit.bends)).chain([end]) {
+        let mut piece = WorkEdge { a: from, b: to, ..*edge };
+        if bends || bent_from {
+            piece.unsplit = true;
+            piece.uncrossed = true;
+            piece.lattice = false;
+        }
+        edges.push(piece);
+        (from, bent_from) = (to, bends);
+    }
+}
+
+fn opposite(a: f64, b: f64) -> bool {
+    (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0)
+}
+
+/// Refuses coordinates that are not finite and a tolerance within round-off.
+fn check(segments: &[Segment], tolerance: f64) -> Result<(), GeometryError> {
+    let mut extent = 0.0f64;
+    for (index, segment) in segments.iter().enumerate() {
+        for p in [segment.a, segment.b] {
+            if !(p.x.is_finite() && p.y.is_finite()) {
+                return Err(GeometryError::NotFinite { what: "segment".into(), index, x: p.x, y: p.y });
+            }
+            extent = extent.max(p.amax());
+        }
+    }
+    let limit = ROUND_OFF_RATIO * f64::EPSILON * extent;
+    if !(tolerance.is_finite() && tolerance > limit) {
+        return Err(GeometryError::Tolerance { value: tolerance, limit, extent });
+    }
+    Ok(())
+}
+
+/// The box in which traces matter.
+struct Reach {
+    low: Point,
+    high: Point,
+}
+
+/// Returns the box of outline and mesh with a margin, or the whole plane when there is neither.
+fn reach(segments: &[Segment]) -> Reach {
+    let (mut low, mut high) = (Point::repeat(f64::INFINITY), Point::repeat(f64::NEG_INFINITY));
+    for segment in segments.iter().filter(|s| s.label.outline != 0 || s.label.mesh != NONE) {
+        low = low.inf(&segment.a).inf(&segment.b);
+        high = high.sup(&segment.a).sup(&segment.b);
+    }
+    if low.x > high.x {
+        return Reach { low: high, high: low };
+    }
+    let margin = Point::repeat(MARGIN_RATIO * (high - low).norm());
+    Reach { low: low - margin, high: high + margin }
+}
+
+/// Cuts a trace off at the box; other segments and traces inside stay as they are.
+fn clip(segment: &Segment, reach: &Reach) -> Option<Segment> {
+    let (mut start, mut end) = (0.0f64, 1.0f64);
+    let along = segment.b - segment.a;
+    for axis in 0..2 {
+        let (a, d) = (segment.a[axis], along[axis]);
+        if a.min(a + d) >= reach.low[axis] && a.max(a + d) <= reach.high[axis] {
+            continue;
+        }
+        let (p, q) = ((reach.low[axis] - a) / d, (reach.high[axis] - a) / d);
+        start = start.max(p.min(q));
+        end = end.min(p.max(q));
+    }
+    if start > end {
+        return None;
+    }
+    let place = |t: f64, whole: Point| if t > 0.0 && t < 1.0 { segment.a + along * t } else { whole };
+    Some(Segment { a: place(start, segment.a), b: place(end, segment.b), label: segment.label })
+}

@@ -1,0 +1,47 @@
+//! Files that are either whole or absent. Knows nothing of what is written into them.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Makes errors name the file they speak of: `result.map_err(at_path(path))`.
+pub fn at_path(path: &Path) -> impl FnOnce(io::Error) -> io::Error + '_ {
+    move |error| io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+}
+
+/// Replaces the file at `path` by `bytes` in one move, so that a reader or a killed run never sees half of it.
+///
+/// The bytes first go to a temporary file beside `path`; missing directories are made.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message; the old file is then untouched.
+pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let temporary = temporary_beside(path).map_err(at_path(path))?;
+    let moved = fill(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    if moved.is_err() {
+        // The error that matters is the one above; a temporary file that cannot be removed adds nothing to it.
+        let _ = fs::remove_file(&temporary);
+    }
+    moved.map_err(at_path(path))
+}
+
+/// A name in the directory of `path` that no other write of this or another process uses.
+fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+    let directory = path.parent().unwrap_or(Path::new(""));
+    if !directory.as_os_str().is_empty() {
+        fs::create_dir_all(directory)?;
+    }
+    Ok(directory.join(hidden))
+}
+
+fn fill(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_data()
+}

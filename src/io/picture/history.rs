@@ -1,0 +1,255 @@
+//! Histories as small multiples: one frame per unit, a common time axis.
+
+use super::Picture;
+use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
+use super::colour::{Colour, GREY, INK, LINES};
+use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
+use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
+
+/// Room (px) at the right of the frames for legends.
+const LEGEND_ROOM: f64 = 300.0;
+/// Top of the first frame (px).
+const FRAME_TOP: f64 = 80.0;
+/// Distance (px) of the frames.
+const BETWEEN: f64 = 26.0;
+/// Height (px) that the frames share, unless that makes them lower than `LOWEST`.
+const SHARED_HEIGHT: f64 = 840.0;
+/// Height (px) of a frame at least and at most.
+const LOWEST: f64 = 170.0;
+const HIGHEST: f64 = 520.0;
+/// Distance (px) of value ticks that is aimed at.
+const TICK_DISTANCE: f64 = 36.0;
+/// Values beyond this are taken for numerical failures and left out.
+const FARTHEST: f64 = 1e300;
+
+/// A quantity over time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// Unit, such as `m` or `J`; series of one unit share a frame.
+    pub unit: String,
+    /// Time (s) and value.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Draws series over time, those of one unit in one frame.
+pub fn history_picture(title: &str, series: &[Series]) -> Picture {
+    let groups = by_unit(series);
+    let count = groups.len().max(1) as f64;
+    let height = ((SHARED_HEIGHT - BETWEEN * (count - 1.0)) / count).clamp(LOWEST, HIGHEST);
+    let mut sheet = Svg::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
+    draw_title(&mut sheet, title, "");
+    let times = Range::of(series.iter().flat_map(drawable).map(|(time, _)| time));
+    let width = WIDTH - LEFT - LEGEND_ROOM;
+    let frame = |k: usize| {
+        let top = FRAME_TOP + k as f64 * (height + BETWEEN);
+        Rect { left: LEFT, top, width, height }
+    };
+    for (k, group) in groups.iter().enumerate() {
+        let values = Range::of(group.iter().flat_map(|series| drawable(series)).map(|(_, value)| value));
+        let chart = Chart { frame: frame(k), times, values: values.map(Range::with_margin) };
+        chart.draw(&mut sheet, group);
+    }
+    if groups.is_empty() {
+        Chart { frame: frame(0), times: None, values: None }.draw(&mut sheet, &[]);
+    }
+    draw_time_title(&mut sheet, &frame(groups.len().max(1) - 1));
+    sheet.finish()
+}
+
+/// The series of each unit, in the order of their first.
+fn by_unit(series: &[Series]) -> Vec<Vec<&Series>> {
+    let mut groups: Vec<Vec<&Series>> = Vec::new();
+    for series in series {
+        match groups.iter_mut().find(|group| group[0].unit == series.unit) {
+            Some(group) => group.push(series),
+            None => groups.push(vec![series]),
+        }
+    }
+    groups
+}
+
+fn draw_time_title(sheet: &mut Svg, last: &Rect) {
+    let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
+    sheet.text([last.left + 0.5 * last.width, last.bottom() + 45.0], "time [s]", style);
+}
+
+fn is_drawable((time, value): (f64, f64)) -> bool {
+    time.abs() < FARTHEST && value.abs() < FARTHEST
+}
+
+fn drawable(series: &Series) -> impl Iterator<Item = (f64, f64)> {
+    series.points.iter().copied().filter(|&point| is_drawable(point))
+}
+
+/// An interval of times or values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Range {
+    min: f64,
+    max: f64,
+}
+
+impl Range {
+    /// The interval of the values, widened about a value that stays constant; none without values.
+    fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let grow = |range: Self, value: Self| Self { min: range.min.min(value.min), max: range.max.max(value.max) };
+        let range = values.map(|value| Self { min: value, max: value }).reduce(grow)?;
+        let size = range.min.abs().max(range.max.abs());
+        if range.max - range.min > 1e-9 * size {
+            return Some(range);
+        }
+        let half = if size > 0.0 { 0.1 * size } else { 1.0 };
+        Some(Self { min: range.min - half, max: range.max + half })
+    }
+
+    fn with_margin(self) -> Self {
+        let margin = 0.06 * (self.max - self.min);
+        Self { min: self.min - margin, max: self.max + margin }
+    }
+
+    /// 0 at the lower end, 1 at the upper.
+    fn fraction(&self, value: f64) -> f64 {
+        (value - self.min) / (self.max - self.min)
+    }
+
+    /// The power of a thousand by which numbers of this size are divided to be short.
+    fn exponent(&self) -> i32 {
+        let size = self.min.abs().max(self.max.abs());
+        if (0.02..2e4).contains(&size) { 0 } else { 3 * (size.log10() / 3.0).floor() as i32 }
+    }
+}
+
+/// A frame with its scales; without data it has none.
+struct Chart {
+    frame: Rect,
+    times: Option<Range>,
+    values: Option<Range>,
+}
+
+impl Chart {
+    fn draw(&self, sheet: &mut Svg, group: &[&Series]) {
+        let unit = group.first().map_or("", |series| &series.unit);
+        match (self.times, self.values) {
+            (Some(times), Some(values)) => {
+                self.draw_time_ticks(sheet, times);
+                self.draw_value_ticks(sheet, values, unit);
+                sheet.clipped(&self.frame, |sheet| self.draw_lines(sheet, group, times, values));
+            }
+            _ => {
+                let middle = [self.frame.left + 0.5 * self.frame.width, self.frame.top + 0.5 * self.frame.height];
+                sheet.text(middle, "no data", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
+                self.draw_value_title(sheet, &unit_title(unit, 0));
+            }
+        }
+        sheet.rect(&self.frame, Style::line(INK, 1.2));
+        self.draw_legend(sheet, group);
+    }
+
+    fn pixel(&self, times: Range, values: Range, (time, value): (f64, f64)) -> Pixel {
+        let x = self.frame.left + times.fraction(time) * self.frame.width;
+        [x, self.frame.bottom() - values.fraction(value) * self.frame.height]
+    }
+
+    fn draw_time_ticks(&self, sheet: &mut Svg, times: Range) {
+        let ticks = Ticks::new(times.min, times.max, 10.0);
+        for &time in &ticks.values {
+            let x = self.frame.left + times.fraction(time) * self.frame.width;
+            draw_grid_line(sheet, [x, self.frame.top], [x, self.frame.bottom()]);
+            let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
+            sheet.text([x, self.frame.bottom() + 4.0 + TICK_SIZE], &ticks.label(time), style);
+        }
+    }
+
+    fn draw_value_ticks(&self, sheet: &mut Svg, values: Range, unit: &str) {
+        let exponent = values.exponent();
+        let divisor = 10.0_f64.powi(exponent);
+        let ticks =
+            Ticks::new(values.min / divisor, values.max / divisor, (self.frame.height / TICK_DISTANCE).max(3.0));
+        for &value in &ticks.values {
+            let y = self.frame.bottom() - values.fraction(value * divisor) * self.frame.height;
+            draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
+            draw_left_number(sheet, [self.frame.left, y], &ticks.label(value));
+        }
+        self.draw_value_title(sheet, &unit_title(unit, exponent));
+    }
+
+    fn draw_value_title(&self, sheet: &mut Svg, title: &str) {
+        let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
+        sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
+    }
+
+    fn draw_lines(&self, sheet: &mut Svg, group: &[&Series], times: Range, values: Range) {
+        for (k, series) in group.iter().enumerate() {
+            let mut path = Path::default();
+            for run in series.points.split(|&point| !is_drawable(point)).filter(|run| !run.is_empty()) {
+                path.line(thinned(run.iter().map(|&point| self.pixel(times, values, point))));
+            }
+            sheet.path(&path, Style::line(line_colour(k), 2.0));
+            if let [only] = drawable(series).take(2).collect::<Vec<_>>()[..] {
+                sheet.circle(self.pixel(times, values, only), 4.0, Style::fill(line_colour(k)));
+            }
+        }
+    }
+
+    fn draw_legend(&self, sheet: &mut Svg, group: &[&Series]) {
+        let room = ((self.frame.height / LINE_HEIGHT) as usize).max(1);
+        let shown = if group.len() > room { room - 1 } else { group.len() };
+        let left = self.frame.right() + 22.0;
+        let line_y = |k: usize| self.frame.top + LINE_HEIGHT * (k as f64 + 0.6);
+        let width = WIDTH - MARGIN - left - 44.0;
+        for (k, series) in group.iter().take(shown).enumerate() {
+            let y = line_y(k);
+            sheet.line([left, y], [left + 32.0, y], Style::line(line_colour(k), 2.6));
+            sheet.text([left + 44.0, y + 6.0], &fitted(&series.name, LABEL_SIZE, width), TextStyle::new(LABEL_SIZE));
+        }
+        if shown < group.len() {
+            let more = format!("and {} more", group.len() - shown);
+            sheet.text([left + 44.0, line_y(shown) + 6.0], &more, TextStyle::new(LABEL_SIZE).colour(GREY));
+        }
+    }
+}
+
+fn line_colour(k: usize) -> Colour {
+    LINES[k % LINES.len()]
+}
+
+/// `[m]`, `[10⁶ J]`; nothing for a bare number.
+fn unit_title(unit: &str, exponent: i32) -> String {
+    match (unit, exponent) {
+        ("", 0) => String::new(),
+        (unit, 0) => format!("[{unit}]"),
+        ("", exponent) => format!("[10{}]", superscript(exponent)),
+        (unit, exponent) => format!("[10{} {unit}]", superscript(exponent)),
+    }
+}
+
+/// Of the places in one column of pixels only the first, the lowest, the highest and the last: the line looks the same.
+fn thinned(places: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
+    let mut thin: Vec<Pixel> = Vec::new();
+    let mut column: Vec<Pixel> = Vec::new();
+    for place in places {
+        if column.first().is_some_and(|first| first[0].floor() != place[0].floor()) {
+            flush_column(&mut thin, &mut column);
+        }
+        column.push(place);
+    }
+    flush_column(&mut thin, &mut column);
+    thin
+}
+
+fn flush_column(thin: &mut Vec<Pixel>, column: &mut Vec<Pixel>) {
+    if column.len() <= 4 {
+        thin.append(column);
+        return;
+    }
+    let by_height = |&a: &usize, &b: &usize| column[a][1].total_cmp(&column[b][1]);
+    let lowest = (0..column.len()).min_by(by_height);
+    let highest = (0..column.len()).max_by(by_height);
+    let mut kept = vec![0, column.len() - 1];
+    kept.extend(lowest.into_iter().chain(highest));
+    kept.sort_unstable();
+    kept.dedup();
+    thin.extend(kept.into_iter().map(|k| column[k]));
+    column.clear();
+}

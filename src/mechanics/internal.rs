@@ -1,0 +1,116 @@
+//! Corotated linear elasticity of one element from total displacements.
+
+use crate::geometry::Vector;
+
+use super::Elasticity;
+
+/// Stress xx, yy, xy (Pa) in the reference axes of an element before any displacement.
+pub type PreStress = [f64; 3];
+
+/// Deformation gradient of an element, split into rotation and stretch, theory Eq. (6).
+#[derive(Debug, Clone, Copy)]
+pub struct Deformation {
+    f: [f64; 4],
+    cos: f64,
+    sin: f64,
+    trace: f64,
+}
+
+impl Deformation {
+    /// F = I + Σ u⊗G with the displacements of the three covers.
+    pub fn new(u: [Vector; 3], g: &[Vector; 3]) -> Self {
+        let f11 = 1.0 + u[0].x * g[0].x + u[1].x * g[1].x + u[2].x * g[2].x;
+        let f12 = u[0].x * g[0].y + u[1].x * g[1].y + u[2].x * g[2].y;
+        let f21 = u[0].y * g[0].x + u[1].y * g[1].x + u[2].y * g[2].x;
+        let f22 = 1.0 + u[0].y * g[0].y + u[1].y * g[1].y + u[2].y * g[2].y;
+        let (a, b) = (f11 + f22, f21 - f12);
+        let trace = (a * a + b * b).sqrt();
+        Self { f: [f11, f12, f21, f22], cos: a / trace, sin: b / trace, trace }
+    }
+
+    /// F − R.
+    fn stretch(&self) -> [f64; 4] {
+        let [f11, f12, f21, f22] = self.f;
+        [f11 - self.cos, f12 + self.sin, f21 - self.sin, f22 - self.cos]
+    }
+
+    /// First Piola–Kirchhoff stress (Pa), theory Eq. (7), row by row.
+    fn piola(&self, rock: &Elasticity, pre: &PreStress) -> [f64; 4] {
+        let d = self.stretch();
+        let (two_mu, volume) = (2.0 * rock.mu, rock.lambda * (self.trace - 2.0));
+        let (c, s) = (self.cos, self.sin);
+        [
+            two_mu * d[0] + (volume + pre[0]) * c - s * pre[2],
+            two_mu * d[1] - (volume + pre[1]) * s + c * pre[2],
+            two_mu * d[2] + (volume + pre[0]) * s + c * pre[2],
+            two_mu * d[3] + (volume + pre[1]) * c + s * pre[2],
+        ]
+    }
+
+    /// Forces (N/m) on the three covers of an element of cut area `area` (m²), theory Eq. (7).
+    pub fn forces(&self, g: &[Vector; 3], area: f64, rock: &Elasticity, pre: &PreStress) -> [Vector; 3] {
+        let p = self.piola(rock, pre).map(|v| -area * v);
+        g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
+    }
+
+    /// Stress xx, yy, xy (Pa, tension positive) in global axes: P·Rᵀ.
+    pub fn stress(&self, rock: &Elasticity, pre: &PreStress) -> [f64; 3] {
+        let p = self.piola(rock, pre);
+        let (c, s) = (self.cos, self.sin);
+        [p[0] * c - p[1] * s, p[2] * s + p[3] * c, p[0] * s + p[1] * c]
+    }
+
+    /// Strain energy (J per m² of reference area), theory Eq. (8), with the work of the pre-stress.
+    pub fn energy(&self, rock: &Elasticity, pre: &PreStress) -> f64 {
+        let d = self.stretch();
+        let (c, s) = (self.cos, self.sin);
+        let square = d.iter().map(|v| v * v).sum::<f64>();
+        let strain = [c * d[0] + s * d[2], c * d[3] - s * d[1], 0.5 * (c * d[1] + s * d[3] + c * d[2] - s * d[0])];
+        let pre_work = pre[0] * strain[0] + pre[1] * strain[1] + 2.0 * pre[2] * strain[2];
+        rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
+    }
+
+    /// Rotation (rad), counter-clockwise.
+    pub fn rotation(&self) -> f64 {
+        self.sin.atan2(self.cos)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UP: [Vector; 3] = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
+    const ROCK: Elasticity = Elasticity { lambda: 0.7, mu: 0.4, density: 1.0 };
+
+    #[test]
+    fn a_rigid_turn_carries_the_pre_stress_and_no_energy() {
+        let (s, c) = 0.5f64.sin_cos();
+        let corners = [Vector::zeros(), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
+        let u = corners.map(|x| Vector::new(c * x.x - s * x.y, s * x.x + c * x.y) - x);
+        let turned = Deformation::new(u, &UP);
+        assert!(turned.stress(&ROCK, &[0.0; 3]).iter().all(|v| v.abs() < 1e-15));
+        assert!(turned.energy(&ROCK, &[1.0, 2.0, 3.0]).abs() < 1e-15);
+        let carried = turned.stress(&ROCK, &[1.0, 0.0, 0.0]);
+        assert!((carried[0] - c * c).abs() < 1e-15 && (carried[2] - s * c).abs() < 1e-15);
+        assert!((turned.rotation() - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn forces_are_minus_the_gradient_of_the_energy() {
+        let pre = [0.3, -0.2, 0.1];
+        let u = [Vector::new(0.1, -0.2), Vector::new(-0.05, 0.3), Vector::new(0.2, 0.15)];
+        let forces = Deformation::new(u, &UP).forces(&UP, 1.0, &ROCK, &pre);
+        for k in 0..3 {
+            for axis in 0..2 {
+                let energy = |d: f64| {
+                    let mut moved = u;
+                    moved[k][axis] += d;
+                    Deformation::new(moved, &UP).energy(&ROCK, &pre)
+                };
+                let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+                assert!((slope + forces[k][axis]).abs() < 1e-8, "{slope} {}", forces[k][axis]);
+            }
+        }
+    }
+}

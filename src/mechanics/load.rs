@@ -1,0 +1,133 @@
+//! External loads and how they vary in time.
+
+use crate::cover::Weights;
+use crate::geometry::{Point, Vector};
+
+/// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TimeTable(pub Vec<[f64; 2]>);
+
+impl TimeTable {
+    /// Factor at time `t` (s).
+    pub fn at(&self, t: f64) -> f64 {
+        let rows = &self.0;
+        let after = rows.partition_point(|row| row[0] <= t);
+        match (after.checked_sub(1).map(|k| rows[k]), rows.get(after)) {
+            (None, None) => 1.0,
+            (None, Some(next)) => next[1],
+            (Some(last), None) => last[1],
+            (Some(last), Some(next)) => last[1] + (next[1] - last[1]) * (t - last[0]) / (next[0] - last[0]),
+        }
+    }
+}
+
+/// Where and how a load acts, resolved to covers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadAction {
+    /// Force (N/m) at material points: covers, weights, force.
+    Forces(Vec<([u32; 3], Weights, Vector)>),
+    /// Pressure (Pa) on pieces of boundary, given by the covers of their element and the weights of both ends.
+    Pressure(Vec<([u32; 3], [Weights; 2])>, f64),
+    /// Acceleration (m/s²) of all rock.
+    Body(Vector),
+    /// Force (N/m) and moment (N·m/m) about the centroid of a block.
+    Block(u32, Vector, f64),
+}
+
+/// A load with its time table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// What acts.
+    pub action: LoadAction,
+    /// Factor over time.
+    pub table: TimeTable,
+}
+
+impl Load {
+    /// Acceleration (m/s²) that this load gives to all rock at time `t` (s).
+    pub fn body(&self, t: f64) -> Vector {
+        match self.action {
+            LoadAction::Body(a) => a * self.table.at(t),
+            _ => Vector::zeros(),
+        }
+    }
+
+    /// Adds the forces of this load at time `t` (s) to `force` (N/m per cover).
+    ///
+    /// `place` gives the current position of a cover's star; `block` the covers of a block with their row-sum mass.
+    pub fn push(
+        &self,
+        t: f64,
+        place: impl Fn(usize) -> Point,
+        block: impl Fn(u32) -> std::ops::Range<usize>,
+        row_sum: &[f64],
+        force: &mut [Vector],
+    ) {
+        let factor = self.table.at(t);
+        match &self.action {
+            LoadAction::Forces(list) => {
+                for (covers, weights, f) in list {
+                    spread(covers, weights, f * factor, force);
+                }
+            }
+            LoadAction::Pressure(list, pressure) => {
+                for (covers, ends) in list {
+                    let [a, b] = ends.map(|w| (0..3).map(|k| place(covers[k] as usize) * w[k]).sum::<Point>());
+                    let inward = Vector::new(a.y - b.y, b.x - a.x);
+                    let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
+                    spread(covers, &middle, inward * (pressure * factor), force);
+                }
+            }
+            LoadAction::Body(_) => {}
+            LoadAction::Block(id, f, moment) => {
+                push_block(block(*id), &place, row_sum, f * factor, moment * factor, force);
+            }
+        }
+    }
+}
+
+fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
+    for (cover, w) in covers.iter().zip(weights) {
+        force[*cover as usize] += f * *w;
+    }
+}
+
+/// Spreads a force and a moment over a block as a rigid acceleration field would.
+fn push_block(
+    covers: std::ops::Range<usize>,
+    place: &impl Fn(usize) -> Point,
+    row_sum: &[f64],
+    f: Vector,
+    moment: f64,
+    force: &mut [Vector],
+) {
+    let total: f64 = row_sum[covers.clone()].iter().sum();
+    let centre = covers.clone().map(|i| place(i) * row_sum[i]).sum::<Point>() / total;
+    let polar: f64 = covers.clone().map(|i| row_sum[i] * (place(i) - centre).norm_squared()).sum();
+    for i in covers {
+        let arm = place(i) - centre;
+        force[i] += (f / total + Vector::new(-arm.y, arm.x) * (moment / polar)) * row_sum[i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_linear_between_rows_and_constant_beyond() {
+        let table = TimeTable(vec![[1.0, 2.0], [3.0, 6.0]]);
+        assert_eq!([0.0, 1.0, 2.0, 3.0, 9.0].map(|t| table.at(t)), [2.0, 2.0, 4.0, 6.0, 6.0]);
+        assert_eq!(TimeTable::default().at(5.0), 1.0);
+    }
+
+    #[test]
+    fn a_block_moment_has_no_resultant_force() {
+        let places = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
+        let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
+        let mut force = [Vector::zeros(); 3];
+        load.push(0.0, |i| places[i], |_| 0..3, &[1.0, 2.0, 3.0], &mut force);
+        let torque: f64 = places.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
+        assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,122 @@
+//! Equal-thirds lumped mass and the rigid-exact correction of free blocks, theory Eqs. (2)–(4).
+
+use crate::cover::Covers;
+use crate::geometry::{Point, Vector};
+
+use super::Elasticity;
+
+/// Masses of covers and blocks: what turns forces into accelerations.
+///
+/// A free block has the rigid-exact metric; a block that is held anywhere has the plain lumped one, in which the
+/// block terms vanish (`inverse_total` = `spin` = 0).
+#[derive(Debug, Clone, Default)]
+pub struct Metric {
+    /// Lumped mass m of each cover (kg/m).
+    pub mass: Vec<f64>,
+    /// Row-sum mass ∫ρw of each cover (kg/m): the weight that gravity acts on.
+    pub row_sum: Vec<f64>,
+    /// Mass by which a cover counts in the centroid of its block: row-sum when free, lumped when held.
+    pub inertial: Vec<f64>,
+    /// 1/m along x and y, 0 where held.
+    pub inverse: Vec<Vector>,
+    /// Mass of each block (kg/m).
+    pub total: Vec<f64>,
+    /// 1/M of a free block, 0 of a held one.
+    pub inverse_total: Vec<f64>,
+    /// S = Σμ²/m of a free block.
+    pub square: Vec<f64>,
+    /// Polar inertia about the centroid in the metric (kg·m²/m): exact when free, lumped when held.
+    pub polar: Vec<f64>,
+    /// Polar inertia of the lumped masses about their own centroid (kg·m²/m).
+    pub polar_lumped: Vec<f64>,
+    /// C = 1/J − 1/J_D of a free block, 0 of a held one.
+    pub spin: Vec<f64>,
+    /// Whether no cover of the block can move.
+    pub fixed: Vec<bool>,
+}
+
+impl Metric {
+    /// Masses of all blocks as if free.
+    pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
+        let mut metric = Self {
+            mass: vec![0.0; covers.cover_count()],
+            row_sum: vec![0.0; covers.cover_count()],
+            ..Self::default()
+        };
+        for e in 0..covers.element_count() {
+            let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
+            let weights = covers.weights(e, covers.element_centroid[e]);
+            for (k, &cover) in covers.element_covers[e].iter().enumerate() {
+                metric.mass[cover as usize] += mass / 3.0;
+                metric.row_sum[cover as usize] += mass * weights[k];
+            }
+        }
+        metric.inertial.clone_from(&metric.row_sum);
+        metric.inverse = metric.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
+        for block in 0..covers.block_count() {
+            metric.push_block(covers, rocks, element_rock, block);
+        }
+        metric
+    }
+
+    fn push_block(&mut self, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16], block: usize) {
+        let range = covers.covers_of(block);
+        let density = |e: usize| rocks[element_rock[e] as usize].density;
+        let total: f64 = self.row_sum[range.clone()].iter().sum();
+        let elements = covers.elements_of(block);
+        let centre: Point = elements
+            .clone()
+            .map(|e| covers.element_centroid[e] * (density(e) * covers.element_area[e]))
+            .sum::<Point>()
+            / total;
+        let polar: f64 = elements
+            .map(|e| {
+                let arm = (covers.element_centroid[e] - centre).norm_squared();
+                density(e) * (covers.element_polar[e] + covers.element_area[e] * arm)
+            })
+            .sum();
+        let lumped_centre: Point =
+            range.clone().map(|i| covers.star_position[i] * self.mass[i]).sum::<Point>() / total;
+        let polar_lumped: f64 =
+            range.clone().map(|i| self.mass[i] * (covers.star_position[i] - lumped_centre).norm_squared()).sum();
+        self.total.push(total);
+        self.inverse_total.push(1.0 / total);
+        self.square.push(range.map(|i| self.row_sum[i] * self.row_sum[i] / self.mass[i]).sum());
+        self.polar.push(polar);
+        self.polar_lumped.push(polar_lumped);
+        self.spin.push(1.0 / polar - 1.0 / polar_lumped);
+        self.fixed.push(false);
+    }
+
+    /// Gives a block the plain lumped metric, as every block that is held anywhere needs.
+    pub fn hold_block(&mut self, covers: &Covers, block: usize) {
+        for i in covers.covers_of(block) {
+            self.inertial[i] = self.mass[i];
+        }
+        self.inverse_total[block] = 0.0;
+        self.square[block] = 0.0;
+        self.spin[block] = 0.0;
+        self.polar[block] = self.polar_lumped[block];
+    }
+
+    /// Holds a cover along the axes whose flag is set.
+    pub fn hold_cover(&mut self, cover: usize, axes: [bool; 2]) {
+        for (axis, held) in axes.into_iter().enumerate() {
+            if held {
+                self.inverse[cover][axis] = 0.0;
+            }
+        }
+    }
+
+    /// Marks the blocks that cannot move at all.
+    pub fn mark_fixed(&mut self, covers: &Covers) {
+        for block in 0..covers.block_count() {
+            self.fixed[block] = covers.covers_of(block).all(|i| self.inverse[i] == Vector::zeros());
+        }
+    }
+
+    /// Whether a block has the rigid-exact metric.
+    pub fn is_free(&self, block: usize) -> bool {
+        self.inverse_total[block] > 0.0
+    }
+}

@@ -1,0 +1,14 @@
+//! Mass, strain, stress, elastic law, body and boundary forces, energies: pure functions over slices.
+//! Knows nothing of contact or files.
+
+mod elasticity;
+mod internal;
+mod load;
+mod mass;
+mod motion;
+
+pub use elasticity::{Elasticity, critical_dt};
+pub use internal::{Deformation, PreStress};
+pub use load::{Load, LoadAction, TimeTable};
+pub use mass::Metric;
+pub use motion::{BlockMotion, Damping, Kick, kick, kinetic_energy, rigid_motion, rigid_velocity};

@@ -1,0 +1,297 @@
+//! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
+
+mod geometry;
+mod place;
+mod rock;
+
+use std::collections::BTreeMap;
+
+use crate::contact::{Boundary, BoundaryOptions, JointLaw, Support};
+use crate::cover::{self, Covers};
+use crate::geometry::{NodingReport, Point, Vector};
+use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, TimeTable, critical_dt};
+use crate::model::case::{self, Case, Invalid, LoadKind};
+use crate::state::{Fixity, Slope, State};
+
+use place::Places;
+
+/// A model as built: what is fixed, the state at its start, and what the build has to tell.
+#[derive(Debug, Clone)]
+pub struct Built {
+    /// Fixed part.
+    pub slope: Slope,
+    /// State at the start.
+    pub state: State,
+    /// Element and reference point of each monitor.
+    pub monitors: Vec<(usize, Point)>,
+    /// What the noder did.
+    pub noding: NodingReport,
+    /// Joint traces after the generation of sets: points and law.
+    pub traces: Vec<(Vec<Point>, u32)>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Builds the model of a case.
+///
+/// # Errors
+/// The first key of the case that does not fit the model: geometry, references to places without rock, memory.
+pub fn build(case: &Case) -> Result<Built, Invalid> {
+    case.validate()?;
+    let plane = geometry::arrange_case(case)?;
+    let covers = cover::cut(plane.mesh, &plane.arrangement);
+    let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
+    let places = Places { covers: &covers, tolerance: 2.0 * plane.arrangement.report.tolerance };
+    let element_rock = rock::assign(case, &places)?;
+    let metric = Metric::free(&covers, &rocks, &element_rock);
+    let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
+    let laws = case.joint_laws.values().map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
+    let (fixities, supports) = fixities(case, &places, stiffness)?;
+    let loads = loads(case, &places)?;
+    let monitors = monitors(case, &places)?;
+    let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
+    let slope = Slope {
+        block_frequency: block_frequencies(&covers, &rocks, &element_rock),
+        pre_stress: pre_stresses(case, &covers),
+        boundary: Boundary::new(&covers, &BoundaryOptions::default()),
+        rocks,
+        element_rock,
+        metric,
+        laws,
+        trace_law: plane.traces.iter().map(|t| t.1).collect(),
+        default_law: plane.default_law,
+        fixities,
+        supports,
+        loads,
+        gravity: Vector::new(case.gravity.x, case.gravity.y),
+        in_situ: case.in_situ.as_ref().map(|s| ([s.sxx, s.syy, s.sxy], s.gradient, s.y_reference)),
+        dt: internal_step(case, critical),
+        critical_dt: critical,
+        theta: case.solver.contact_theta,
+        tolerance: case.solver.contact_tolerance,
+        sweeps_max: case.solver.sweeps_max,
+        penetration_limit: case.solver.penetration_limit * covers.mesh.size,
+        covers,
+    };
+    let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
+    let state = initial_state(case, &slope, &places)?;
+    let warnings = warnings(&plane.arrangement.report, plane.warnings);
+    Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
+}
+
+/// Distance (m) within which a place of the case counts as on the rock.
+fn places_tolerance(noding: &NodingReport) -> f64 {
+    2.0 * noding.tolerance
+}
+
+fn stiffest(rocks: &[Elasticity]) -> f64 {
+    rocks.iter().map(Elasticity::confined_modulus).fold(0.0, f64::max)
+}
+
+/// The internal step: an integer fraction of a tenth of the communication step, within the stability limit.
+fn internal_step(case: &Case, critical: f64) -> f64 {
+    let limit = (case.solver.dt_safety * critical).min(case.solver.dt_max.unwrap_or(f64::INFINITY));
+    let communication = case.solver.communication_step.unwrap_or_else(|| round_above(10.0 * limit));
+    let tenth = communication / 10.0;
+    tenth / (tenth / limit - 1e-9).ceil().max(1.0)
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is not below `value`.
+fn round_above(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= value * (1.0 - 1e-12)).unwrap_or(value)
+}
+
+fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
+    let tangent = |degrees: f64| degrees.to_radians().tan();
+    let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
+    JointLaw {
+        normal_stiffness,
+        shear_stiffness: law.shear_stiffness.unwrap_or(stiffness * shear_ratio),
+        friction: tangent(law.friction_deg),
+        cohesion: law.cohesion,
+        tension: law.tension,
+        residual_friction: tangent(law.residual_friction_deg.unwrap_or(law.friction_deg)),
+        residual_cohesion: law.residual_cohesion.unwrap_or(law.cohesion),
+        residual_tension: law.residual_tension,
+        dilation: tangent(law.dilation_deg),
+        dilation_slip: law.dilation_slip.unwrap_or(f64::INFINITY),
+    }
+}
+
+fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
+    let of_block = |b: usize| {
+        let speed = covers
+            .elements_of(b)
+            .map(|e| rocks[element_rock[e] as usize].shear_wave_speed())
+            .fold(0.0, f64::max);
+        2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt()
+    };
+    (0..covers.block_count()).map(of_block).collect()
+}
+
+fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
+    case.in_situ.as_ref().map_or_else(Vec::new, |s| {
+        let at = |p: &Point| {
+            let height = p.y - s.y_reference;
+            [s.sxx + s.gradient[0] * height, s.syy + s.gradient[1] * height, s.sxy + s.gradient[2] * height]
+        };
+        covers.element_centroid.iter().map(at).collect()
+    })
+}
+
+fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
+    let (mut fixities, mut supports) = (Vec::new(), Vec::new());
+    for (k, fix) in case.fixes.iter().enumerate() {
+        let key = format!("fix[{k}]");
+        let axes = [fix.axes != case::Axes::Y, fix.axes != case::Axes::X];
+        let mut fixity = Fixity { name: fix.name.clone(), covers: Vec::new(), active: fix.active };
+        let mut held = Vec::new();
+        if let Some(point) = fix.point {
+            let stiff = fix.stiffness.unwrap_or(SUPPORT_RATIO * stiffness * places.covers.mesh.size);
+            held.push(places.point(&format!("{key}.point"), point)?.support(stiff));
+        } else if let Some(edge) = fix.edge {
+            let stiff = fix.stiffness.unwrap_or(SUPPORT_RATIO * stiffness);
+            let stress = |p: Point| in_situ_at(case, p);
+            held.extend(places.boundary(&format!("{key}.edge"), edge)?.iter().map(|p| p.support(stiff, &stress)));
+        } else if let Some(region) = fix.region {
+            let covers = places.covers_in(&format!("{key}.box"), region)?;
+            fixity.covers.extend(covers.into_iter().map(|i| (i, axes)));
+        } else if let Some(point) = fix.block {
+            let block = places.block(&format!("{key}.block"), point)?;
+            fixity.covers.extend(places.covers.covers_of(block).map(|i| (i as u32, axes)));
+        }
+        for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| axes[*axis]) {
+            supports.extend(held.iter().map(|h: &place::Hold| Support {
+                fix: k as u32,
+                block: h.block,
+                covers: h.covers,
+                weights: h.weights,
+                direction,
+                stiffness: h.stiffness,
+                preload: h.preload[axis],
+            }));
+        }
+        fixities.push(fixity);
+    }
+    Ok((fixities, supports))
+}
+
+/// Stiffness of supports over that of contacts.
+const SUPPORT_RATIO: f64 = 1000.0;
+
+fn in_situ_at(case: &Case, p: Point) -> [f64; 3] {
+    case.in_situ.as_ref().map_or([0.0; 3], |s| {
+        let height = p.y - s.y_reference;
+        [s.sxx + s.gradient[0] * height, s.syy + s.gradient[1] * height, s.sxy + s.gradient[2] * height]
+    })
+}
+
+fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
+    let vector = |v: Option<[f64; 2]>| Vector::from(v.unwrap_or_default());
+    let mut loads = Vec::new();
+    for (k, load) in case.loads.iter().enumerate() {
+        let key = format!("load[{k}]");
+        let point = || (format!("{key}.point"), load.point.unwrap_or_default());
+        let edge = || places.boundary(&format!("{key}.edge"), load.edge.unwrap_or_default());
+        let action = match load.kind {
+            LoadKind::Point => {
+                let at = places.point(&point().0, point().1)?;
+                LoadAction::Forces(vec![(at.covers, at.weights, vector(load.force))])
+            }
+            LoadKind::Traction => LoadAction::Forces(
+                edge()?.iter().map(|p| (p.covers, p.middle(), vector(load.traction) * p.length())).collect(),
+            ),
+            LoadKind::Pressure => LoadAction::Pressure(
+                edge()?.iter().map(|p| (p.covers, p.weights)).collect(),
+                load.pressure.unwrap_or_default(),
+            ),
+            LoadKind::Body => LoadAction::Body(vector(load.acceleration)),
+            LoadKind::Block => {
+                let block = places.block(&point().0, point().1)?;
+                LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
+            }
+        };
+        loads.push(Load { action, table: TimeTable(load.table.clone().unwrap_or_default()) });
+    }
+    Ok(loads)
+}
+
+fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid> {
+    let of = |(k, monitor): (usize, &case::Monitor)| {
+        let element = places.element(&format!("monitor[{k}].point"), monitor.point)?;
+        Ok((element, Point::from(monitor.point)))
+    };
+    case.monitors.iter().enumerate().map(of).collect()
+}
+
+fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, Invalid> {
+    let covers = slope.covers.cover_count();
+    let mut velocity = vec![Vector::zeros(); covers];
+    for (k, start) in case.initial_velocities.iter().enumerate() {
+        let blocks = match start.block {
+            Some(point) => {
+                let block = places.block(&format!("initial_velocity[{k}].block"), point)?;
+                block..block + 1
+            }
+            None => 0..slope.covers.block_count(),
+        };
+        for block in blocks {
+            let centre = slope.covers.block_centroid(block);
+            for i in slope.covers.covers_of(block) {
+                let arm = slope.covers.star_position[i] - centre;
+                velocity[i] = Vector::from(start.velocity) + Vector::new(-arm.y, arm.x) * start.angular_velocity;
+            }
+        }
+    }
+    Ok(State {
+        stage: 0,
+        stage_start: 0.0,
+        stage_step: 0,
+        step: 0,
+        dt_last: 0.0,
+        displacement: vec![Vector::zeros(); covers],
+        velocity,
+        contacts: Vec::new(),
+        support_force: slope.supports.iter().map(|s| s.preload).collect(),
+        support_rest: vec![0.0; slope.supports.len()],
+        fix_active: slope.fixities.iter().map(|f| f.active).collect(),
+        removed: vec![false; slope.covers.block_count()],
+        laws: slope.laws.clone(),
+        law_switch: (0..slope.laws.len() as u32).collect(),
+        stage_displacement: Vec::new(),
+        stage_force: Vec::new(),
+        ledger: Default::default(),
+        counters: Default::default(),
+    })
+}
+
+fn warnings(noding: &NodingReport, mut warnings: Vec<String>) -> Vec<String> {
+    if noding.merged_vertices > 0 {
+        warnings.push(format!(
+            "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",
+            noding.merged_vertices, noding.tolerance
+        ));
+    }
+    let ignored = ignored_traces(noding).len();
+    if ignored > 0 {
+        warnings.push(format!("{ignored} joint traces cut no rock (outside the outline, or dead ends within one triangle)"));
+    }
+    if !noding.overlapping_traces.is_empty() {
+        warnings.push(format!(
+            "{} pairs of joint traces coincide along an edge; the first of each pair gives its law",
+            noding.overlapping_traces.len()
+        ));
+    }
+    warnings
+}
+
+/// Traces of which nothing cuts rock.
+pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
+    (0..noding.traces.len()).filter(|&t| noding.traces[t].in_rock == 0.0).collect()
+}
+
+/// Index of each name in the order of a case's table.
+pub(super) fn index_of<T>(table: &BTreeMap<String, T>, name: &str) -> Option<u32> {
+    table.keys().position(|k| k == name).map(|k| k as u32)
+}

@@ -1,0 +1,136 @@
+//! Outline, joints, joint sets and mesh edges in one arrangement.
+
+use crate::cover::RegularMesh;
+use crate::geometry::joint_set::{JointSetParameters, generate};
+use crate::geometry::loops::{validate_holes, validate_loop};
+use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange, polygon};
+use crate::model::case::{Case, Invalid, JointSet};
+
+use super::index_of;
+
+/// Bytes that one lattice cell with its share of elements, covers and contacts needs at the peak of a build.
+const BYTES_PER_CELL: f64 = 4000.0;
+
+/// The arranged plane of a case.
+pub(super) struct Plane {
+    pub mesh: RegularMesh,
+    pub arrangement: Arrangement,
+    pub traces: Vec<(Vec<Point>, u32)>,
+    pub default_law: u32,
+    pub warnings: Vec<String>,
+}
+
+/// Points of a list of pairs.
+pub(super) fn points(list: &[[f64; 2]]) -> Vec<Point> {
+    list.iter().map(|p| Point::from(*p)).collect()
+}
+
+fn invalid(key: &str) -> impl FnOnce(GeometryError) -> Invalid + '_ {
+    move |error| Invalid { key: key.into(), message: error.to_string() }
+}
+
+/// Arranges outlines, joints and mesh of a case.
+pub(super) fn arrange_case(case: &Case) -> Result<Plane, Invalid> {
+    let loops = Loops::read(case)?;
+    let (low, high) = loops.bounds();
+    check_memory(case, low, high)?;
+    let default_law = case.default_joint_law().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(0);
+    let traces = traces(case, low, high, default_law)?;
+    let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
+    let angle = case.mesh.angle_deg.to_radians();
+    let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
+    let mut segments = loops.segments();
+    for (k, (points, _)) in traces.iter().enumerate() {
+        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, k as u32)));
+    }
+    segments.extend(mesh.segments(low, high));
+    let arrangement = arrange(&segments, tolerance).map_err(invalid("domain"))?;
+    Ok(Plane { mesh, arrangement, traces, default_law, warnings: Vec::new() })
+}
+
+fn segment(a: Point, b: Point, outline: i8, trace: u32) -> Segment {
+    Segment { a, b, label: Label { outline, trace, mesh: NONE, mesh_reversed: false } }
+}
+
+/// Validated loops of rock (counter-clockwise) and holes.
+struct Loops {
+    rock: Vec<Vec<Point>>,
+    holes: Vec<Vec<Point>>,
+}
+
+impl Loops {
+    fn read(case: &Case) -> Result<Self, Invalid> {
+        let domain = &case.domain;
+        let read = |key: &str, list: &[[f64; 2]]| validate_loop(&points(list), key).map_err(invalid(key));
+        let outline = read("domain.outline", &domain.outline)?;
+        let many = |name: &str, lists: &[Vec<[f64; 2]>]| -> Result<Vec<Vec<Point>>, Invalid> {
+            lists.iter().enumerate().map(|(k, list)| read(&format!("domain.{name}[{k}]"), list)).collect()
+        };
+        let holes = many("holes", &domain.holes)?;
+        let islands = many("islands", &domain.islands)?;
+        validate_holes(&outline, &holes, &islands).map_err(invalid("domain"))?;
+        Ok(Self { rock: std::iter::once(outline).chain(islands).collect(), holes })
+    }
+
+    fn bounds(&self) -> (Point, Point) {
+        let all: Vec<Point> = self.rock.iter().flatten().copied().collect();
+        polygon::bounds(&all)
+    }
+
+    fn segments(&self) -> Vec<Segment> {
+        let directed = |loops: &[Vec<Point>], outline: i8| -> Vec<Segment> {
+            loops.iter().flat_map(|l| polygon::sides(l).map(move |(a, b)| segment(a, b, outline, NONE))).collect()
+        };
+        let mut segments = directed(&self.rock, 1);
+        segments.extend(directed(&self.holes, -1));
+        segments
+    }
+}
+
+fn check_memory(case: &Case, low: Point, high: Point) -> Result<(), Invalid> {
+    let bytes = RegularMesh::cell_estimate(case.mesh.size, low, high) * BYTES_PER_CELL;
+    let limit = case.solver.memory_limit as f64;
+    if bytes <= limit {
+        return Ok(());
+    }
+    let size = case.mesh.size * (bytes / limit).sqrt();
+    Err(Invalid {
+        key: "mesh.size".into(),
+        message: format!(
+            "{} m makes a model of about {:.1} GB, above the limit of {:.1} GB: use a size above {size:.3} m or raise \
+             solver.memory_limit",
+            case.mesh.size,
+            bytes / 1e9,
+            limit / 1e9
+        ),
+    })
+}
+
+/// Joint traces of the case, then those of its sets, with their laws.
+fn traces(case: &Case, low: Point, high: Point, default_law: u32) -> Result<Vec<(Vec<Point>, u32)>, Invalid> {
+    let law = |name: &Option<String>| {
+        name.as_ref().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(default_law)
+    };
+    let mut traces: Vec<(Vec<Point>, u32)> =
+        case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
+    let box_points = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
+    for (k, set) in case.joint_sets.iter().enumerate() {
+        let region = set.region.as_ref().map_or(box_points.to_vec(), |r| points(r));
+        let made = generate(&parameters(set), &region).map_err(invalid(&format!("joint_set[{k}]")))?;
+        traces.extend(made.into_iter().map(|t| (t.to_vec(), law(&set.law))));
+    }
+    Ok(traces)
+}
+
+fn parameters(set: &JointSet) -> JointSetParameters {
+    JointSetParameters {
+        dip: set.dip_deg.to_radians(),
+        dip_sd: set.dip_sd_deg.to_radians(),
+        spacing: set.spacing,
+        spacing_sd: set.spacing_sd,
+        trace_length: set.trace_length,
+        trace_length_sd: set.trace_length_sd,
+        gap: set.gap,
+        seed: set.seed,
+    }
+}

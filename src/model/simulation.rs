@@ -1,0 +1,248 @@
+//! The façade that callers hold: a built model that advances stage by stage.
+
+use crate::geometry::{Point, Vector, polygon};
+use crate::state::{Ledger, Scratch, Slope, State};
+use crate::step::{self, Regime, StepError, StepReport};
+
+use super::build::{Built, build, index_of};
+use super::case::{Case, Invalid, Stage, StageKind};
+
+/// Damping ratio ξ of a dynamic stage that names none.
+const DAMPING: f64 = 0.1;
+/// Unbalanced ratio at which a static stage that names none ends.
+const CONVERGENCE: f64 = 1e-4;
+/// Kinetic over potential or strain energy below which a static stage counts as at rest.
+const REST: f64 = 1e-8;
+
+/// A model in time.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    case: Case,
+    built: Built,
+    scratch: Scratch,
+    regime: Regime,
+}
+
+impl Simulation {
+    /// Builds the model of a case and begins its first stage.
+    ///
+    /// # Errors
+    /// The first key of the case that does not fit.
+    pub fn new(case: Case) -> Result<Self, Invalid> {
+        let built = build(&case)?;
+        let mut simulation =
+            Self { case, built, scratch: Scratch::default(), regime: Regime::Dynamic { damping: 0.0 } };
+        simulation.begin_stage(0, 0.0)?;
+        Ok(simulation)
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The model as built.
+    pub fn built(&self) -> &Built {
+        &self.built
+    }
+
+    /// The fixed part of the model.
+    pub fn slope(&self) -> &Slope {
+        &self.built.slope
+    }
+
+    /// The state now.
+    pub fn state(&self) -> &State {
+        &self.built.state
+    }
+
+    /// Buffers of the last step: contacts and times.
+    pub fn scratch(&self) -> &Scratch {
+        &self.scratch
+    }
+
+    /// The stage in progress.
+    pub fn stage(&self) -> &Stage {
+        &self.case.stages[self.built.state.stage as usize]
+    }
+
+    /// Simulated time (s).
+    pub fn time(&self) -> f64 {
+        self.state().stage_start + self.state().stage_step as f64 * self.slope().dt
+    }
+
+    /// Internal steps that cover `seconds` of simulated time.
+    pub fn steps_in(&self, seconds: f64) -> u64 {
+        (seconds / self.slope().dt - 1e-6).ceil().max(1.0) as u64
+    }
+
+    /// Takes a state that this model had before, as from a checkpoint.
+    pub fn restore(&mut self, state: State) {
+        self.built.state = state;
+        self.regime = self.regime_of(self.built.state.stage as usize);
+        step::prepare(&self.built.slope, &self.built.state, &mut self.scratch);
+    }
+
+    /// Begins the next stage; false when the last one has ended.
+    ///
+    /// # Errors
+    /// A key of the stage that does not fit the model.
+    pub fn next_stage(&mut self) -> Result<bool, Invalid> {
+        let next = self.built.state.stage as usize + 1;
+        if next >= self.case.stages.len() {
+            return Ok(false);
+        }
+        self.begin_stage(next, self.time())?;
+        Ok(true)
+    }
+
+    /// Advances one internal step; see [`step::advance`].
+    ///
+    /// # Errors
+    /// A numerical failure; the state is then spoilt and must be restored.
+    pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
+        step::advance(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, report)
+    }
+
+    /// Whether the stage has covered its duration, or is static and at rest by this report.
+    pub fn stage_is_over(&self, report: Option<&StepReport>) -> bool {
+        let state = self.state();
+        let stage = self.stage();
+        state.stage_step >= self.steps_in(stage.duration) || report.is_some_and(|r| self.at_rest(r))
+    }
+
+    /// Whether a static stage has converged: ramp over, forces balanced, motion died out.
+    pub fn at_rest(&self, report: &StepReport) -> bool {
+        let Regime::Static { ramp } = self.regime else { return false };
+        let energy = report.ledger.potential.abs().max(report.ledger.strain);
+        report.time >= self.state().stage_start + 1.5 * ramp
+            && report.unbalanced <= self.stage().convergence.unwrap_or(CONVERGENCE)
+            && report.ledger.kinetic <= REST * energy
+    }
+
+    fn regime_of(&self, stage: usize) -> Regime {
+        let stage_case = &self.case.stages[stage];
+        match stage_case.kind {
+            StageKind::Dynamic => Regime::Dynamic { damping: stage_case.damping.unwrap_or(DAMPING) },
+            StageKind::Static => {
+                let default = if stage == 0 { self.default_ramp() } else { 0.0 };
+                Regime::Static { ramp: stage_case.ramp.unwrap_or(default) }
+            }
+        }
+    }
+
+    /// Four times the way of a shear wave through the height of the model (s); none under in-situ stress.
+    fn default_ramp(&self) -> f64 {
+        if self.case.in_situ.is_some() {
+            return 0.0;
+        }
+        let (low, high) = polygon::bounds(&self.slope().covers.star_position);
+        let slowest = self.slope().rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
+        4.0 * (high - low).y / slowest
+    }
+
+    fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
+        let before = self.energies();
+        self.excavate(stage)?;
+        self.change_laws(stage);
+        self.change_fixities(stage);
+        let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
+        self.regime = self.regime_of(stage);
+        let (slope, state) = (&self.built.slope, &mut self.built.state);
+        step::begin_stage(slope, self.regime, state, stage as u32, start, at_rest);
+        step::prepare(slope, state, &mut self.scratch);
+        let after = self.energies();
+        let sum = |l: &Ledger| l.kinetic + l.strain + l.potential;
+        let ledger = &mut self.built.state.ledger;
+        ledger.baseline += if stage == 0 { sum(&after) } else { sum(&after) - sum(&before) };
+        Ok(())
+    }
+
+    fn energies(&self) -> Ledger {
+        if self.scratch.metric.mass.is_empty() {
+            return Ledger::default();
+        }
+        step::energies(self.slope(), self.state(), &self.scratch.metric)
+    }
+
+    fn excavate(&mut self, stage: usize) -> Result<(), Invalid> {
+        let covers = &self.built.slope.covers;
+        let stage_case = &self.case.stages[stage];
+        for (k, &point) in stage_case.excavate.iter().enumerate() {
+            let element = covers.element_near(Point::from(point), self.built.noding.tolerance);
+            let block = element.map(|e| covers.element_block[e] as usize).ok_or_else(|| Invalid {
+                key: format!("stage[{stage}].excavate[{k}]"),
+                message: format!("there is no block at ({}, {}): choose a point inside one", point[0], point[1]),
+            })?;
+            self.built.state.removed[block] = true;
+        }
+        if let Some(region) = &stage_case.excavate_region {
+            let region: Vec<Point> = region.iter().map(|p| Point::from(*p)).collect();
+            let inside = |b: &usize| polygon::contains(&region, covers.block_centroid(*b));
+            let blocks: Vec<usize> = (0..covers.block_count()).filter(inside).collect();
+            if blocks.is_empty() {
+                return Err(Invalid {
+                    key: format!("stage[{stage}].excavate_region"),
+                    message: "the region holds no block's centroid: enlarge it".into(),
+                });
+            }
+            blocks.into_iter().for_each(|b| self.built.state.removed[b] = true);
+        }
+        Ok(())
+    }
+
+    fn change_laws(&mut self, stage: usize) {
+        let stage_case = &self.case.stages[stage];
+        let state = &mut self.built.state;
+        for change in &stage_case.law_changes {
+            let Some(k) = index_of(&self.case.joint_laws, &change.law) else { continue };
+            let law = &mut state.laws[k as usize];
+            if let Some(degrees) = change.friction_deg {
+                law.friction = degrees.to_radians().tan();
+                law.residual_friction = law.friction;
+            }
+            if let Some(cohesion) = change.cohesion {
+                (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);
+            }
+            if let Some(tension) = change.tension {
+                law.tension = tension;
+            }
+        }
+        for switch in &stage_case.law_switches {
+            let find = |name: &str| index_of(&self.case.joint_laws, name);
+            let (Some(from), Some(to)) = (find(&switch.from), find(&switch.to)) else { continue };
+            state.law_switch.iter_mut().filter(|law| **law == from).for_each(|law| *law = to);
+        }
+    }
+
+    fn change_fixities(&mut self, stage: usize) {
+        let stage_case = &self.case.stages[stage];
+        let (slope, state) = (&self.built.slope, &mut self.built.state);
+        for (k, fixity) in slope.fixities.iter().enumerate() {
+            let Some(name) = &fixity.name else { continue };
+            if stage_case.free.contains(name) {
+                state.fix_active[k] = false;
+            }
+            if stage_case.fix.contains(name) && !state.fix_active[k] {
+                state.fix_active[k] = true;
+                for (s, support) in slope.supports.iter().enumerate().filter(|(_, s)| s.fix == k as u32) {
+                    state.support_rest[s] = support.sample(&state.displacement);
+                    state.support_force[s] = support.preload;
+                }
+            }
+        }
+    }
+
+    /// Displacement and velocity of a monitor.
+    pub fn monitor(&self, k: usize) -> (Vector, Vector) {
+        let (element, point) = self.built.monitors[k];
+        let slope = self.slope();
+        let sample = |field: &[Vector]| slope.sample(element, point, field);
+        (sample(&self.state().displacement), sample(&self.state().velocity))
+    }
+
+    /// Linear and angular momentum of the free blocks, see [`step::momentum`].
+    pub fn momentum(&self) -> (Vector, f64) {
+        step::momentum(self.slope(), self.state(), &self.scratch.metric)
+    }
+}

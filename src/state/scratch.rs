@@ -1,0 +1,55 @@
+//! Buffers of a step; never part of a checkpoint.
+
+use crate::contact::{BlockPush, SearchGrid, SupportRow, VertexEdge};
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{BlockMotion, Metric};
+
+/// Buffers, sized at the first step and reused.
+#[derive(Debug, Clone, Default)]
+pub struct Scratch {
+    /// Masses with the fixities of the stage.
+    pub metric: Metric,
+    /// Forces of loads on covers (N/m).
+    pub load_force: Vec<Vector>,
+    /// Internal and load forces on covers (N/m).
+    pub force: Vec<Vector>,
+    /// Velocities without contact forces (m/s).
+    pub predicted: Vec<Vector>,
+    /// Velocities after damping and before any force (m/s).
+    pub damped: Vec<Vector>,
+    /// Centroid and damped energy of each block.
+    pub motion: Vec<BlockMotion>,
+    /// Current places of boundary points (m).
+    pub place: Vec<Point>,
+    /// Near pairs.
+    pub search: SearchGrid,
+    /// Contacts of this step.
+    pub contacts: Vec<VertexEdge>,
+    /// Supports of this step.
+    pub rows: Vec<SupportRow>,
+    /// Velocity increments of covers by contact impulses (m/s).
+    pub increment: Vec<Vector>,
+    /// Impulse sums of blocks.
+    pub push: Vec<BlockPush>,
+    /// Law of each joint trace after switches.
+    pub trace_law: Vec<u32>,
+    /// Largest speed of a cover (m/s).
+    pub speed_max: f64,
+    /// Seconds spent in each part of the step.
+    pub seconds: Seconds,
+}
+
+/// Wall time (s) by part of the step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Seconds {
+    /// Elements and kick.
+    pub elements: f64,
+    /// Search for near edges.
+    pub search: f64,
+    /// Vertex rule and contact geometry.
+    pub entrance: f64,
+    /// Open–close iteration.
+    pub sweep: f64,
+    /// Velocities, positions, ledger.
+    pub commit: f64,
+}

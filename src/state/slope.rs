@@ -1,0 +1,77 @@
+//! The built model: nothing in it changes in time.
+
+use crate::contact::{Boundary, JointLaw, Support};
+use crate::cover::Covers;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{Elasticity, Load, Metric, PreStress};
+
+/// What one fixity of the case holds.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Fixity {
+    /// Name.
+    pub name: Option<String>,
+    /// Covers that it holds, and along which axes.
+    pub covers: Vec<(u32, [bool; 2])>,
+    /// Whether it holds from the start.
+    pub active: bool,
+}
+
+/// Covers, rocks, boundary, laws, loads and numerical choices of one model.
+#[derive(Debug, Clone)]
+pub struct Slope {
+    /// Covers, elements and blocks.
+    pub covers: Covers,
+    /// Rocks.
+    pub rocks: Vec<Elasticity>,
+    /// Rock of each element.
+    pub element_rock: Vec<u16>,
+    /// In-situ stress of each element (Pa); empty when there is none.
+    pub pre_stress: Vec<PreStress>,
+    /// Masses of all blocks as if free.
+    pub metric: Metric,
+    /// 2π·cs/√A of each block (1/s): what the damping ratio multiplies.
+    pub block_frequency: Vec<f64>,
+    /// Boundary as contact sees it.
+    pub boundary: Boundary,
+    /// Joint laws at the start.
+    pub laws: Vec<JointLaw>,
+    /// Law of each joint trace.
+    pub trace_law: Vec<u32>,
+    /// Law of contacts between faces that were no joints.
+    pub default_law: u32,
+    /// Fixities.
+    pub fixities: Vec<Fixity>,
+    /// Supports of all fixities.
+    pub supports: Vec<Support>,
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// Gravity (m/s²).
+    pub gravity: Vector,
+    /// In-situ stress xx, yy, xy (Pa) as value and gradient (Pa/m) about a height (m).
+    pub in_situ: Option<([f64; 3], [f64; 3], f64)>,
+    /// Internal step (s).
+    pub dt: f64,
+    /// Stability limit (s).
+    pub critical_dt: f64,
+    /// θ of the contact springs.
+    pub theta: f64,
+    /// Relative change of force at which the open–close iteration has settled.
+    pub tolerance: f64,
+    /// Most sweeps of the open–close iteration.
+    pub sweeps_max: u32,
+    /// Penetration (m) at which the run fails.
+    pub penetration_limit: f64,
+}
+
+impl Slope {
+    /// In-situ stress xx, yy, xy (Pa) at a place.
+    pub fn in_situ_at(&self, p: Point) -> [f64; 3] {
+        self.in_situ.map_or([0.0; 3], |(value, gradient, y)| [0, 1, 2].map(|k| value[k] + gradient[k] * (p.y - y)))
+    }
+
+    /// Material point: sum of a cover field over an element's covers at reference point `p`.
+    pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
+        let weights = self.covers.weights(element, p);
+        self.covers.element_covers[element].iter().zip(weights).map(|(&i, w)| field[i as usize] * w).sum()
+    }
+}

@@ -1,0 +1,158 @@
+//! The pass over blocks: element forces and kick of one block after the other, in parallel over groups of blocks.
+
+use std::ops::Range;
+
+use crate::geometry::Vector;
+use crate::mechanics::{self, BlockMotion, Damping, Deformation, Kick, PreStress};
+use crate::state::{Scratch, Slope, State};
+
+/// Covers below which a group of blocks is not split between threads.
+const GRAIN: usize = 2048;
+
+/// What every block of a pass shares.
+pub(super) struct Pass<'a> {
+    pub slope: &'a Slope,
+    pub state: &'a State,
+    pub acceleration: Vector,
+    /// Deformation damping carries ξ·dt here; each block turns it into its own factor.
+    pub damping: Damping,
+    pub dt: f64,
+}
+
+/// The output slices of a group of blocks.
+struct Group<'a> {
+    blocks: Range<usize>,
+    force: &'a mut [Vector],
+    predicted: &'a mut [Vector],
+    damped: &'a mut [Vector],
+    motion: &'a mut [BlockMotion],
+}
+
+impl<'a> Group<'a> {
+    fn split(self, block: usize, cover: usize) -> (Self, Self) {
+        let (force, force_rest) = self.force.split_at_mut(cover);
+        let (predicted, predicted_rest) = self.predicted.split_at_mut(cover);
+        let (damped, damped_rest) = self.damped.split_at_mut(cover);
+        let (motion, motion_rest) = self.motion.split_at_mut(block - self.blocks.start);
+        let first = Group { blocks: self.blocks.start..block, force, predicted, damped, motion };
+        let second = Group {
+            blocks: block..self.blocks.end,
+            force: force_rest,
+            predicted: predicted_rest,
+            damped: damped_rest,
+            motion: motion_rest,
+        };
+        (first, second)
+    }
+}
+
+impl Pass<'_> {
+    /// Fills forces, predicted velocities and block motions of the scratch.
+    pub fn run(&self, scratch: &mut Scratch) {
+        scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let Scratch { metric, force, predicted, damped, motion, load_force, .. } = scratch;
+        force.copy_from_slice(load_force);
+        self.group(metric, Group { blocks: 0..motion.len(), force, predicted, damped, motion });
+    }
+
+    fn group(&self, metric: &mechanics::Metric, group: Group) {
+        let covers = &self.slope.covers;
+        let first = covers.block_covers[group.blocks.start] as usize;
+        if group.force.len() > GRAIN && group.blocks.len() > 1 {
+            let half = (first + group.force.len() / 2) as u32;
+            let starts = &covers.block_covers[group.blocks.start + 1..group.blocks.end];
+            let block = group.blocks.start + 1 + starts.partition_point(|&c| c < half).min(starts.len() - 1);
+            let (left, right) = group.split(block, covers.block_covers[block] as usize - first);
+            rayon::join(|| self.group(metric, left), || self.group(metric, right));
+            return;
+        }
+        for (k, block) in group.blocks.enumerate() {
+            let range = covers.covers_of(block);
+            let local = range.start - first..range.end - first;
+            group.motion[k] = self.block(
+                metric,
+                block,
+                &mut group.force[local.clone()],
+                &mut group.predicted[local.clone()],
+                &mut group.damped[local],
+            );
+        }
+    }
+
+    fn block(
+        &self,
+        metric: &mechanics::Metric,
+        block: usize,
+        force: &mut [Vector],
+        predicted: &mut [Vector],
+        damped: &mut [Vector],
+    ) -> BlockMotion {
+        if metric.fixed[block] {
+            predicted.fill(Vector::zeros());
+            damped.fill(Vector::zeros());
+            return BlockMotion::default();
+        }
+        self.push_elements(block, force);
+        let kick = Kick {
+            acceleration: self.acceleration,
+            damping: self.block_damping(block),
+            dt: self.dt,
+            ..resting(self.slope, metric, &self.state.displacement, &self.state.velocity, block)
+        };
+        mechanics::kick(&kick, force, predicted, damped)
+    }
+
+    /// Adds the element forces of a block to its covers, theory Eq. (7).
+    fn push_elements(&self, block: usize, force: &mut [Vector]) {
+        let (slope, u) = (self.slope, &self.state.displacement);
+        let covers = &slope.covers;
+        let first = covers.block_covers[block];
+        for e in covers.elements_of(block) {
+            let ids = covers.element_covers[e];
+            let g = &covers.gradients[covers.element_triangle[e].set as usize];
+            let rock = &slope.rocks[slope.element_rock[e] as usize];
+            let deformation = Deformation::new(ids.map(|i| u[i as usize]), g);
+            let forces = deformation.forces(g, covers.element_area[e], rock, &pre_stress(slope, e));
+            for (i, f) in ids.into_iter().zip(forces) {
+                force[(i - first) as usize] += f;
+            }
+        }
+    }
+
+    /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion, or the common one.
+    fn block_damping(&self, block: usize) -> Damping {
+        match self.damping {
+            Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
+                Damping::Deformation((-ratio_dt * self.slope.block_frequency[block]).exp())
+            }
+            Damping::Deformation(_) => Damping::Deformation(1.0),
+            mass => mass,
+        }
+    }
+}
+
+/// In-situ stress of an element, zero when the model has none.
+pub(super) fn pre_stress(slope: &Slope, element: usize) -> PreStress {
+    slope.pre_stress.get(element).copied().unwrap_or_default()
+}
+
+/// One block's slices with neither damping nor force: for its energy and momentum.
+pub(super) fn resting<'a>(
+    slope: &'a Slope,
+    metric: &'a mechanics::Metric,
+    displacement: &'a [Vector],
+    velocity: &'a [Vector],
+    block: usize,
+) -> Kick<'a> {
+    Kick {
+        metric,
+        block,
+        covers: slope.covers.covers_of(block),
+        star: &slope.covers.star_position,
+        displacement,
+        velocity,
+        acceleration: Vector::zeros(),
+        damping: Damping::Deformation(1.0),
+        dt: 0.0,
+    }
+}

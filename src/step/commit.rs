@@ -1,0 +1,166 @@
+//! The end of a sub-step: velocities, positions, contact histories and the ledger.
+
+use std::time::Instant;
+
+use crate::contact::ContactState;
+use crate::geometry::Vector;
+use crate::state::Ledger;
+
+use super::{Regime, Step, StepReport, report};
+
+/// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
+const OFFSET_FADE: f64 = 0.5;
+
+impl Step<'_> {
+    /// Ends a sub-step of `dt` (s); returns the report of its start when one is wanted.
+    pub(super) fn commit(&mut self, dt: f64) -> StepReport {
+        let clock = Instant::now();
+        self.finish_velocities();
+        let works = self.works(dt);
+        let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
+        self.capture_stage_force(dt);
+        self.record_contacts(dt);
+        let state = &mut *self.state;
+        for (u, v) in state.displacement.iter_mut().zip(&self.scratch.predicted) {
+            *u += v * dt;
+        }
+        state.velocity.copy_from_slice(&self.scratch.predicted);
+        state.ledger.add_works(&works, 1.0);
+        state.dt_last = dt;
+        self.time += dt;
+        self.scratch.seconds.commit += clock.elapsed().as_secs_f64();
+        report
+    }
+
+    /// Adds what the impulses of all contacts give to every cover, theory Eq. (17).
+    fn finish_velocities(&mut self) {
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        let metric = &scratch.metric;
+        for (block, push) in scratch.push.iter().enumerate() {
+            let range = slope.covers.covers_of(block);
+            for i in range.clone() {
+                scratch.predicted[i] += scratch.increment[i];
+            }
+            if push.impulse == Vector::zeros() && push.moment == 0.0 || !metric.is_free(block) {
+                continue;
+            }
+            let share = metric.inverse_total[block];
+            let common = (push.impulse * (1.0 + metric.square[block] * share) - push.weighted) * share;
+            let spin = metric.spin[block] * push.moment;
+            for i in range {
+                let arm = slope.covers.star_position[i] + self.state.displacement[i] - scratch.motion[block].centre;
+                let own = push.impulse * (metric.inertial[i] / metric.mass[i] * share);
+                scratch.predicted[i] += common - own + Vector::new(-arm.y, arm.x) * spin;
+            }
+        }
+    }
+
+    /// Works of this sub-step: each force by the mean of the velocities before and after it, theory Eq. (18).
+    fn works(&self, dt: f64) -> Ledger {
+        let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
+        let mut works = Ledger { damping: scratch.motion.iter().map(|m| m.damped).sum(), ..Ledger::default() };
+        for contact in &scratch.contacts {
+            let before = contact.relative(&scratch.damped);
+            let after = contact.relative(&scratch.predicted);
+            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * dt);
+            works.contact_work +=
+                contact.history.normal_force * normal + contact.history.shear_force * shear;
+            if contact.history.state == ContactState::Slip {
+                let (stored, _) = contact.shear_after(after[1] * dt);
+                let old = contact.history.shear_stored;
+                works.friction -= contact.history.shear_force * shear
+                    + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
+            }
+        }
+        for row in &scratch.rows {
+            let support = &slope.supports[row.support as usize];
+            let velocity = 0.5 * (support.sample(&scratch.damped) + support.sample(&scratch.predicted));
+            works.support_work += row.force * velocity * dt;
+        }
+        let kick_dt = 0.5 * (state.dt_last + dt);
+        let extra = self.acceleration() - slope.gravity;
+        for i in 0..state.velocity.len() {
+            let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
+            works.external_work += force.dot(&(scratch.damped[i] + scratch.predicted[i])) * (0.5 * kick_dt);
+        }
+        works
+    }
+
+    /// Energies at the start of this sub-step and the unbalanced ratio.
+    fn report(&self, dt: f64, works: &Ledger) -> StepReport {
+        let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
+        let kinetic = |velocity: &[Vector]| {
+            report::kinetic(slope, &scratch.metric, &state.displacement, velocity)
+        };
+        let mut ledger = state.ledger;
+        ledger.add_works(works, 0.5);
+        ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
+        ledger.strain = report::strain(slope, state);
+        ledger.potential = report::potential(slope, state);
+        ledger.stored = report::stored(slope, scratch);
+        let contacts = scratch.contacts.iter();
+        let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
+        StepReport {
+            time: self.time,
+            dt,
+            ledger,
+            unbalanced: self.unbalanced(dt),
+            locked: count(ContactState::Lock),
+            slipping: count(ContactState::Slip),
+            penetration_max: contacts.clone().map(|c| c.penetration).fold(0.0, f64::max),
+            speed_max: scratch.speed_max,
+        }
+    }
+
+    /// ‖m·dv/dt‖ over ‖applied force‖, theory Eq. (19).
+    fn unbalanced(&self, dt: f64) -> f64 {
+        let (metric, scratch) = (&self.slope.metric, &*self.scratch);
+        let kick_dt = 0.5 * (self.state.dt_last + dt);
+        let acceleration = self.acceleration();
+        let (mut net, mut applied) = (0.0, 0.0);
+        for i in 0..metric.mass.len() {
+            net += ((scratch.predicted[i] - scratch.damped[i]) * (metric.mass[i] / kick_dt)).norm_squared();
+            applied += (scratch.load_force[i] + acceleration * metric.row_sum[i]).norm_squared();
+        }
+        (net / applied.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// The forces out of balance in the first step of a static stage that begins under full load.
+    fn capture_stage_force(&mut self, dt: f64) {
+        if self.state.stage_step > 0 || !matches!(self.regime, Regime::Static { ramp: 0.0 }) {
+            return;
+        }
+        let kick_dt = 0.5 * (self.state.dt_last + dt);
+        let scratch = &*self.scratch;
+        for (i, force) in self.state.stage_force.iter_mut().enumerate() {
+            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.slope.metric.mass[i] / kick_dt);
+        }
+    }
+
+    /// Histories of this sub-step's contacts and supports.
+    fn record_contacts(&mut self, dt: f64) {
+        let (state, scratch) = (&mut *self.state, &*self.scratch);
+        let fade = (-dt / OFFSET_FADE).exp();
+        state.contacts.clear();
+        for contact in &scratch.contacts {
+            let mut history = contact.history;
+            let (stored, slipped) = contact.shear_after(contact.relative(&scratch.predicted)[1] * dt);
+            let law = &state.laws[contact.law as usize];
+            history.shear_stored = stored;
+            history.rest += law.dilate(history.slip, history.slip + slipped);
+            history.slip += slipped;
+            history.intact &= !contact.torn && slipped == 0.0;
+            if contact.fresh && history.offset > 0.0 {
+                state.counters.deep_contacts += 1;
+                state.counters.deepest_contact = state.counters.deepest_contact.max(history.offset);
+            }
+            history.offset *= fade;
+            let loaded = contact.penetration - history.offset;
+            state.counters.penetration_max = state.counters.penetration_max.max(loaded);
+            state.contacts.push(history);
+        }
+        for row in &scratch.rows {
+            state.support_force[row.support as usize] = row.force;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Checks after every step: a run that has gone wrong stops with block, place and cause.
+
+use crate::geometry::Point;
+
+use super::Step;
+
+/// What went wrong.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// A velocity is not a number.
+    #[error("the velocity is not finite")]
+    NotFinite,
+    /// A velocity exceeds the wave speed of the rock.
+    #[error("the speed {speed:.3e} m/s exceeds the wave speed {limit:.3e} m/s of the rock (runaway)")]
+    Runaway {
+        /// Speed (m/s).
+        speed: f64,
+        /// Limit (m/s).
+        limit: f64,
+    },
+    /// A node has gone too deep into another block.
+    #[error("the penetration {depth:.3e} m exceeds the limit {limit:.3e} m (solver.penetration_limit)")]
+    Penetration {
+        /// Penetration (m).
+        depth: f64,
+        /// Limit (m).
+        limit: f64,
+    },
+}
+
+/// A numerical failure with its block, place and time.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("block {block} at ({:.3}, {:.3}) m, t = {time:.6} s: {failure}", place.x, place.y)]
+pub struct StepError {
+    /// Block.
+    pub block: u32,
+    /// Where (m).
+    pub place: Point,
+    /// Simulated time (s).
+    pub time: f64,
+    /// Cause.
+    pub failure: Failure,
+}
+
+impl Step<'_> {
+    /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
+    pub(super) fn guard(&self) -> Result<(), StepError> {
+        let slope = self.slope;
+        let limit = slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max);
+        let square = limit * limit;
+        if let Some(i) = self.state.velocity.iter().position(|v| !(v.norm_squared() <= square)) {
+            let speed = self.state.velocity[i].norm();
+            let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
+            let block = slope.covers.cover_block[i];
+            let place = slope.covers.block_centroid(block as usize);
+            return Err(StepError { block, place, time: self.time, failure });
+        }
+        let limit = slope.penetration_limit;
+        match self.scratch.contacts.iter().find(|c| c.penetration > limit) {
+            Some(contact) => Err(StepError {
+                block: contact.blocks[0],
+                place: self.scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize],
+                time: self.time,
+                failure: Failure::Penetration { depth: contact.penetration, limit },
+            }),
+            None => Ok(()),
+        }
+    }
+}

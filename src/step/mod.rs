@@ -1,0 +1,233 @@
+//! One internal step: order of the stages, open–close iteration, damping, checks, report. Knows nothing of files.
+
+mod blocks;
+mod commit;
+mod guard;
+mod prepare;
+mod report;
+
+pub use guard::{Failure, StepError};
+pub use prepare::{begin_stage, prepare};
+pub use report::{StepReport, block_motion, energies, momentum};
+
+use std::time::Instant;
+
+use crate::contact::{self, Narrow, OpenClose, SweepOptions, SweepReport};
+use crate::geometry::{Point, Vector};
+use crate::mechanics::Damping;
+use crate::state::{Scratch, Slope, State};
+
+/// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
+const SKIN: f64 = 0.1;
+/// Distance, relative to the mesh size, within which pairs are kept.
+const CUTOFF: f64 = 0.25;
+/// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
+const REACH: f64 = 0.005;
+/// Relative change of force above which an unsettled step is redone in halves, theory Eq. (16).
+const UNSETTLED: f64 = 0.1;
+/// Most times that a step is halved.
+const HALVINGS_MAX: u32 = 4;
+
+/// How a stage treats velocities and gravity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Regime {
+    /// Damped to equilibrium; gravity grows over `ramp` (s).
+    Static {
+        /// Time over which gravity and body loads grow (s); 0 for at once.
+        ramp: f64,
+    },
+    /// True motion with deformation damping of ratio `damping`.
+    Dynamic {
+        /// Damping ratio ξ.
+        damping: f64,
+    },
+}
+
+/// Advances one internal step; with `report` the energies and the unbalanced ratio at its start are computed as well.
+///
+/// # Errors
+/// Fails on a non-finite state, a runaway block or a penetration beyond the limit; `state` is then spoilt.
+pub fn advance(
+    slope: &Slope,
+    regime: Regime,
+    state: &mut State,
+    scratch: &mut Scratch,
+    report: bool,
+) -> Result<StepReport, StepError> {
+    let time = state.stage_start + state.stage_step as f64 * slope.dt;
+    let mut step = Step { slope, regime, state, scratch, time, report };
+    let outcome = step.interval(slope.dt, 0);
+    step.guard()?;
+    state.stage_step += 1;
+    state.step += 1;
+    Ok(outcome)
+}
+
+/// One step in progress.
+struct Step<'a> {
+    slope: &'a Slope,
+    regime: Regime,
+    state: &'a mut State,
+    scratch: &'a mut Scratch,
+    time: f64,
+    report: bool,
+}
+
+impl Step<'_> {
+    /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
+    fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
+        self.search();
+        self.predict(dt);
+        self.entrance(dt);
+        let swept = self.open_close(dt);
+        if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
+            self.state.counters.halved += 1;
+            let first = self.interval(0.5 * dt, halvings + 1);
+            self.report = false;
+            self.interval(0.5 * dt, halvings + 1);
+            return first;
+        }
+        self.count(dt, &swept);
+        self.commit(dt)
+    }
+
+    /// Current places of boundary points, and near pairs when nodes have moved.
+    fn search(&mut self) {
+        let clock = Instant::now();
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        let boundary = &slope.boundary;
+        let star = &slope.covers.star_position;
+        let displacement = &self.state.displacement;
+        scratch.place.clear();
+        scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
+            (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
+        }));
+        let size = slope.covers.mesh.size;
+        if scratch.search.is_stale(boundary, &scratch.place, SKIN * size) {
+            let removed = &self.state.removed;
+            scratch.search.search(boundary, &scratch.place, size, CUTOFF * size, removed, &scratch.metric.fixed);
+            self.state.counters.searches += 1;
+        }
+        scratch.seconds.search += clock.elapsed().as_secs_f64();
+    }
+
+    /// Internal forces, loads and the kick of every block without contact forces.
+    fn predict(&mut self, dt: f64) {
+        let clock = Instant::now();
+        let kick_dt = 0.5 * (self.state.dt_last + dt);
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let stars = &slope.covers.star_position;
+        scratch.load_force.fill(Vector::zeros());
+        for load in &slope.loads {
+            let place = |i: usize| stars[i] + state.displacement[i];
+            let covers = |b: u32| slope.covers.covers_of(b as usize);
+            load.push(self.time, place, covers, &slope.metric.row_sum, &mut scratch.load_force);
+        }
+        let acceleration = self.acceleration();
+        let damping = self.damping(dt);
+        let pass = blocks::Pass { slope, state: self.state, acceleration, damping, dt: kick_dt };
+        pass.run(self.scratch);
+        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+    }
+
+    /// Gravity and body loads (m/s²) at this time.
+    fn acceleration(&self) -> Vector {
+        let body: Vector = self.slope.loads.iter().map(|load| load.body(self.time)).sum();
+        (self.slope.gravity + body) * self.ramp()
+    }
+
+    /// Share of gravity that acts: a smooth rise over the ramp of a static stage.
+    fn ramp(&self) -> f64 {
+        match self.regime {
+            Regime::Static { ramp } if ramp > 0.0 => {
+                let x = ((self.time - self.state.stage_start) / ramp).clamp(0.0, 1.0);
+                x * x * (3.0 - 2.0 * x)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Damping of a step of `dt` (s), theory Eqs. (11), (12).
+    fn damping(&self, dt: f64) -> Damping {
+        match self.regime {
+            Regime::Dynamic { damping } => Damping::Deformation(damping * dt),
+            Regime::Static { .. } => {
+                let (mut work, mut inertia) = (0.0, 0.0);
+                let state = &*self.state;
+                for i in 0..state.displacement.len() {
+                    let moved = state.displacement[i] - state.stage_displacement[i];
+                    work += state.stage_force[i].dot(&moved);
+                    inertia += self.slope.metric.mass[i] * moved.norm_squared();
+                }
+                let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
+                Damping::Mass((-(rate * dt).min(0.3)).exp())
+            }
+        }
+    }
+
+    /// Contacts that take part in this step, with geometry and approach velocities.
+    fn entrance(&mut self, dt: f64) {
+        let clock = Instant::now();
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let size = slope.covers.mesh.size;
+        let in_situ = |p: Point| slope.in_situ_at(p);
+        let narrow = Narrow {
+            boundary: &slope.boundary,
+            place: &scratch.place,
+            star: &slope.covers.star_position,
+            displacement: &state.displacement,
+            metric: &scratch.metric,
+            motion: &scratch.motion,
+            laws: &state.laws,
+            trace_law: &scratch.trace_law,
+            default_law: state.law_switch[slope.default_law as usize],
+            size,
+            reach: REACH * size + 8.0 * dt * scratch.speed_max,
+            first: state.step == 0,
+            in_situ: slope.in_situ.is_some().then_some(&in_situ),
+        };
+        scratch.contacts.clear();
+        contact::entrance_edges(&narrow, &scratch.search.candidates, &state.contacts, &mut scratch.contacts);
+        for contact in &mut scratch.contacts {
+            contact.approach = contact.relative(&scratch.predicted);
+        }
+        for row in &mut scratch.rows {
+            let k = row.support as usize;
+            let support = &slope.supports[k];
+            row.displacement = support.sample(&state.displacement) - state.support_rest[k];
+            row.approach = support.sample(&scratch.predicted);
+            row.force = state.support_force[k];
+        }
+        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// Open–close iteration on the predicted velocities.
+    fn open_close(&mut self, dt: f64) -> SweepReport {
+        let clock = Instant::now();
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        scratch.increment.fill(Vector::zeros());
+        scratch.push.fill(contact::BlockPush::default());
+        let options =
+            SweepOptions { dt, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
+        let iteration = OpenClose {
+            metric: &scratch.metric,
+            options,
+            increment: &mut scratch.increment,
+            push: &mut scratch.push,
+        };
+        let swept = contact::open_close(iteration, &mut scratch.contacts, &slope.supports, &mut scratch.rows);
+        scratch.seconds.sweep += clock.elapsed().as_secs_f64();
+        swept
+    }
+
+    fn count(&mut self, dt: f64, swept: &SweepReport) {
+        let counters = &mut self.state.counters;
+        counters.substeps += 1;
+        counters.sweeps += u64::from(swept.sweeps);
+        counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
+        counters.unsettled += u64::from(swept.unsettled > self.slope.tolerance);
+        counters.judged += u64::from(swept.sweeps) * self.scratch.contacts.len() as u64;
+        counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
+        counters.dt_max = counters.dt_max.max(dt);
+    }
+}

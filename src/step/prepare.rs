@@ -1,0 +1,81 @@
+//! What a stage needs before its first step: masses with its fixities, buffers, reference of the static damping.
+
+use crate::contact::{Support, SupportRow};
+use crate::geometry::Vector;
+use crate::state::{Scratch, Slope, State};
+
+use super::Regime;
+
+/// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
+/// and a restored state.
+pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
+    let covers = slope.covers.cover_count();
+    for field in [
+        &mut scratch.load_force,
+        &mut scratch.force,
+        &mut scratch.predicted,
+        &mut scratch.damped,
+        &mut scratch.increment,
+    ] {
+        field.clear();
+        field.resize(covers, Vector::zeros());
+    }
+    scratch.motion.resize(slope.covers.block_count(), Default::default());
+    scratch.push.resize(slope.covers.block_count(), Default::default());
+    scratch.trace_law.clear();
+    scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
+    hold(slope, state, scratch);
+    scratch.search.forget();
+}
+
+/// Masses and support rows under the fixities that hold and the blocks that are gone.
+fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
+    scratch.metric.clone_from(&slope.metric);
+    let metric = &mut scratch.metric;
+    for (fixity, _) in slope.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
+        for &(cover, axes) in &fixity.covers {
+            metric.hold_block(&slope.covers, slope.covers.cover_block[cover as usize] as usize);
+            metric.hold_cover(cover as usize, axes);
+        }
+    }
+    for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
+        metric.hold_block(&slope.covers, block);
+        slope.covers.covers_of(block).for_each(|i| metric.hold_cover(i, [true, true]));
+    }
+    scratch.rows.clear();
+    let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
+    for (_, support) in slope.supports.iter().enumerate().filter(holds) {
+        metric.hold_block(&slope.covers, support.block as usize);
+    }
+    scratch.rows.extend(slope.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
+        support: k as u32,
+        displacement: 0.0,
+        approach: 0.0,
+        compliance: support.compliance(metric),
+        force: state.support_force[k],
+    }));
+    metric.mark_fixed(&slope.covers);
+}
+
+/// Sets the clock and the references of a new stage; call [`prepare`] afterwards.
+///
+/// Velocities count as those of the start itself when they are `at_rest`, so that a sudden change of strength acts for
+/// half a step only in the first kick; otherwise the leapfrog goes on.
+pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
+    if at_rest {
+        state.dt_last = 0.0;
+    }
+    state.stage = stage;
+    state.stage_start = start;
+    state.stage_step = 0;
+    state.stage_displacement.clear();
+    state.stage_force.clear();
+    if let Regime::Static { .. } = regime {
+        state.stage_displacement.clone_from(&state.displacement);
+        let weight = slope.metric.row_sum.iter().map(|m| slope.gravity * *m);
+        state.stage_force.extend(weight);
+    }
+    for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
+        state.velocity[slope.covers.covers_of(block)].fill(Vector::zeros());
+    }
+}

@@ -1,0 +1,101 @@
+//! Energies, momenta and what a step reports.
+
+use crate::contact::ContactState;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{self, Deformation, Metric};
+use crate::state::{Ledger, Scratch, Slope, State};
+
+use super::blocks::{pre_stress, resting};
+
+/// A step as seen from outside; energies hold at the step's start.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StepReport {
+    /// Time at the start of the step (s).
+    pub time: f64,
+    /// Sub-step (s).
+    pub dt: f64,
+    /// Energies.
+    pub ledger: Ledger,
+    /// Net over applied force.
+    pub unbalanced: f64,
+    /// Contacts below their shear limit.
+    pub locked: u32,
+    /// Contacts at their shear limit.
+    pub slipping: u32,
+    /// Largest penetration (m).
+    pub penetration_max: f64,
+    /// Largest speed (m/s).
+    pub speed_max: f64,
+}
+
+/// Kinetic energy (J/m) of all blocks that can move.
+pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], velocity: &[Vector]) -> f64 {
+    (0..slope.covers.block_count())
+        .filter(|&b| !metric.fixed[b])
+        .map(|b| mechanics::kinetic_energy(&resting(slope, metric, displacement, velocity, b)))
+        .sum()
+}
+
+/// Strain energy (J/m) of all blocks that are there, theory Eq. (8).
+pub(super) fn strain(slope: &Slope, state: &State) -> f64 {
+    let covers = &slope.covers;
+    let of_element = |e: usize| {
+        let g = &covers.gradients[covers.element_triangle[e].set as usize];
+        let u = covers.element_covers[e].map(|i| state.displacement[i as usize]);
+        let rock = &slope.rocks[slope.element_rock[e] as usize];
+        covers.element_area[e] * Deformation::new(u, g).energy(rock, &pre_stress(slope, e))
+    };
+    (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]).map(of_element).sum()
+}
+
+/// Potential energy (J/m) of gravity relative to the reference configuration.
+pub(super) fn potential(slope: &Slope, state: &State) -> f64 {
+    let covers = &slope.covers;
+    (0..covers.cover_count())
+        .filter(|&i| !state.removed[covers.cover_block[i] as usize])
+        .map(|i| -slope.metric.row_sum[i] * slope.gravity.dot(&state.displacement[i]))
+        .sum()
+}
+
+/// Energy (J/m) stored in the springs of contacts and supports.
+pub(super) fn stored(slope: &Slope, scratch: &Scratch) -> f64 {
+    let contact = |c: &crate::contact::VertexEdge| {
+        let normal = if c.gap < 0.0 || c.history.state != ContactState::Open { c.gap } else { 0.0 };
+        0.5 * (c.stiffness[0] * normal * normal + c.history.shear_stored.powi(2) / c.stiffness[1])
+    };
+    let support = |row: &crate::contact::SupportRow| {
+        let support = &slope.supports[row.support as usize];
+        0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
+    };
+    scratch.contacts.iter().map(contact).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>()
+}
+
+/// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
+pub fn energies(slope: &Slope, state: &State, metric: &Metric) -> Ledger {
+    Ledger {
+        kinetic: kinetic(slope, metric, &state.displacement, &state.velocity),
+        strain: strain(slope, state),
+        potential: potential(slope, state),
+        ..state.ledger
+    }
+}
+
+/// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
+pub fn momentum(slope: &Slope, state: &State, metric: &Metric) -> (Vector, f64) {
+    let (mut linear, mut angular) = (Vector::zeros(), 0.0);
+    for block in (0..slope.covers.block_count()).filter(|&b| metric.is_free(b)) {
+        let kick = resting(slope, metric, &state.displacement, &state.velocity, block);
+        let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&kick);
+        linear += velocity * metric.total[block];
+        angular += metric.total[block] * centre.perp(&velocity) + metric.polar[block] * spin;
+    }
+    (linear, angular)
+}
+
+/// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
+pub fn block_motion(slope: &Slope, state: &State, metric: &Metric, block: usize) -> (Point, Vector, f64, f64) {
+    let kick = resting(slope, metric, &state.displacement, &state.velocity, block);
+    let (centre, velocity, spin) = mechanics::rigid_motion(&kick);
+    let kinetic = if metric.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&kick) };
+    (centre, velocity, spin, kinetic)
+}

@@ -1,0 +1,36 @@
+//! Helpers that the claim tests share: cases from text, runs, closed forms.
+#![allow(dead_code)]
+
+use std::path::Path;
+
+use enmm::model::Simulation;
+use enmm::step::StepReport;
+
+/// Builds a simulation from the text of a case.
+pub fn simulation(text: &str) -> Simulation {
+    let loaded = enmm::io::parse_case(text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
+    Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Runs the stage in progress to its end; returns the last report.
+pub fn run_stage(simulation: &mut Simulation) -> StepReport {
+    let mut last = StepReport::default();
+    let mut k = 0u64;
+    while !simulation.stage_is_over(Some(&last).filter(|r| r.dt > 0.0 && r.time >= simulation.state().stage_start)) {
+        let report = simulation.advance(k.is_multiple_of(10)).unwrap_or_else(|e| panic!("{e}"));
+        if report.dt > 0.0 {
+            last = report;
+        }
+        k += 1;
+    }
+    last
+}
+
+/// Runs all stages; returns the last report of each.
+pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
+    let mut reports = vec![run_stage(simulation)];
+    while simulation.next_stage().unwrap_or_else(|e| panic!("{e}")) {
+        reports.push(run_stage(simulation));
+    }
+    reports
+}

@@ -1,0 +1,583 @@
+//! The rules of the house, read off the files of the repository. Every check is also seen failing on a small text.
+
+use std::path::Path;
+
+/// Rooms of `src/` in rank order; each imports only from those before it.
+const ROOMS: [&str; 8] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "io"];
+const COLUMNS_MAX: usize = 120;
+/// Folders of programs that may print.
+const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];
+/// Rooms whose results must not depend on the order of a hash.
+const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
+const THEORY: &str = "docs/theory.md";
+
+/// A file of the repository; `text` is empty for kinds that are not text.
+struct File {
+    path: String,
+    text: String,
+}
+
+impl File {
+    fn is(&self, extension: &str) -> bool {
+        self.path.ends_with(extension)
+    }
+
+    fn within(&self, folders: &[&str]) -> bool {
+        folders.iter().any(|folder| self.path.starts_with(folder))
+    }
+
+    fn name(&self) -> &str {
+        self.path.rsplit('/').next().unwrap_or_default()
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The repository against the rules.
+
+#[test]
+fn rooms_import_only_lower_ranks() {
+    hold(each(&[""], &["src/"], room_problems));
+}
+
+#[test]
+fn lines_fit_the_width() {
+    hold(each(&[".rs", ".toml", ".md"], &[""], width_problems));
+}
+
+#[test]
+fn functions_fit_a_screen() {
+    hold(each(&[".rs"], &[""], length_problems));
+}
+
+#[test]
+fn nothing_is_unfinished_switched_off_unsafe_or_printed() {
+    hold(each(&[".rs"], &[""], word_problems));
+}
+
+#[test]
+fn no_mark_of_unfinished_work_is_left() {
+    hold(each(&[""], &[""], mark_problems));
+}
+
+#[test]
+fn no_host_of_a_registry_is_named() {
+    hold(each(&[""], &[""], host_problems));
+}
+
+#[test]
+fn every_test_file_says_what_it_claims() {
+    hold(each(&[".rs"], &["tests/"], header_problems));
+}
+
+#[test]
+fn equations_are_numbered_in_order_and_citations_exist() {
+    let files = repository();
+    let theory = files.iter().find(|file| file.path == THEORY).expect("docs/theory.md");
+    let numbers = equation_numbers(&theory.text);
+    assert_eq!(numbers, (1..=numbers.len() as u32).collect::<Vec<_>>(), "equations of {THEORY}, in their order");
+    assert!(numbers.len() >= 19);
+    let citing = files.iter().filter(|file| (file.is(".rs") && file.within(&["src/", "cli/"])) || file.is(".md"));
+    hold(citing.flat_map(|file| citation_problems(file, &numbers)).collect());
+}
+
+#[test]
+fn links_between_documents_resolve() {
+    let files = repository();
+    let exists = |path: &str| {
+        let folder = format!("{}/", path.trim_end_matches('/'));
+        path.is_empty() || files.iter().any(|file| file.path == path || file.path.starts_with(&folder))
+    };
+    hold(files.iter().filter(|file| file.is(".md")).flat_map(|file| link_problems(file, &exists)).collect());
+}
+
+#[test]
+fn no_shared_data_is_committed() {
+    hold(each(&[""], &[""], shared_data_problems));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The rules.
+
+fn room_problems(file: &File) -> Vec<String> {
+    let inside = file.path.trim_start_matches("src/");
+    if inside == "lib.rs" {
+        return Vec::new();
+    }
+    let rank = |room: &str| ROOMS.iter().position(|&known| known == room);
+    let room = inside.split('/').next().filter(|_| inside.contains('/')).unwrap_or_default();
+    let Some(own) = rank(room) else { return vec![format!("{}: lies in no known room", file.path)] };
+    let code = code_only(&file.text);
+    let mut problems = Vec::new();
+    for (line, other) in names_after(&code, "crate::") {
+        match rank(&other) {
+            Some(rank) if rank <= own => {}
+            Some(_) => problems.push(format!("{}:{line}: room `{room}` imports the higher `{other}`", file.path)),
+            None => problems.push(format!("{}:{line}: `crate::{other}` names no room", file.path)),
+        }
+    }
+    let climbs = if file.name() == "mod.rs" && inside.matches('/').count() == 1 { "super::" } else { "super::super::" };
+    for (line, other) in names_after(&code, climbs) {
+        if climbs == "super::super::" || (rank(&other).is_some() && other != room) {
+            problems.push(format!("{}:{line}: `{climbs}{other}` leaves the room: say `crate::`", file.path));
+        }
+    }
+    problems
+}
+
+/// Tables and lines with an address are excepted in Markdown, because neither can be broken.
+fn width_problems(file: &File) -> Vec<String> {
+    let excepted = |line: &str| file.is(".md") && (line.trim_start().starts_with('|') || line.contains("://"));
+    let wide = |line: &str| line.chars().count() > COLUMNS_MAX && !excepted(line);
+    numbered(&file.text).filter(|(_, line)| wide(line)).map(|(k, _)| format!("{}:{k}: too wide", file.path)).collect()
+}
+
+fn length_problems(file: &File) -> Vec<String> {
+    let limit = if file.within(&["tests/", "benches/", "examples/"]) { 80 } else { 60 };
+    let long = functions(&code_only(&file.text)).into_iter().filter(|&(_, _, length)| length > limit);
+    long.map(|(line, name, length)| format!("{}:{line}: `{name}` has {length} lines", file.path)).collect()
+}
+
+fn word_problems(file: &File) -> Vec<String> {
+    let code = code_only(&file.text);
+    let mut problems = Vec::new();
+    for (line, word, follows) in words(&code) {
+        let bad = match word {
+            "todo" | "unimplemented" | "dbg" => follows == Some('!'),
+            "print" | "println" | "eprint" | "eprintln" => follows == Some('!') && !file.within(&PRINTERS),
+            "unsafe" => !file.within(&["ffi/"]),
+            "HashMap" | "HashSet" => file.within(&ORDERED),
+            _ => false,
+        };
+        if bad {
+            problems.push(format!("{}:{line}: `{word}`", file.path));
+        }
+    }
+    let ignored = numbered(&code).filter(|(_, line)| line.replace(' ', "").contains("#[ignore"));
+    problems.extend(ignored.map(|(line, _)| format!("{}:{line}: a test that is switched off", file.path)));
+    problems
+}
+
+fn mark_problems(file: &File) -> Vec<String> {
+    let marks = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("X", "XX")];
+    let marked = words(&file.text).into_iter().filter(|(_, word, _)| marks.contains(word));
+    marked.map(|(line, word, _)| format!("{}:{line}: {word}", file.path)).collect()
+}
+
+/// Cargo's own lock file names its registry and is excepted.
+fn host_problems(file: &File) -> Vec<String> {
+    let hosts = [
+        concat!("crates", ".io"),
+        concat!("static.rust", "-lang.org"),
+        concat!("pypi", ".org"),
+        concat!("python", "hosted.org"),
+        concat!("npm", "js.org"),
+        concat!("npm", "js.com"),
+        concat!("deb.debian", ".org"),
+        concat!("--index", "-url"),
+    ];
+    let named = |line: &str| hosts.into_iter().find(|host| line.contains(host));
+    let lines = numbered(&file.text).filter(|_| file.name() != "Cargo.lock");
+    lines.filter_map(|(k, line)| Some(format!("{}:{k}: names {}", file.path, named(line)?))).collect()
+}
+
+fn header_problems(file: &File) -> Vec<String> {
+    let bare = file.path.matches('/').count() == 1 && !file.text.starts_with("//! ");
+    bare.then(|| format!("{}: does not begin with a `//!` line", file.path)).into_iter().collect()
+}
+
+fn citation_problems(file: &File, numbers: &[u32]) -> Vec<String> {
+    let wrong = citations(&file.text).into_iter().filter(|(_, number)| !numbers.contains(number));
+    wrong.map(|(line, number)| format!("{}:{line}: (Eq. {number}) is not in {THEORY}", file.path)).collect()
+}
+
+fn link_problems(file: &File, exists: &dyn Fn(&str) -> bool) -> Vec<String> {
+    let dead = |target: &str| {
+        let path = target.split('#').next().unwrap_or_default();
+        !target.contains("://")
+            && !target.starts_with("mailto:")
+            && !path.is_empty()
+            && !exists(&join(&file.path, path))
+    };
+    let links = links(&file.text).into_iter().filter(|(_, target)| dead(target));
+    links.map(|(line, target)| format!("{}:{line}: link to {target} leads nowhere", file.path)).collect()
+}
+
+/// Sources and documents may name the data that is shared; the data itself stays outside.
+fn shared_data_problems(file: &File) -> Vec<String> {
+    let name = file.name().to_lowercase();
+    let stems = ["kb7", "kb11", "getaberget", "tyrol", "elcentro", "goodman_bray_16", "star_multi", "v02_hexagon"];
+    let source = [".rs", ".py", ".md", ".toml"].iter().any(|extension| file.is(extension));
+    let shared = !source && stems.iter().any(|stem| name.contains(stem));
+    shared.then(|| format!("{}: shared data", file.path)).into_iter().collect()
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Reading.
+
+fn hold(problems: Vec<String>) {
+    assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
+}
+
+/// Problems of all files with one of the `extensions` in one of the `folders`; there must be such a file.
+fn each(extensions: &[&str], folders: &[&str], problems: fn(&File) -> Vec<String>) -> Vec<String> {
+    let files = repository();
+    let chosen = files.iter().filter(|file| file.within(folders) && extensions.iter().any(|end| file.is(end)));
+    let chosen: Vec<_> = chosen.collect();
+    assert!(!chosen.is_empty(), "no file to check");
+    chosen.into_iter().flat_map(problems).collect()
+}
+
+/// All files but those of version control, builds, caches and environments.
+fn repository() -> Vec<File> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    let mut folders = vec![String::new()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root.join(&folder)).expect("a folder that can be read") {
+            let entry = entry.expect("an entry that can be read");
+            let path = format!("{folder}{}", entry.file_name().to_string_lossy());
+            let kind = entry.file_type().expect("a kind of entry");
+            if kind.is_dir() && is_ours(&entry.path()) {
+                folders.push(path + "/");
+            } else if kind.is_file() {
+                files.push(File { text: read(&entry.path()), path });
+            }
+        }
+    }
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    files
+}
+
+fn is_ours(folder: &Path) -> bool {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let hidden = name.starts_with('.') && ![".ci", ".cargo", ".github"].contains(&&*name);
+    let marks = ["CACHEDIR.TAG", "pyvenv.cfg", ".git", "summary.json"];
+    !hidden && !["target", "__pycache__"].contains(&&*name) && !marks.iter().any(|mark| folder.join(mark).exists())
+}
+
+/// Text of the kinds that people write; empty for others.
+fn read(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let kinds = ["rs", "toml", "md", "py", "sh", "txt", "yml", "lock", "h", "c", "cpp"];
+    let written = kinds.iter().any(|kind| name.ends_with(&format!(".{kind}"))) || name == "run";
+    if written { std::fs::read_to_string(path).expect("UTF-8 text") } else { String::new() }
+}
+
+/// Lines with their numbers from 1.
+fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.lines().enumerate().map(|(k, line)| (k + 1, line))
+}
+
+/// `text` with comments, strings and character literals blanked, so that only code and its line ends remain.
+fn code_only(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let mut code = String::with_capacity(text.len());
+    let mut at = 0;
+    while at < letters.len() {
+        let end = end_of_token(&letters, at);
+        let keep = end == at + 1;
+        code.extend(letters[at..end].iter().map(|&c| if keep || c == '\n' { c } else { ' ' }));
+        at = end;
+    }
+    code
+}
+
+/// Index behind the comment or literal that starts at `at`; `at + 1` where none does.
+fn end_of_token(letters: &[char], at: usize) -> usize {
+    let next = |k: usize| letters.get(at + k).copied().unwrap_or('\n');
+    let within_name = at > 0 && (letters[at - 1].is_alphanumeric() || letters[at - 1] == '_');
+    match letters[at] {
+        '/' if next(1) == '/' => (at..letters.len()).find(|&k| letters[k] == '\n').unwrap_or(letters.len()),
+        '/' if next(1) == '*' => end_of_block_comment(letters, at),
+        '"' => end_of_quote(letters, at, '"'),
+        'r' if matches!(next(1), '"' | '#') && (!within_name || letters[at - 1] == 'b') => end_of_raw(letters, at),
+        '\'' if next(1) == '\\' || next(2) == '\'' => end_of_quote(letters, at, '\''),
+        _ => at + 1,
+    }
+}
+
+fn end_of_quote(letters: &[char], at: usize, quote: char) -> usize {
+    let mut k = at + 1;
+    while k < letters.len() && letters[k] != quote {
+        k += if letters[k] == '\\' { 2 } else { 1 };
+    }
+    (k + 1).min(letters.len())
+}
+
+fn end_of_raw(letters: &[char], at: usize) -> usize {
+    let hashes = letters[at + 1..].iter().take_while(|&&c| c == '#').count();
+    let first = at + 1 + hashes;
+    if letters.get(first) != Some(&'"') {
+        return at + 1;
+    }
+    let closes = |k: usize| letters[k] == '"' && letters[k + 1..].iter().take_while(|&&c| c == '#').count() >= hashes;
+    (first + 1..letters.len()).find(|&k| closes(k)).map_or(letters.len(), |k| k + 1 + hashes)
+}
+
+fn end_of_block_comment(letters: &[char], at: usize) -> usize {
+    let (mut depth, mut k) = (0, at);
+    while k + 1 < letters.len() {
+        match (letters[k], letters[k + 1]) {
+            ('/', '*') => (depth, k) = (depth + 1, k + 2),
+            ('*', '/') => (depth, k) = (depth - 1, k + 2),
+            _ => k += 1,
+        }
+        if depth == 0 {
+            return k;
+        }
+    }
+    letters.len()
+}
+
+/// Words with their line and the letter that follows each.
+fn words(text: &str) -> Vec<(usize, &str, Option<char>)> {
+    let mut found = Vec::new();
+    for (number, line) in numbered(text) {
+        let mut rest = line;
+        while let Some(start) = rest.find(is_of_word) {
+            let tail = &rest[start..];
+            let end = tail.find(|c| !is_of_word(c)).unwrap_or(tail.len());
+            found.push((number, &tail[..end], tail[end..].chars().next()));
+            rest = &tail[end..];
+        }
+    }
+    found
+}
+
+fn is_of_word(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
+/// First names of the paths that begin with `prefix`, those of a group `{a::b, c}` one by one, with their lines.
+fn names_after(code: &str, prefix: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for (at, _) in code.match_indices(prefix) {
+        if code[..at].ends_with(is_of_word) {
+            continue;
+        }
+        let line = 1 + code[..at].matches('\n').count();
+        let rest = &code[at + prefix.len()..];
+        let firsts = if rest.starts_with('{') { group(rest) } else { vec![rest] };
+        let name = |path: &str| path.trim_start().chars().take_while(|&c| is_of_word(c) || c == '*').collect();
+        found.extend(firsts.into_iter().map(|path| (line, name(path))));
+    }
+    found
+}
+
+/// The parts between commas of the braces that `text` begins with, inner braces left whole.
+fn group(text: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut parts) = (0, 1, Vec::new());
+    for (at, letter) in text.char_indices() {
+        depth += i32::from(letter == '{') - i32::from(letter == '}');
+        if depth == 0 || (depth == 1 && letter == ',') {
+            parts.push(&text[start..at]);
+            start = at + 1;
+        }
+        if depth == 0 {
+            break;
+        }
+    }
+    parts.retain(|part| !part.trim().is_empty());
+    parts
+}
+
+/// First line, name and number of lines of every function with a body.
+fn functions(code: &str) -> Vec<(usize, String, usize)> {
+    let mut found = Vec::new();
+    for (at, _) in code.match_indices("fn ") {
+        let name: String = code[at + 3..].chars().take_while(|&c| is_of_word(c)).collect();
+        let Some(length) = lines_to_closing_brace(&code[at..]) else { continue };
+        if !name.is_empty() && !code[..at].ends_with(is_of_word) {
+            found.push((1 + code[..at].matches('\n').count(), name, length));
+        }
+    }
+    found
+}
+
+/// Number of lines up to the brace that closes the first one; none where a semicolon outside brackets comes before it.
+fn lines_to_closing_brace(code: &str) -> Option<usize> {
+    let (mut braces, mut brackets) = (0, 0);
+    for (at, letter) in code.char_indices() {
+        match letter {
+            '(' | '[' => brackets += 1,
+            ')' | ']' => brackets -= 1,
+            '{' => braces += 1,
+            '}' => braces -= 1,
+            ';' if braces == 0 && brackets == 0 => return None,
+            _ => {}
+        }
+        if letter == '}' && braces == 0 {
+            return Some(1 + code[..at].matches('\n').count());
+        }
+    }
+    None
+}
+
+/// Numbers at the ends of displayed equations, `\qquad (N)`, in the order of the text.
+fn equation_numbers(text: &str) -> Vec<u32> {
+    let ends = text.lines().filter_map(|line| line.trim_end().strip_suffix(')')?.rsplit_once("\\qquad ("));
+    ends.filter_map(|(_, number)| number.parse().ok()).collect()
+}
+
+/// Line and number of every citation `(Eq. 1)` or `(Eqs. 1, 2)`.
+fn citations(text: &str) -> Vec<(usize, u32)> {
+    let mut found = Vec::new();
+    for (line, content) in numbered(text) {
+        for (at, _) in content.match_indices("(Eq") {
+            let inside = content[at..].split(')').next().unwrap_or_default();
+            let numbers = inside.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse().ok());
+            found.extend(numbers.map(|number| (line, number)));
+        }
+    }
+    found
+}
+
+/// Line and target of every Markdown link or picture outside code.
+fn links(text: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    let mut fenced = false;
+    for (line, content) in numbered(text) {
+        fenced ^= content.trim_start().starts_with("```");
+        let prose: String = content.split('`').step_by(2).collect();
+        for (at, _) in prose.match_indices("](").filter(|_| !fenced) {
+            let target = prose[at + 2..].split([')', ' ']).next().unwrap_or_default();
+            found.push((line, target.to_owned()));
+        }
+    }
+    found
+}
+
+/// `target` as seen from the folder of `from`, without `.` and `..`.
+fn join(from: &str, target: &str) -> String {
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in target.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Every rule seen failing.
+
+fn file(path: &str, text: &str) -> File {
+    File { path: path.to_owned(), text: text.to_owned() }
+}
+
+fn count(problems: fn(&File) -> Vec<String>, path: &str, text: &str) -> usize {
+    problems(&file(path, text)).len()
+}
+
+#[test]
+fn rooms_rule_is_seen_failing() {
+    let rule = |path, text| count(room_problems, path, text);
+    assert_eq!(rule("src/contact/law.rs", "use crate::geometry::Point; // crate::io is a comment"), 0);
+    assert_eq!(rule("src/contact/law.rs", "use crate::state::Slope;"), 1);
+    assert_eq!(rule("src/contact/law.rs", "use crate::{geometry::Point, step::{Dt, X}, state};"), 2);
+    assert_eq!(rule("src/cover/mod.rs", "pub fn f(c: &crate::model::Case) -> crate::geometry::Point {}"), 1);
+    assert_eq!(rule("src/cover/mod.rs", "use super::step::Dt; use super::geometry::Point;"), 2);
+    assert_eq!(rule("src/cover/mod.rs", "mod tests { use super::*; }"), 0);
+    assert_eq!(rule("src/cover/star.rs", "use super::super::step::Dt;"), 1);
+    assert_eq!(rule("src/cover/star.rs", "use super::block::Block;"), 0);
+    assert_eq!(rule("src/cover/star.rs", "use crate::*;"), 1);
+    assert_eq!(rule("src/solver/mod.rs", ""), 1);
+    assert_eq!(rule("src/util.rs", ""), 1);
+    assert_eq!(rule("src/lib.rs", "pub use crate::io::X;"), 0);
+}
+
+#[test]
+fn width_rule_is_seen_failing() {
+    let wide = "é".repeat(121);
+    assert_eq!(count(width_problems, "src/a.rs", &wide), 1);
+    assert_eq!(count(width_problems, "src/a.rs", &"é".repeat(120)), 0);
+    assert_eq!(count(width_problems, "a.md", &format!("{wide}\n| {wide} |\n<https://{wide}>")), 1);
+    assert_eq!(count(width_problems, "a.toml", &format!("| {wide} |")), 1);
+}
+
+#[test]
+fn length_rule_is_seen_failing() {
+    let function = |lines: usize| format!("fn f(a: [u8; 3]) -> u8 {{\n{}}}", "// }\n".repeat(lines - 2));
+    assert_eq!(count(length_problems, "src/a.rs", &function(60)), 0);
+    assert_eq!(count(length_problems, "src/a.rs", &function(61)), 1);
+    assert_eq!(count(length_problems, "tests/a.rs", &function(80)), 0);
+    assert_eq!(count(length_problems, "tests/a.rs", &function(81)), 1);
+    let declared = format!("trait T {{ fn f();\n{} }}", "\n".repeat(90));
+    assert_eq!(count(length_problems, "src/a.rs", &declared), 0);
+}
+
+#[test]
+fn words_rule_is_seen_failing() {
+    let rule = |path, text| count(word_problems, path, text);
+    for word in ["todo!()", "unimplemented!()", "dbg!(1)", "unsafe {}", "#[ignore]", "#[ignore = \"slow\"]"] {
+        assert_eq!(rule("tests/a.rs", word), 1, "{word}");
+    }
+    for word in ["println!()", "eprintln!()", "print!()", "eprint!()"] {
+        assert_eq!((rule("src/io/a.rs", word), rule("cli/src/a.rs", word)), (1, 0), "{word}");
+    }
+    assert_eq!(rule("ffi/src/a.rs", "unsafe {}"), 0);
+    assert_eq!(rule("src/lib.rs", "#![forbid(unsafe_code)]"), 0);
+    assert_eq!(rule("src/contact/a.rs", "use std::collections::HashMap; fn f(x: HashSet<u8>) {}"), 2);
+    assert_eq!(rule("src/io/a.rs", "use std::collections::HashMap;"), 0);
+    assert_eq!(rule("src/step/a.rs", "// unsafe HashMap println!\nlet s = \"todo!() // \\\" dbg!\";"), 0);
+}
+
+#[test]
+fn marks_rule_is_seen_failing() {
+    let mark = concat!("// TO", "DO: later\n// FIX", "ME\n# X", "XX");
+    assert_eq!(count(mark_problems, "src/a.rs", mark), 3);
+    assert_eq!(count(mark_problems, "src/a.rs", "// todo list, TODOS"), 0);
+}
+
+#[test]
+fn hosts_rule_is_seen_failing() {
+    let line = concat!("pip install --index", "-url x");
+    assert_eq!(count(host_problems, ".ci/run", line), 1);
+    assert_eq!(count(host_problems, "a.md", concat!("see crates", ".io")), 1);
+    assert_eq!(count(host_problems, "Cargo.lock", concat!("see crates", ".io")), 0);
+    assert_eq!(count(host_problems, "a.rs", "http://www.w3.org/2000/svg"), 0);
+}
+
+#[test]
+fn headers_rule_is_seen_failing() {
+    assert_eq!(count(header_problems, "tests/a.rs", "use std::path::Path;"), 1);
+    assert_eq!(count(header_problems, "tests/a.rs", "//! A claim."), 0);
+    assert_eq!(count(header_problems, "tests/common/mod.rs", "use std::path::Path;"), 0);
+}
+
+#[test]
+fn equations_rule_is_seen_failing() {
+    assert_eq!(equation_numbers("$$\na=b \\qquad (1)\n$$\nsee (7)\n$$\nc \\qquad (3)\n$$"), [1, 3]);
+    let cites = |text| citation_problems(&file("src/a.rs", text), &[1, 2, 3]).len();
+    assert_eq!(cites("/// Mass (Eq. 2), energy (Eqs. 1, 3)"), 0);
+    assert_eq!(cites("/// Mass (Eq. 4)"), 1);
+    assert_eq!(cites("/// Mass (Eqs. 1–9)"), 1);
+}
+
+#[test]
+fn links_rule_is_seen_failing() {
+    let exists = |path: &str| path == "docs/theory.md" || path == "README.md";
+    let dead = |path, text| link_problems(&file(path, text), &exists).len();
+    assert_eq!(dead("README.md", "[a](docs/theory.md#x) [b](https://a.b/c) [c](#here) `[d](no.md)`"), 0);
+    assert_eq!(dead("README.md", "![a](docs/absent.png)"), 1);
+    assert_eq!(dead("docs/a.md", "[a](theory.md) [b](../README.md) [c](README.md)"), 1);
+    assert_eq!(dead("README.md", "```\n[a](absent.md)\n```"), 0);
+}
+
+#[test]
+fn shared_data_rule_is_seen_failing() {
+    assert_eq!(count(shared_data_problems, "examples/data/KB11.json", ""), 1);
+    assert_eq!(count(shared_data_problems, "examples/tyrol_gar_profile.csv", ""), 1);
+    assert_eq!(count(shared_data_problems, "tests/traces_kb11.rs", ""), 0);
+}
+
+#[test]
+fn code_is_told_from_comments_and_literals() {
+    let text = "a /* b /* c */ d */ e \"f \\\" g\" h r#\"i \" j\"# k 'l' m '\\'' n 'o: loop { p } r.q // s\nt";
+    let kept: String = code_only(text).chars().filter(|c| !c.is_whitespace()).collect();
+    assert_eq!(kept, "aehkmn'o:loop{p}r.qt");
+    assert_eq!(code_only("/* a\nb */").matches('\n').count(), 1);
+}

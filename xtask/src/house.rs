@@ -1,0 +1,129 @@
+//! Where the repository and the built programs are, and how children are run.
+
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Paths of the repository.
+pub struct House {
+    /// Root of the repository.
+    pub root: PathBuf,
+    /// Cargo's target directory.
+    pub target: PathBuf,
+    cargo: OsString,
+}
+
+impl House {
+    /// Asks cargo for the paths.
+    ///
+    /// # Errors
+    /// When `cargo metadata` fails or tells no target directory.
+    pub fn find() -> Result<Self, String> {
+        let manifest = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+        let root = Path::new(&manifest).parent().ok_or("xtask has no parent directory")?.to_owned();
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut ask = Command::new(&cargo);
+        ask.args(["metadata", "--no-deps", "--format-version", "1"]).current_dir(&root);
+        let answer = ask.output().map_err(|error| format!("cargo metadata: {error}"))?;
+        let target = json_string(&String::from_utf8_lossy(&answer.stdout), "target_directory");
+        let target = target.ok_or("cargo metadata names no target_directory")?.into();
+        Ok(Self { root, target, cargo })
+    }
+
+    /// The command line program as `cargo build --release` leaves it.
+    pub fn enmm(&self) -> PathBuf {
+        self.target.join("release").join(format!("enmm{}", std::env::consts::EXE_SUFFIX))
+    }
+
+    /// A command of cargo in the root.
+    pub fn cargo(&self, args: &[&str]) -> Command {
+        let mut command = self.command(&self.cargo);
+        command.args(args);
+        command
+    }
+
+    /// A command in the root.
+    pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
+        let mut command = Command::new(program);
+        command.current_dir(&self.root).stdin(Stdio::null());
+        command
+    }
+}
+
+/// Runs `command` to its end with its output shown.
+///
+/// # Errors
+/// When it cannot start or exits with another status than 0.
+pub fn run(command: &mut Command) -> Result<(), String> {
+    let status = command.status().map_err(|error| cannot_start(command, &error))?;
+    if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", name(command))) }
+}
+
+/// Runs `command`, shows its standard output and returns it by lines, with whether it succeeded.
+///
+/// # Errors
+/// When it cannot start.
+pub fn run_and_listen(command: &mut Command) -> Result<(Vec<String>, bool), String> {
+    let mut child = command.stdout(Stdio::piped()).spawn().map_err(|error| cannot_start(command, &error))?;
+    let mut lines = Vec::new();
+    if let Some(stdout) = child.stdout.take() {
+        for line in BufReader::new(stdout).split(b'\n').map_while(Result::ok) {
+            let line = String::from_utf8_lossy(&line).trim_end().to_owned();
+            println!("{line}");
+            lines.push(line);
+        }
+        let _ = std::io::stdout().flush();
+    }
+    let status = child.wait().map_err(|error| cannot_start(command, &error))?;
+    Ok((lines, status.success()))
+}
+
+/// Runs `command` and returns its standard output.
+///
+/// # Errors
+/// When it cannot start or exits with another status than 0.
+pub fn capture(command: &mut Command) -> Result<Vec<u8>, String> {
+    let output = command.stderr(Stdio::inherit()).output().map_err(|error| cannot_start(command, &error))?;
+    if output.status.success() {
+        Ok(output.stdout)
+    } else {
+        Err(format!("{} ended with {}", name(command), output.status))
+    }
+}
+
+fn name(command: &Command) -> String {
+    let words: Vec<_> = command.get_args().map(|word| word.to_string_lossy()).collect();
+    format!("`{} {}`", Path::new(command.get_program()).display(), words.join(" "))
+}
+
+fn cannot_start(command: &Command, error: &std::io::Error) -> String {
+    format!("{} did not run: {error}", name(command))
+}
+
+/// Value of the first string `key` in a JSON text.
+fn json_string(text: &str, key: &str) -> Option<String> {
+    let (_, rest) = text.split_once(&format!("\"{key}\":"))?;
+    let mut letters = rest.trim_start().strip_prefix('"')?.chars();
+    let mut value = String::new();
+    loop {
+        match letters.next()? {
+            '"' => return Some(value),
+            '\\' => value.push(letters.next()?),
+            letter => value.push(letter),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_string_takes_the_value_without_escapes() {
+        let text = r#"{"version":1,"target_directory":"C:\\work\\target","x":""}"#;
+        assert_eq!(json_string(text, "target_directory").as_deref(), Some(r"C:\work\target"));
+        assert_eq!(json_string(text, "version"), None);
+        assert_eq!(json_string(text, "absent"), None);
+    }
+}

@@ -1,0 +1,72 @@
+//! A virtual environment with what `python_tests` needs, and pytest in it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::counts::{self, Counts};
+use crate::house::{self, House};
+
+/// Short case whose results the Python tests read.
+const CASE: &str = "python_tests/short.toml";
+const REQUIREMENTS: &str = "python_tests/requirements.txt";
+const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
+
+/// Runs the short case, then pytest over its results.
+///
+/// # Errors
+/// When the environment cannot be made or the case does not run.
+pub fn test(house: &House) -> Result<Counts, String> {
+    let python = environment(house)?;
+    let results = house.target.join("python-results");
+    if results.exists() {
+        std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
+    }
+    house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
+    let mut pytest = house.command(python);
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
+    pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
+    let (lines, good) = house::run_and_listen(&mut pytest)?;
+    let counts = counts::of_pytest(&lines);
+    if !good && counts.failed == 0 {
+        return Err("pytest failed without a failed test".to_owned());
+    }
+    Ok(counts)
+}
+
+/// Makes the environment where it is missing or was made for other requirements; returns its Python.
+fn environment(house: &House) -> Result<PathBuf, String> {
+    let (system, version) = system_python()?;
+    let wanted = std::fs::read_to_string(house.root.join(REQUIREMENTS));
+    let wanted = format!("{version}\n{}", wanted.map_err(|error| format!("{REQUIREMENTS}: {error}"))?);
+    let place = house.target.join("venv");
+    let python = place.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let stamp = place.join("enmm-requirements");
+    if python.exists() && std::fs::read_to_string(&stamp).is_ok_and(|found| found == wanted) {
+        return Ok(python);
+    }
+    make_environment(system, &place)?;
+    let mut pip = house.command(&python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]);
+    house::run(&mut pip)?;
+    std::fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))?;
+    Ok(python)
+}
+
+fn make_environment(system: &str, place: &Path) -> Result<(), String> {
+    let mut make = Command::new(system);
+    make.args(["-m", "venv", "--clear"]).arg(place).stdout(Stdio::null()).stderr(Stdio::null());
+    let made = make.status().is_ok_and(|status| status.success());
+    let problem = || format!("{system} -m venv {} failed: install Python's venv module {REMEDY}", place.display());
+    if made { Ok(()) } else { Err(problem()) }
+}
+
+/// The first Python 3 on the path, with its version.
+fn system_python() -> Result<(&'static str, String), String> {
+    let version = |name: &str| {
+        let output = Command::new(name).arg("--version").output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+        text.starts_with("Python 3.").then_some(text)
+    };
+    let found = ["python3", "python"].into_iter().find_map(|name| version(name).map(|text| (name, text)));
+    found.ok_or_else(|| format!("python3 was not found: install Python 3.11 or newer {REMEDY}"))
+}

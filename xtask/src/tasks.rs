@@ -1,0 +1,205 @@
+//! The tasks, each a list of steps.
+
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use crate::counts::{self, Counts};
+use crate::house::{self, House};
+use crate::python;
+
+const SCHEMA: &str = "docs/case.schema.json";
+const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
+/// Pictures of the main case that the README shows.
+const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
+
+/// How much of the tests to run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// Everything.
+    Full,
+    /// Without documentation, schema and Python.
+    Quick,
+}
+
+/// The one test command: every step runs, whatever failed before, but for those that need the build.
+///
+/// It fails when a step or a test failed, or no test ran.
+pub fn test(house: &House, extent: Extent) -> ExitCode {
+    let plain = |args: &[&str]| house::run(&mut house.cargo(args)).map(|()| Counts::default());
+    let mut steps = Steps::default();
+    steps.take("format", || plain(&["fmt", "--all", "--check"]));
+    steps.take("lints", || plain(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"]));
+    if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
+        return steps.close();
+    }
+    steps.take("tests", || cargo_test(house, &["--no-fail-fast"]));
+    if extent == Extent::Full {
+        steps.take("documentation", || {
+            let mut doc = house.cargo(&["doc", "--workspace", "--no-deps"]);
+            house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
+        });
+        steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
+        steps.take("python", || python::test(house));
+    }
+    steps.close()
+}
+
+/// Runs the long campaigns; it fails when one failed, or there is none.
+pub fn long(house: &House) -> ExitCode {
+    let mut steps = Steps::default();
+    steps.take("long campaigns", || cargo_test(house, &["--no-fail-fast", "--", "long_"]));
+    steps.close()
+}
+
+/// Writes the schema of the case file as the command line tells it.
+///
+/// # Errors
+/// When the program does not build or run, or the file cannot be written.
+pub fn write_schema(house: &House) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let schema = schema(house)?;
+    std::fs::write(house.root.join(SCHEMA), schema).map_err(|error| format!("{SCHEMA}: {error}"))?;
+    println!("wrote {SCHEMA}");
+    Ok(())
+}
+
+/// Runs the main case and copies its pictures to where the README shows them.
+///
+/// # Errors
+/// When the case does not run or a picture is missing.
+pub fn write_pictures(house: &House) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let results = house.target.join("picture-results");
+    house::run(house.command(house.enmm()).args(["run", MAIN_CASE, "-o"]).arg(&results))?;
+    let pictures = house.root.join("docs/pictures");
+    std::fs::create_dir_all(&pictures).map_err(|error| format!("{}: {error}", pictures.display()))?;
+    for name in PICTURES {
+        let from = results.join(name);
+        std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
+        println!("wrote docs/pictures/{name}");
+    }
+    Ok(())
+}
+
+/// Runs `cargo test` with `args` at the end; campaigns named `long_*` do their work only when asked for by that name.
+fn cargo_test(house: &House, args: &[&str]) -> Result<Counts, String> {
+    let mut test: Command = house.cargo(&["test", "--release", "--workspace"]);
+    test.args(args);
+    if args.contains(&"long_") {
+        test.env("ENMM_LONG", "1");
+    }
+    let (lines, good) = house::run_and_listen(&mut test)?;
+    let counts = counts::of_cargo(&lines);
+    if !good && counts.failed == 0 {
+        return Err("cargo test failed without a failed test: see above".to_owned());
+    }
+    Ok(counts)
+}
+
+fn schema(house: &House) -> Result<Vec<u8>, String> {
+    house::capture(house.command(house.enmm()).arg("schema"))
+}
+
+fn compare_schema(house: &House) -> Result<(), String> {
+    let told = schema(house)?;
+    let committed = std::fs::read(house.root.join(SCHEMA)).map_err(|error| format!("{SCHEMA}: {error}"))?;
+    if told == committed {
+        return Ok(());
+    }
+    let line =
+        1 + told.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n')).take_while(|(a, b)| a == b).count();
+    Err(format!("{SCHEMA} differs from `enmm schema` from line {line} on: run `cargo xtask schema` and commit"))
+}
+
+/// Steps that have run.
+#[derive(Default)]
+struct Steps {
+    counts: Counts,
+    failed: Vec<String>,
+}
+
+impl Steps {
+    /// Runs one step under a header and tells whether it is good.
+    fn take(&mut self, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> bool {
+        println!("\n== {name}");
+        let start = Instant::now();
+        let verdict = self.judge(name, act());
+        let seconds = start.elapsed().as_secs_f64();
+        match &verdict {
+            Ok(()) => println!("-- {name}: ok, {seconds:.1} s"),
+            Err(problem) => println!("-- {name}: FAILED, {seconds:.1} s: {problem}"),
+        }
+        verdict.is_ok()
+    }
+
+    /// Counts the tests of a step; one that is bad without a failed test counts as one failure.
+    fn judge(&mut self, name: &str, result: Result<Counts, String>) -> Result<(), String> {
+        let (counts, problem) = match result {
+            Ok(counts) if counts.failed + counts.skipped == 0 => (counts, None),
+            Ok(counts) => (counts, Some(format!("{} failed, {} switched off", counts.failed, counts.skipped))),
+            Err(problem) => (Counts::default(), Some(problem)),
+        };
+        self.counts += counts;
+        let Some(problem) = problem else { return Ok(()) };
+        if counts.failed == 0 {
+            self.counts.failed += 1;
+        }
+        self.failed.push(name.to_owned());
+        Err(problem)
+    }
+
+    /// Prints what failed and, last of all, the closing line.
+    fn close(self) -> ExitCode {
+        let Counts { passed, failed, .. } = self.counts;
+        println!();
+        if passed + failed == 0 {
+            println!("no test ran");
+        } else if failed > 0 {
+            println!("failed: {}", self.failed.join(", "));
+        }
+        println!("{passed} passed, {failed} failed");
+        if passed > 0 && failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(results: &[Result<Counts, String>]) -> Steps {
+        let mut steps = Steps::default();
+        for result in results {
+            let _ = steps.judge("step", result.clone());
+        }
+        steps
+    }
+
+    fn counts(passed: u64, failed: u64, skipped: u64) -> Counts {
+        Counts { passed, failed, skipped }
+    }
+
+    #[test]
+    fn good_steps_close_well() {
+        let steps = steps(&[Ok(Counts::default()), Ok(counts(3, 0, 0)), Ok(counts(2, 0, 0))]);
+        assert_eq!(steps.counts, counts(5, 0, 0));
+        assert!(steps.close() == ExitCode::SUCCESS);
+    }
+
+    #[test]
+    fn a_bad_step_never_stands_beside_zero_failed() {
+        let broken = steps(&[Err("lint".to_owned()), Ok(counts(3, 0, 0))]);
+        assert_eq!(broken.counts, counts(3, 1, 0));
+        assert!(broken.close() == ExitCode::FAILURE);
+        let skipping = steps(&[Ok(counts(3, 0, 1))]);
+        assert_eq!(skipping.counts.failed, 1);
+        assert!(skipping.close() == ExitCode::FAILURE);
+        let failing = steps(&[Ok(counts(3, 2, 1))]);
+        assert_eq!(failing.counts.failed, 2);
+        assert!(failing.close() == ExitCode::FAILURE);
+    }
+
+    #[test]
+    fn no_test_at_all_is_a_failure() {
+        assert!(steps(&[Ok(Counts::default())]).close() == ExitCode::FAILURE);
+    }
+}
