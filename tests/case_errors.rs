@@ -152,7 +152,7 @@ fn number_that_is_not_finite_is_refused() {
 }
 
 #[test]
-fn value_out_of_range_says_value_and_limit() {
+fn strength_out_of_range_says_value_and_limit() {
     for (from, to, message) in [
         (
             "poisson = 0.25",
@@ -186,6 +186,21 @@ fn value_out_of_range_says_value_and_limit() {
             "joint_law.rough.tension: is -1000 Pa, must be at least 0 and at most 1e12; the tensile strength is \
              written positive",
         ),
+    ] {
+        assert_refused(from, to, &format!("LINE: {message}"));
+    }
+}
+
+#[test]
+fn poisson_ratio_of_one_half_needs_plane_stress() {
+    let marl = "poisson = 0.3\nplane = \"stress\"";
+    assert!(parse_case(&edited(marl, "poisson = 0.5\nplane = \"stress\""), "slope.toml", Path::new("")).is_ok());
+    assert!(error_of(&edited(marl, "poisson = 0.5")).contains("rock.marl.poisson: is 0.5, must be greater than -1 and"));
+}
+
+#[test]
+fn solver_value_out_of_range_says_value_and_limit() {
+    for (from, to, message) in [
         (
             "dt_safety = 0.8",
             "dt_safety = 1.1",
@@ -217,6 +232,14 @@ fn value_out_of_range_says_value_and_limit() {
             "solver.memory_limit: is 0, must be at least 1 and at most 18446744073709551615; 8589934592 (8 GiB) is \
              the default",
         ),
+    ] {
+        assert_refused(from, to, &format!("LINE: {message}"));
+    }
+}
+
+#[test]
+fn time_or_place_out_of_range_says_value_and_limit() {
+    for (from, to, message) in [
         (
             "duration = 5.0",
             "duration = 0",
