@@ -14,6 +14,8 @@ const FIRST_SIGHT_DEPTH: f64 = 3e-3;
 const HELD_BEYOND: f64 = 1e-3;
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
 const CORNER_TOLERANCE: f64 = 1e-9;
+/// Difference of two depths, relative to the mesh size, below which they count as equal.
+const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance by which a foot may miss an edge inside a side, relative to the mesh size.
 const WEDGE_TOLERANCE: f64 = 0.05;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -212,8 +214,7 @@ impl Narrow<'_> {
                 }
                 let loser = match self.corner_between(a.side, b.side) {
                     Some(Corner::Reflex) => None,
-                    Some(Corner::Convex) => self.loser_round_corner(&a, &b),
-                    None => self.loser_across_rock(&a, &b),
+                    corner => self.loser(&a, &b, corner.is_some()),
                 };
                 if let Some(first) = loser
                     && let Some(pick) = &mut picks[if first { i } else { j }]
@@ -235,22 +236,21 @@ impl Narrow<'_> {
         }
     }
 
-    /// Which of two admitted sides round a convex corner loses: true for the first.
-    fn loser_round_corner(&self, a: &Pick, b: &Pick) -> Option<bool> {
-        let contest = a.admitted && b.admitted && (a.gap <= 0.0 || b.gap <= 0.0);
-        contest.then(|| match (Self::is_held(a), Self::is_held(b)) {
-            (true, false) => false,
-            (false, true) => true,
-            _ => a.gap < b.gap,
-        })
-    }
-
-    /// Which of two sides with rock between them loses: the deeper one.
-    fn loser_across_rock(&self, a: &Pick, b: &Pick) -> Option<bool> {
+    /// Which of two sides with rock between them the node does not enter: true for the first.
+    fn loser(&self, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
-        let behind = if shallow.gap > 0.0 { -deep.gap > shallow.gap } else { shallow.admitted };
-        behind.then_some(first_is_deeper)
+        let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
+        let deep_loses = if Self::is_held(deep) {
+            Self::is_held(shallow) && shallow.admitted || !adjacent && behind && shallow.gap > 0.0
+        } else {
+            behind || shallow.admitted && shallow.gap <= 0.0
+        };
+        if deep_loses {
+            return Some(first_is_deeper);
+        }
+        let contest = deep.gap <= 0.0 && shallow.gap <= 0.0 && deep.admitted && shallow.admitted;
+        contest.then_some(!first_is_deeper)
     }
 
     /// Tributary length (m) of a node over an edge, theory Eq. (13).
