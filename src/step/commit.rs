@@ -56,6 +56,9 @@ impl Step<'_> {
     }
 
     /// Works of this sub-step: each force by the mean of the velocities before and after it, theory Eq. (18).
+    ///
+    /// Damping acts between the drift before, whose velocity changed strain and potential energy, and the kick: it takes
+    /// half a step of the work of those forces along with the kinetic energy.
     fn works(&self, dt: f64) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let mut works = Ledger { damping: scratch.motion.iter().map(|m| m.damped).sum(), ..Ledger::default() };
@@ -82,6 +85,8 @@ impl Step<'_> {
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
             works.external_work += force.dot(&(scratch.damped[i] + scratch.predicted[i])) * (0.5 * kick_dt);
+            let conserving = scratch.force[i] - scratch.load_force[i] + slope.gravity * slope.metric.row_sum[i];
+            works.damping += conserving.dot(&(state.velocity[i] - scratch.damped[i])) * (0.5 * kick_dt);
         }
         works
     }
