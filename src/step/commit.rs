@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::contact::ContactState;
+use crate::contact::{self, ContactState};
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
@@ -41,7 +41,7 @@ impl Step<'_> {
             for i in range.clone() {
                 scratch.predicted[i] += scratch.increment[i];
             }
-            if push.impulse == Vector::zeros() && push.moment == 0.0 || !metric.is_free(block) {
+            if *push == contact::BlockPush::default() || !metric.is_free(block) {
                 continue;
             }
             let share = metric.inverse_total[block];
