@@ -19,8 +19,10 @@ pub struct BlockPush {
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepOptions {
-    /// Step (s).
+    /// Step (s) over which places move.
     pub dt: f64,
+    /// Time (s) over which forces act: the mean of this step and the one before it, theory Eq. (10).
+    pub kick: f64,
     /// θ of the contact springs.
     pub theta: f64,
     /// Settled when no force changes by more than this share of the largest.
@@ -75,10 +77,10 @@ impl OpenClose<'_> {
     fn warm_start(&mut self, contacts: &mut [VertexEdge], supports: &[Support], rows: &mut [SupportRow]) {
         for contact in contacts {
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            self.push(contact, force * self.options.dt);
+            self.push(contact, force * self.options.kick);
         }
         for row in rows {
-            supports[row.support as usize].push(row.force * self.options.dt, self.metric, self.increment);
+            supports[row.support as usize].push(row.force * self.options.kick, self.metric, self.increment);
         }
     }
 
@@ -96,12 +98,12 @@ impl OpenClose<'_> {
         let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
         for row in rows {
             let support = &supports[row.support as usize];
-            let dt = self.options.dt;
+            let SweepOptions { dt, kick, .. } = self.options;
             let velocity = row.approach + support.sample(self.increment);
             let (k, w) = (support.stiffness, row.compliance);
-            let force = (support.preload - k * (row.displacement + dt * velocity) + k * dt * dt * w * row.force)
-                / (1.0 + k * dt * dt * w);
-            support.push((force - row.force) * dt, self.metric, self.increment);
+            let force = (support.preload - k * (row.displacement + dt * velocity) + k * dt * kick * w * row.force)
+                / (1.0 + k * dt * kick * w);
+            support.push((force - row.force) * kick, self.metric, self.increment);
             change = change.max((force - row.force).abs());
             row.force = force;
             largest = largest.max(force.abs());
@@ -111,20 +113,20 @@ impl OpenClose<'_> {
 
     /// Judges one contact open, slip or lock; returns the change of its force (N/m).
     fn judge(&mut self, contact: &mut VertexEdge) -> f64 {
-        let dt = self.options.dt;
+        let SweepOptions { dt, kick, .. } = self.options;
         let relative = self.increment_at(contact, 0) - self.increment_at(contact, 1);
         let tangent = contact.tangent();
         let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
         let shear_velocity = contact.approach[1] + relative.dot(&tangent);
         let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
         let [a, b] = [0, 1].map(|k| contact.stiffness[k] * self.options.theta * dt);
-        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * dt);
+        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
         let normal = (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
         let shear = (contact.history.shear_stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
         if step != [0.0; 2] {
-            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * dt);
+            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * kick);
         }
         step[0].abs().max(step[1].abs())
     }

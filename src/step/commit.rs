@@ -62,10 +62,11 @@ impl Step<'_> {
     fn works(&self, dt: f64) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let mut works = Ledger { damping: scratch.motion.iter().map(|m| m.damped).sum(), ..Ledger::default() };
+        let kick_dt = 0.5 * (state.dt_last + dt);
         for contact in &scratch.contacts {
             let before = contact.relative(&scratch.damped);
             let after = contact.relative(&scratch.predicted);
-            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * dt);
+            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
             works.contact_work +=
                 contact.history.normal_force * normal + contact.history.shear_force * shear;
             if contact.history.state == ContactState::Slip {
@@ -78,9 +79,8 @@ impl Step<'_> {
         for row in &scratch.rows {
             let support = &slope.supports[row.support as usize];
             let velocity = 0.5 * (support.sample(&scratch.damped) + support.sample(&scratch.predicted));
-            works.support_work += row.force * velocity * dt;
+            works.support_work += row.force * velocity * kick_dt;
         }
-        let kick_dt = 0.5 * (state.dt_last + dt);
         let extra = self.acceleration() - slope.gravity;
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];

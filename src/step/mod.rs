@@ -207,11 +207,12 @@ impl Step<'_> {
     /// Open–close iteration on the predicted velocities.
     fn open_close(&mut self, dt: f64) -> SweepReport {
         let clock = Instant::now();
+        let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         scratch.increment.fill(Vector::zeros());
         scratch.push.fill(contact::BlockPush::default());
         let options =
-            SweepOptions { dt, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
+            SweepOptions { dt, kick, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
         let iteration = OpenClose {
             metric: &scratch.metric,
             options,
