@@ -18,23 +18,21 @@ pub enum Damping {
     Mass(f64),
 }
 
-/// Rigid motion of a block and what one kick took from it.
+/// Where a block is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockMotion {
     /// Centroid (m).
     pub centre: Point,
-    /// Kinetic energy taken by damping in this step (J/m).
-    pub damped: f64,
-    /// C = (J_D/J − 1)/J_D' of a free block, J_D' at the current places; 0 of a held one.
+    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current places; 0 of a held one.
     pub spin: f64,
 }
 
-/// Sums over the covers of a block that describe its motion.
+/// A velocity field of a block, split into its rigid part and sums over the rest.
 struct Sums {
     velocity: Vector,
+    linear: Vector,
     moment: f64,
-    square: f64,
-    /// Polar inertia of the lumped masses about their own centroid at the current places.
+    /// Polar inertia of the lumped masses about their own centroid at the current places (kg·m²/m).
     polar: f64,
 }
 
@@ -71,30 +69,26 @@ impl Kick<'_> {
         first / self.metric.total[self.block]
     }
 
-    /// Rigid velocity, spin and the sums of the deformation, theory Eq. (5).
-    fn sums(&self, centre: Point) -> Sums {
+    /// Rigid velocity of a field and the sums of what is left, theory Eq. (5).
+    fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let metric = self.metric;
         let total = metric.total[self.block];
-        let velocity =
-            self.covers.clone().map(|i| self.velocity[i] * metric.inertial[i]).sum::<Vector>() / total;
-        let (mut moment, mut square, mut polar) = (0.0, 0.0, 0.0);
-        let (mut first, mut linear) = (Vector::zeros(), Vector::zeros());
+        let velocity = self.covers.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
+        let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
         for i in self.covers.clone() {
-            let (m, d, u) = (metric.mass[i], self.place(i) - centre, self.velocity[i] - velocity);
+            let (m, d, u) = (metric.mass[i], self.place(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
-            square += m * u.norm_squared();
             polar += m * d.norm_squared();
         }
         moment -= first.perp(&linear) / total;
-        square -= linear.norm_squared() / total;
         polar -= first.norm_squared() / total;
-        Sums { velocity, moment, square, polar }
+        Sums { velocity, linear, moment, polar }
     }
 
-    /// C of a free block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
-    fn spin(&self, centre: Point) -> f64 {
+    /// C at the current places: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
+    fn correction(&self, centre: Point) -> f64 {
         let (metric, block) = (self.metric, self.block);
         let (mut first, mut polar) = (Vector::zeros(), 0.0);
         for i in self.covers.clone() {
@@ -105,26 +99,54 @@ impl Kick<'_> {
         polar -= first.norm_squared() / metric.total[block];
         (metric.polar_lumped[block] / metric.polar[block] - 1.0) / polar
     }
+
+    /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
+    fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
+        let sum: f64 =
+            self.covers.clone().map(|i| self.metric.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity))).sum();
+        sum - of.linear.dot(&with.linear) / self.metric.total[self.block]
+    }
+
+    fn spin(&self, sums: &Sums) -> f64 {
+        sums.moment / self.metric.polar_lumped[self.block]
+    }
 }
 
 /// Kinetic energy (J/m) of a block in its metric, theory Eq. (5).
 pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (metric, block) = (kick.metric, kick.block);
-    if !metric.is_free(block) {
-        return kick.covers.clone().map(|i| 0.5 * metric.mass[i] * kick.velocity[i].norm_squared()).sum();
-    }
-    let sums = kick.sums(kick.centre());
+    let sums = kick.sums(kick.velocity, kick.centre());
     let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
     0.5 * metric.total[block] * sums.velocity.norm_squared()
-        + 0.5 * sums.square
+        + 0.5 * kick.product(kick.velocity, kick.velocity, &sums, &sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
+}
+
+/// Work (J/m) that damping took in a step that ended with velocities `after`: the lost momentum times the mean of the
+/// velocities before and after, theory Eq. (18).
+pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
+    let (factor, whole) = match kick.damping {
+        Damping::Deformation(factor) => (factor, 0.0),
+        Damping::Mass(factor) => (factor, 1.0),
+    };
+    if factor >= 1.0 {
+        return 0.0;
+    }
+    let (metric, block, centre) = (kick.metric, kick.block, kick.centre());
+    let [old, new] = [kick.velocity, after].map(|field| kick.sums(field, centre));
+    let turning = |with: &Sums| old.moment * with.moment / old.polar;
+    let share = metric.polar[block] / metric.polar_lumped[block];
+    let rigid = |with: &Sums| metric.total[block] * old.velocity.dot(&with.velocity) + share * turning(with);
+    let deforming = |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - turning(with);
+    let both = deforming(kick.velocity, &old) + deforming(after, &new) + whole * (rigid(&old) + rigid(&new));
+    0.5 * (1.0 - factor) * both
 }
 
 /// Rigid motion of a block in its metric: centroid (m), its velocity (m/s) and the spin (rad/s).
 pub fn rigid_motion(kick: &Kick) -> (Point, Vector, f64) {
     let centre = kick.centre();
-    let sums = kick.sums(centre);
-    (centre, sums.velocity, sums.moment / kick.metric.polar_lumped[kick.block])
+    let sums = kick.sums(kick.velocity, centre);
+    (centre, sums.velocity, kick.spin(&sums))
 }
 
 /// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
@@ -136,14 +158,14 @@ pub fn rigid_velocity(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vecto
 }
 
 /// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes the `damped` and the
-/// `predicted` velocities and returns centroid and damped energy, theory Eqs. (3), (10)–(12).
+/// `predicted` velocities, theory Eqs. (3), (10)–(12).
 pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mut [Vector]) -> BlockMotion {
     let centre = kick.centre();
-    let loss = damp(kick, centre, predicted);
+    damp(kick, centre, predicted);
     damped.copy_from_slice(predicted);
     let mut spin = 0.0;
     if kick.metric.is_free(kick.block) {
-        spin = kick.spin(centre);
+        spin = kick.correction(centre);
         push_free(kick, centre, spin, force, predicted);
     } else {
         for (k, i) in kick.covers.clone().enumerate() {
@@ -151,32 +173,26 @@ pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mu
             predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
         }
     }
-    BlockMotion { centre, damped: loss, spin }
+    BlockMotion { centre, spin }
 }
 
-fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {
+fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
     let own = &kick.velocity[kick.covers.clone()];
     match kick.damping {
         Damping::Deformation(factor) if factor < 1.0 => {
-            let sums = kick.sums(centre);
+            let sums = kick.sums(kick.velocity, centre);
             let spin = sums.moment / sums.polar;
             for (k, i) in kick.covers.clone().enumerate() {
                 let rigid = sums.velocity + turned(kick.place(i) - centre) * spin;
                 let held = kick.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
                 predicted[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
-            let deforming = 0.5 * (sums.square - sums.moment * spin);
-            (1.0 - factor * factor) * deforming
         }
-        Damping::Deformation(_) => {
-            predicted.copy_from_slice(own);
-            0.0
-        }
+        Damping::Deformation(_) => predicted.copy_from_slice(own),
         Damping::Mass(factor) => {
             for (new, old) in predicted.iter_mut().zip(own) {
                 *new = old * factor;
             }
-            (1.0 - factor * factor) * kinetic_energy(kick)
         }
     }
 }
