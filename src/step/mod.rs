@@ -193,7 +193,7 @@ impl Step<'_> {
             motion: &scratch.motion,
             laws: &state.laws,
             trace_law: &scratch.trace_law,
-            default_law: state.law_switch[slope.default_law as usize],
+            default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
             size,
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
             first: state.step == 0,
