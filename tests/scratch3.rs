@@ -1,53 +1,23 @@
 //! scratch
 mod common;
 #[test]
-fn chatter() {
+fn track() {
     let path = std::env::var("CASE").unwrap_or("examples/cases/fractured_slope.toml".into());
     let loaded = enmm::io::load_case(std::path::Path::new(&path)).unwrap_or_else(|e| panic!("{e}"));
     let mut s = enmm::model::Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
-    let n: u64 = std::env::var("N").ok().and_then(|v| v.parse().ok()).unwrap_or(5000);
-    for _ in 0..n {
-        s.advance(false).unwrap();
-    }
-    for _ in 0..6 {
-        s.advance(false).unwrap();
-        let c = &s.slope().covers;
-        let mut sp: Vec<(f64, usize)> = (0..c.block_count())
-            .map(|b| (c.covers_of(b).map(|i| s.state().velocity[i].norm()).fold(0.0, f64::max), b))
-            .collect();
-        sp.sort_by(|a, b| b.0.total_cmp(&a.0));
-        println!("t {:.4} top {:?}", s.time(), &sp[..5]);
-        let mut cs: Vec<(f64, usize)> = s.state().velocity.iter().map(|v| v.norm()).zip(0..).collect();
-        cs.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (v, i) in &cs[..4] {
-            if *v > 1e-3 {
-                println!(
-                    "   cover {i} {v:.4} vel {:?} at {:?} mass {:.3e} rowsum {:.3e} sup {:?} con {:?}",
-                    s.state().velocity[*i].as_slice(),
-                    s.slope().covers.star_position[*i].as_slice(),
-                    s.slope().metric.mass[*i],
-                    s.slope().metric.row_sum[*i],
-                    s.scratch()
-                        .rows
-                        .iter()
-                        .filter(|r| s.slope().supports[r.support as usize].covers.contains(&(*i as u32)))
-                        .map(|r| (r.support, r.force, r.displacement))
-                        .collect::<Vec<_>>(),
-                    s.scratch()
-                        .contacts
-                        .iter()
-                        .filter(|c| c.covers.iter().flatten().any(|x| *x == *i as u32))
-                        .map(|c| (
-                            c.history.node,
-                            c.blocks,
-                            c.history.normal_force,
-                            c.history.shear_force,
-                            c.gap,
-                            c.history.state
-                        ))
-                        .collect::<Vec<_>>()
-                );
-            }
-        }
+    let blk: u32 = std::env::var("BLK").unwrap().parse().unwrap();
+    let skip: u64 = std::env::var("SKIP").ok().map_or(0, |v| v.parse().unwrap());
+    common::run_stage(&mut s);
+    s.next_stage().unwrap();
+    let c = &s.slope().covers;
+    println!("block {blk} area {:.4e} centroid {:?} covers {} elements {} mass {:.3e} J {:.3e} JD {:.3e}", c.block_area(blk as usize), c.block_centroid(blk as usize).as_slice(), c.covers_of(blk as usize).len(), c.elements_of(blk as usize).len(), s.slope().metric.total[blk as usize], s.slope().metric.polar[blk as usize], s.slope().metric.polar_lumped[blk as usize]);
+    for k in 0..14 + skip {
+        let r = s.advance(true);
+        if k < skip { continue; }
+        println!("t {:.5} dt_last {:.2e} {:?}", s.time(), s.state().dt_last, r.map(|r| (r.unbalanced, r.speed_max)));
+        let bd = &s.slope().boundary;
+        print!("     block {blk}:"); for k in (0..bd.node_count()).filter(|&k| bd.block[bd.node_point[k] as usize] == blk) { let q = s.scratch().place[bd.node_point[k] as usize]; print!(" {}:({:.5},{:.5})s{}", k, q.x, q.y, bd.side[bd.node_point[k] as usize]); } println!();
+        for i in s.slope().covers.covers_of(blk as usize) { print!(" v {:?}", s.state().velocity[i].as_slice()); } println!();
+        for q in s.scratch().contacts.iter().filter(|q| q.blocks.contains(&blk)) { println!("    node {} {:?} side {} N {:.3e} T {:.3e} stored {:.3e} gap {:.3e} l {:.3e} kWdt2 {:.3e} app {:.3e},{:.3e} {:?} n ({:.3},{:.3}) off {:.2e} fresh {}", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.history.shear_force, q.history.shear_stored, q.gap, q.length, q.compliance[0]*q.stiffness[0]*s.slope().dt.powi(2), q.approach[0], q.approach[1], q.history.state, q.normal.x, q.normal.y, q.history.offset, q.fresh); }
     }
 }
