@@ -186,11 +186,10 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        let [d, e] =
-            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
-        let chord = e - d;
-        let faces = chord.perp(&normal) > -ENTRANCE_SINE * chord.norm();
-        faces && [d, e].iter().all(|d| d.dot(&normal) >= -ENTRANCE_SINE * d.norm())
+        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
+            .map(|n| self.node_place(n as usize) - p);
+        let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
+        outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
@@ -388,4 +387,15 @@ impl Narrow<'_> {
             }
         }
     }
+}
+
+/// Whether the rock between the directions to the previous and the next node is a corner of less than half a turn.
+fn is_convex(previous: Vector, next: Vector) -> bool {
+    let (cross, dot) = (next.perp(&previous), next.dot(&previous));
+    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * previous.norm() * next.norm())
+}
+
+/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge.
+fn faces(chord: Vector, normal: Vector) -> bool {
+    chord.perp(&normal) > -ENTRANCE_SINE * chord.norm()
 }
