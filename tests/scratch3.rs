@@ -1,53 +1,26 @@
 //! scratch
 mod common;
 #[test]
-fn chatter() {
+fn deep() {
     let path = std::env::var("CASE").unwrap_or("examples/cases/fractured_slope.toml".into());
     let loaded = enmm::io::load_case(std::path::Path::new(&path)).unwrap_or_else(|e| panic!("{e}"));
     let mut s = enmm::model::Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
-    let n: u64 = std::env::var("N").ok().and_then(|v| v.parse().ok()).unwrap_or(5000);
-    for _ in 0..n {
-        s.advance(false).unwrap();
-    }
-    for _ in 0..6 {
-        s.advance(false).unwrap();
-        let c = &s.slope().covers;
-        let mut sp: Vec<(f64, usize)> = (0..c.block_count())
-            .map(|b| (c.covers_of(b).map(|i| s.state().velocity[i].norm()).fold(0.0, f64::max), b))
-            .collect();
-        sp.sort_by(|a, b| b.0.total_cmp(&a.0));
-        println!("t {:.4} top {:?}", s.time(), &sp[..5]);
-        let mut cs: Vec<(f64, usize)> = s.state().velocity.iter().map(|v| v.norm()).zip(0..).collect();
-        cs.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (v, i) in &cs[..4] {
-            if *v > 1e-3 {
-                println!(
-                    "   cover {i} {v:.4} vel {:?} at {:?} mass {:.3e} rowsum {:.3e} sup {:?} con {:?}",
-                    s.state().velocity[*i].as_slice(),
-                    s.slope().covers.star_position[*i].as_slice(),
-                    s.slope().metric.mass[*i],
-                    s.slope().metric.row_sum[*i],
-                    s.scratch()
-                        .rows
-                        .iter()
-                        .filter(|r| s.slope().supports[r.support as usize].covers.contains(&(*i as u32)))
-                        .map(|r| (r.support, r.force, r.displacement))
-                        .collect::<Vec<_>>(),
-                    s.scratch()
-                        .contacts
-                        .iter()
-                        .filter(|c| c.covers.iter().flatten().any(|x| *x == *i as u32))
-                        .map(|c| (
-                            c.history.node,
-                            c.blocks,
-                            c.history.normal_force,
-                            c.history.shear_force,
-                            c.gap,
-                            c.history.state
-                        ))
-                        .collect::<Vec<_>>()
-                );
-            }
+    common::run_stage(&mut s);
+    s.next_stage().unwrap();
+    let mut found = 0;
+    for _ in 0..4000 {
+        let prev = s.scratch().contacts.clone();
+        let places = s.scratch().place.clone();
+        if let Err(e) = s.advance(false) { println!("{e}"); break; }
+        let b = &s.slope().boundary;
+        for c in s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.0) {
+            found += 1;
+            let pt = b.node_point[c.history.node as usize] as usize;
+            let p = s.scratch().place[pt];
+            println!("t {:.4} node {} at ({:.4},{:.4}) moved ({:.4},{:.4}) block {} -> block {} side {} edge {} offset {:.3e} n ({:.3},{:.3}) l {:.3}", s.time(), c.history.node, p.x, p.y, p.x-places[pt].x, p.y-places[pt].y, c.blocks[0], c.blocks[1], c.history.side, c.history.edge, c.history.offset, c.normal.x, c.normal.y, c.length);
+            for q in prev.iter().filter(|q| q.blocks == c.blocks || (q.blocks[0]==c.blocks[1] && q.blocks[1]==c.blocks[0])) { println!("     before: node {} {:?} side {} N {:.3e} T {:.3e} gap {:.3e} {:?} n ({:.3},{:.3})", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.history.shear_force, q.gap, q.history.state, q.normal.x, q.normal.y); }
+            for (nm, pl) in [("prev", &places), ("now", &s.scratch().place)] { for bl in [c.blocks[0], c.blocks[1]] { print!("     {nm} block {bl}:"); for k in (0..b.node_count()).filter(|&k| b.block[b.node_point[k] as usize] == bl) { let q = pl[b.node_point[k] as usize]; print!(" {}:({:.3},{:.3})s{}", k, q.x, q.y, b.side[b.node_point[k] as usize]); } println!(); } }
         }
+        if found > 12 { break; }
     }
 }

@@ -119,11 +119,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
     }
 }
 
+/// Angular frequency of each block's deformation, theory Eq. (11); a block smaller than an element deforms like one.
 fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
     let of_block = |b: usize| {
         let speed =
             covers.elements_of(b).map(|e| rocks[element_rock[e] as usize].shear_wave_speed()).fold(0.0, f64::max);
-        2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt()
+        2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt().max(covers.mesh.size)
     };
     (0..covers.block_count()).map(of_block).collect()
 }
