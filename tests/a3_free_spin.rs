@@ -103,7 +103,11 @@ fn spin_has_the_true_inertia_and_keeps_momentum_energy_and_area() {
         common::claims::advance(&mut simulation, push);
         let (_, _, found, kinetic) = motion(&simulation, spinner.inside);
         assert!((found / spin - 1.0).abs() < 1e-6, "spinner {k}: spin {found} of {spin}");
-        assert!((kinetic / (0.5 * inertia * spin * spin) - 1.0).abs() < 1e-6, "spinner {k}: {kinetic} J, off by {:e}", kinetic / (0.5 * inertia * spin * spin) - 1.0);
+        assert!(
+            (kinetic / (0.5 * inertia * spin * spin) - 1.0).abs() < 1e-6,
+            "spinner {k}: {kinetic} J, off by {:e}",
+            kinetic / (0.5 * inertia * spin * spin) - 1.0
+        );
         let momentum = simulation.momentum().1;
         let (angle, time) = ten_turns(&mut simulation, spin);
         assert!((angle - 10.0 * std::f64::consts::TAU).abs() < 0.1);
@@ -115,7 +119,12 @@ fn spin_has_the_true_inertia_and_keeps_momentum_energy_and_area() {
         assert!((later / kinetic - 1.0).abs() < 1e-6, "spinner {k}: {kinetic} to {later} J");
         assert!((area(&simulation) / exact_area - 1.0).abs() < 1e-6, "spinner {k}: area");
         // A pure moment moves no centroid: rounding over 1e5 steps.
-        assert!((centroid - Point::from(centre)).norm() < 1e-9 && velocity.norm() < 1e-9, "spinner {k}: {:e} m, {:e} m/s", (centroid - Point::from(centre)).norm(), velocity.norm());
+        assert!(
+            (centroid - Point::from(centre)).norm() < 1e-9 && velocity.norm() < 1e-9,
+            "spinner {k}: {:e} m, {:e} m/s",
+            (centroid - Point::from(centre)).norm(),
+            velocity.norm()
+        );
         assert_ledger(&simulation.advance(true).expect("a step"));
     }
 }

@@ -92,7 +92,8 @@ fn convergence(name: &str, sags: [f64; 3], exact: f64, tolerance: f64) -> ([f64;
 /// sag between points of the axis 1 m inside has no share in it and has the closed form `axis`.
 #[test]
 fn a_uniform_load_sags_in_plane_stress_and_strain() {
-    for (plane, poisson, published) in [("stress", 0.25, 15.97188e-3), ("strain", 0.25, 14.98828e-3), ("strain", 0.1, 0.0)]
+    for (plane, poisson, published) in
+        [("stress", 0.25, 15.97188e-3), ("strain", 0.25, 14.98828e-3), ("strain", 0.1, 0.0)]
     {
         let beam = Beam { plane, young: 1e9, poisson, gravity: 0.0, load: UNIFORM };
         assert!(published == 0.0 || (beam.axis(1e4, 0.0) - published).abs() < 1e-8);

@@ -30,9 +30,7 @@ impl Incline {
     fn build(&self) -> Simulation {
         let (end, long) = (self.length, if self.slope < 44.0 { 1.0 } else { 2.0 });
         let outline = turn(
-            &[
-                [-1.0, -0.8], [end, -0.8], [end, 0.0], [long, 0.0], [long, 1.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 0.0],
-            ],
+            &[[-1.0, -0.8], [end, -0.8], [end, 0.0], [long, 0.0], [long, 1.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 0.0]],
             -self.slope,
         );
         let joint = turn(&[[0.0, 0.0], [long, 0.0]], -self.slope);
@@ -99,8 +97,7 @@ fn a_stiff_block_slides_by_half_a_t_squared() {
     rows.extend([(30.0, 0.0, 2.4525), (30.0, 10.0, 1.703489), (30.0, 15.0, 1.314291), (30.0, 20.0, 0.906407)]);
     rows.extend([(30.0, 25.0, 0.471693), (45.0, 10.0, 2.856794), (45.0, 20.0, 2.205979), (45.0, 30.0, 1.465901)]);
     for (slope, friction, published) in rows {
-        let incline =
-            Incline { slope, friction, young: 50e9, size: 0.6, length: 6.0, seconds: 1.0, extra: "" };
+        let incline = Incline { slope, friction, young: 50e9, size: 0.6, length: 6.0, seconds: 1.0, extra: "" };
         let exact = 0.5 * incline.acceleration();
         assert!(published.is_nan() || (exact - published).abs() < 1e-6, "{exact}");
         let mut simulation = incline.release(0.0);
