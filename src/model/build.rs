@@ -108,6 +108,7 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
     JointLaw {
         normal_stiffness,
         shear_stiffness: law.shear_stiffness.unwrap_or(stiffness * shear_ratio),
+        penalty: [law.normal_stiffness.is_none(), law.shear_stiffness.is_none()],
         friction: tangent(law.friction_deg),
         cohesion: law.cohesion,
         tension: law.tension,
