@@ -143,7 +143,8 @@ pub fn series(path: &Path) -> io::Result<Vec<Series>> {
         .enumerate()
         .filter_map(|(k, header)| {
             let (name, unit) = header.strip_suffix(']').and_then(|h| h.rsplit_once(" [")).unwrap_or((header, ""));
-            let shown = k > 1 && (unit == "J/m" || name.ends_with("_ux") || name.ends_with("_uy"));
+            let energy = unit == "J/m" && name != "energy_residual";
+            let shown = k > 1 && (energy || name.ends_with("_ux") || name.ends_with("_uy"));
             shown.then(|| (k, Series { name: name.to_owned(), unit: unit.to_owned(), points: Vec::new() }))
         })
         .collect();
@@ -154,5 +155,6 @@ pub fn series(path: &Path) -> io::Result<Vec<Series>> {
             series.points.push((number(0), number(*k)));
         }
     }
-    Ok(series.into_iter().map(|(_, series)| series).collect())
+    let moves = |series: &Series| series.unit == "m" || series.points.iter().any(|point| point.1 != 0.0);
+    Ok(series.into_iter().map(|(_, series)| series).filter(moves).collect())
 }
