@@ -14,6 +14,8 @@ const FIRST_SIGHT_DEPTH: f64 = 3e-3;
 const HELD_BEYOND: f64 = 1e-3;
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
 const CORNER_TOLERANCE: f64 = 1e-9;
+/// Difference of two depths, relative to the mesh size, below which they count as equal.
+const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance by which a foot may miss an edge inside a side, relative to the mesh size.
 const WEDGE_TOLERANCE: f64 = 0.05;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -59,7 +61,7 @@ struct Pick {
     length: f64,
     tangent: Vector,
     held: Option<ContactHistory>,
-    dropped: bool,
+    admitted: bool,
 }
 
 /// Judges every candidate and appends the contacts that take part in this step, ordered by node and side.
@@ -80,15 +82,15 @@ pub fn entrance_edges(
         known = &known[known.partition_point(|h| h.node < first.node)..];
         let mine = &known[..known.partition_point(|h| h.node == first.node)];
         let count = narrow.pick_edges(first.node as usize, group, mine, &mut picks);
-        narrow.drop_round_corners(&mut picks[..count]);
-        for pick in picks[..count].iter().flatten().filter(|p| !p.dropped) {
+        narrow.choose_sides(&mut picks[..count]);
+        for pick in picks[..count].iter().flatten().filter(|p| p.admitted) {
             contacts.push(narrow.contact(first.node as usize, pick));
         }
     }
 }
 
 impl Narrow<'_> {
-    /// The best edge of each side near a node, as far as the vertex rule admits it.
+    /// The nearest edge of each side that the node is over, and whether the vertex rule admits it so far.
     fn pick_edges(
         &self,
         node: usize,
@@ -120,15 +122,27 @@ impl Narrow<'_> {
             let along = (p - a).dot(&tangent);
             let gap = (p - a).dot(&Vector::new(tangent.y, -tangent.x));
             let beyond = (-along).max(along - length).max(0.0);
-            let pick = Pick { side: c.side, edge: c.edge, gap, along, length, tangent, held, dropped: false };
+            let pick = Pick { side: c.side, edge: c.edge, gap, along, length, tangent, held, admitted: false };
             (beyond.hypot(gap), beyond, pick)
         };
-        let (_, beyond, pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
+        let (_, beyond, mut pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
+        if beyond > WEDGE_TOLERANCE * self.size {
+            return None;
+        }
         let bonded = held.is_some_and(|h| h.intact && h.normal_force < 0.0);
-        (bonded || pick.gap - self.allowance(&pick) < self.reach)
-            .then_some(())
-            .filter(|()| self.within(&pick, p, beyond) && self.enters(node, &pick, p))
-            .map(|()| pick)
+        let near = bonded || pick.gap - self.allowance(&pick) < self.reach;
+        pick.admitted = near
+            && !(held.is_none() && self.is_false_sight(node, &pick))
+            && self.within(&pick, p, beyond)
+            && self.enters(node, &pick, p);
+        Some(pick)
+    }
+
+    /// Whether a deep first sight cannot be a contact: nothing overlaps at the start, nor ever within one block.
+    fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
+        let boundary = self.boundary;
+        let own = boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize];
+        (self.first || own) && -pick.gap > FIRST_SIGHT_DEPTH * self.size
     }
 
     /// Closure that the contact's springs do not see (m).
@@ -178,38 +192,65 @@ impl Narrow<'_> {
         true
     }
 
-    /// Rule (i): both neighbours of the node lie outside the edge, or hardly inside.
+    /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        [self.boundary.node_previous[node], self.boundary.node_next[node]].into_iter().all(|n| {
-            let d = self.node_place(n as usize) - p;
-            d.dot(&normal) >= -ENTRANCE_SINE * d.norm()
-        })
+        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
+            .map(|n| self.node_place(n as usize) - p);
+        let chord = e - d;
+        let faces = chord.perp(&normal) > -ENTRANCE_SINE * chord.norm();
+        faces && [d, e].iter().all(|d| d.dot(&normal) >= -ENTRANCE_SINE * d.norm())
     }
 
-    /// Rule (iii): of two sides round a convex corner the node keeps the one that carries force, else the shallower.
-    fn drop_round_corners(&self, picks: &mut [Option<Pick>]) {
-        let corner = |s: u32, t: u32| {
-            let boundary = self.boundary;
-            (boundary.side_next[s as usize] == t && boundary.side_corner[t as usize] == Corner::Convex)
-                || (boundary.side_next[t as usize] == s && boundary.side_corner[s as usize] == Corner::Convex)
-        };
+    /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
+    /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
+    fn choose_sides(&self, picks: &mut [Option<Pick>]) {
         for i in 0..picks.len() {
             for j in i + 1..picks.len() {
                 let (Some(a), Some(b)) = (picks[i], picks[j]) else { continue };
-                if a.dropped || b.dropped || !corner(a.side, b.side) || (a.gap > 0.0 && b.gap > 0.0) {
+                let block = |p: &Pick| self.boundary.block[p.edge as usize];
+                if block(&a) != block(&b) {
                     continue;
                 }
-                let first_wins = match (Self::is_held(&a), Self::is_held(&b)) {
-                    (true, false) => true,
-                    (false, true) => false,
-                    _ => a.gap >= b.gap,
+                let loser = match self.corner_between(a.side, b.side) {
+                    Some(Corner::Reflex) => None,
+                    corner => self.loser(&a, &b, corner.is_some()),
                 };
-                if let Some(loser) = &mut picks[if first_wins { j } else { i }] {
-                    loser.dropped = true;
+                if let Some(first) = loser
+                    && let Some(pick) = &mut picks[if first { i } else { j }]
+                {
+                    pick.admitted = false;
                 }
             }
         }
+    }
+
+    fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {
+        let (boundary, s, t) = (self.boundary, s as usize, t as usize);
+        if boundary.side_next[s] as usize == t {
+            Some(boundary.side_corner[t])
+        } else if boundary.side_next[t] as usize == s {
+            Some(boundary.side_corner[s])
+        } else {
+            None
+        }
+    }
+
+    /// Which of two sides with rock between them the node does not enter: true for the first.
+    fn loser(&self, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
+        let first_is_deeper = a.gap < b.gap;
+        let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
+        let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
+        let deep_loses = if Self::is_held(deep) {
+            Self::is_held(shallow) && shallow.admitted || !adjacent && behind && shallow.gap > 0.0
+        } else {
+            behind || shallow.admitted && shallow.gap <= 0.0
+        };
+        if deep_loses {
+            return Some(first_is_deeper);
+        }
+        let contest = deep.gap <= 0.0 && shallow.gap <= 0.0 && deep.admitted && shallow.admitted;
+        contest.then_some(!first_is_deeper)
     }
 
     /// Tributary length (m) of a node over an edge, theory Eq. (13).

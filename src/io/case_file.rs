@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::case_error::{CaseError, read_text};
-use super::geometry_file::{self, Geometry, Trace};
+use super::geometry_file::{self, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use crate::model::case::{Case, JointTrace};
 
@@ -86,17 +86,28 @@ pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded
 /// Moves outline, loops and traces of `domain.geometry_file` into the case; returns the warnings.
 fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<Vec<String>, CaseError> {
     let Some(name) = case.domain.geometry_file.take() else { return Ok(Vec::new()) };
-    let key = "domain.geometry_file";
-    let path = base_dir.join(&name);
+    let path = base_dir.join(name);
     source.geometry_file = path.display().to_string();
-    let text =
-        read_text(&path).map_err(|message| source.locate(key, &format!("{:?}: {message}", source.geometry_file)))?;
-    let geometry = geometry_file::parse(&path, &text, case)?;
+    let geometry = read_geometry_file(case, source, &path)?;
     if !case.domain.outline.is_empty() && geometry.outline.is_some() {
         let message = format!("the outline is also in {:?}, only one can be; remove this one", source.geometry_file);
         return Err(source.locate("domain.outline", &message));
     }
-    let Geometry { outline, holes, islands, traces, warnings, lines } = geometry;
+    let warnings = geometry.warnings.iter().map(|warning| format!("{}: {warning}", source.geometry_file)).collect();
+    merge(case, source, geometry);
+    Ok(warnings)
+}
+
+fn read_geometry_file(case: &Case, source: &CaseSource, path: &Path) -> Result<Geometry, CaseError> {
+    let file = &source.geometry_file;
+    let located = |message: String| source.locate("domain.geometry_file", &format!("{file:?}: {message}"));
+    let format = Format::of(path).map_err(located)?;
+    let text = read_text(path).map_err(located)?;
+    geometry_file::parse(format, file, &text, case)
+}
+
+fn merge(case: &mut Case, source: &mut CaseSource, geometry: Geometry) {
+    let Geometry { outline, holes, islands, traces, lines, .. } = geometry;
     source.geometry_lines = lines;
     if let Some((points, place)) = outline {
         case.domain.outline = points;
@@ -119,7 +130,6 @@ fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path
         source.note(key, place);
         case.joints.push(JointTrace { points, law });
     }
-    Ok(warnings.into_iter().map(|warning| format!("{}: {warning}", source.geometry_file)).collect())
 }
 
 /// Returns the 64-bit FNV-1a hash of the case as JSON, whose fields and maps have a fixed order.

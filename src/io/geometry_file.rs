@@ -42,24 +42,45 @@ pub struct Trace {
     pub law: Option<(String, String)>,
 }
 
-/// Reads a geometry file by its extension: `.json` (a JSON object with `outline` and `joints`, or GeoJSON if it has a
-/// GeoJSON `type`), `.geojson`, `.dxf`. The joint laws of `case` are those that DXF layers may name.
+/// Formats of geometry files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// `.json`: an object with `outline` and `joints`, or GeoJSON if it has a GeoJSON `type`.
+    Json,
+    /// `.geojson`.
+    GeoJson,
+    /// `.dxf`.
+    Dxf,
+}
+
+impl Format {
+    /// Returns the format that an extension stands for, in any letter case.
+    ///
+    /// # Errors
+    /// A message without the file's name: the extension is unknown.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("json") => Ok(Self::Json),
+            Some("geojson") => Ok(Self::GeoJson),
+            Some("dxf") => Ok(Self::Dxf),
+            _ => Err("the extension is none of .json, .geojson, .dxf; convert the file".to_string()),
+        }
+    }
+}
+
+/// Reads the text of a geometry file. The joint laws of `case` are those that DXF layers may name.
 ///
 /// # Errors
-/// The format is unknown, or the first thing in the file that cannot be used, with its line.
-pub fn parse(path: &Path, text: &str, case: &Case) -> Result<Geometry, CaseError> {
-    let file = path.display().to_string();
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        Some("dxf") => dxf::parse(&file, text, case),
-        Some("geojson") => geojson::parse(json_text::Document::parse(&file, text)?),
-        Some("json") => {
-            let document = json_text::Document::parse(&file, text)?;
-            if geojson::is_geojson(&document.value) { geojson::parse(document) } else { json::parse(document) }
-        }
-        _ => {
-            let message = "the extension is none of .json, .geojson, .dxf; rename or convert the file".to_string();
-            Err(CaseError::Unreadable { file, message })
-        }
+/// The first thing in the file that cannot be used, with its line.
+pub fn parse(format: Format, file: &str, text: &str, case: &Case) -> Result<Geometry, CaseError> {
+    if format == Format::Dxf {
+        return dxf::parse(file, text, case);
+    }
+    let document = json_text::Document::parse(file, text)?;
+    if format == Format::GeoJson || geojson::is_geojson(&document.value) {
+        geojson::parse(document)
+    } else {
+        json::parse(document)
     }
 }

@@ -1,5 +1,7 @@
 //! JSON text with the lines of its keys, and points read from it.
 
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
 use crate::io::case_error::CaseError;
@@ -21,13 +23,13 @@ impl<'a> Document<'a> {
     /// Parses `text`.
     ///
     /// # Errors
-    /// A bare `NaN` or `Infinity` stands in it, or it is not JSON.
+    /// A bare `NaN` or `Infinity` stands in it, a key stands twice in one object, or it is not JSON.
     pub fn parse(file: &'a str, text: &str) -> Result<Self, CaseError> {
         let mut scan = Scan { starts: LineStarts::new(text), lines: LineMap::default(), open: Vec::new() };
-        let bare = scan.run(text);
+        let refused = scan.run(text);
         let mut document = Self { file, lines: scan.lines, value: Value::Null };
-        if let Some((key, token)) = bare {
-            return document.fail(&key, format!("is {token}, which is no number of JSON; give a finite number"));
+        if let Err((key, message)) = refused {
+            return document.fail(&key, message);
         }
         document.value = serde_json::from_str(text).map_err(|error| {
             CaseError::at(file, error.line().max(1), "", format!("not JSON: {error}; correct the line"))
@@ -117,13 +119,16 @@ struct Frame {
     next: Key,
     /// Elements so far; none for an object.
     index: Option<usize>,
+    /// Keys so far.
+    names: BTreeSet<String>,
     /// Whether the next string is a key.
     at_key: bool,
 }
 
 impl Scan {
-    /// Notes lines until the end, or returns the first bare token that is a number to others but not to JSON.
-    fn run<'t>(&mut self, text: &'t str) -> Option<(Key, &'t str)> {
+    /// Notes lines until the end, or returns key and message of the first thing that the parser would not tell: a bare
+    /// token that is a number to others but not to JSON, or a key that stands twice.
+    fn run(&mut self, text: &str) -> Result<(), (Key, String)> {
         let bytes = text.as_bytes();
         let mut at = 0;
         while at < bytes.len() && self.open.len() <= DEPTH_MAX {
@@ -134,18 +139,21 @@ impl Scan {
                 _ => bytes[at..].iter().take_while(|byte| !is_delimiter(**byte)).count(),
             };
             let token = &text[start..at];
+            if !is_delimiter(bytes[start]) {
+                self.lines.insert(&self.next_key(), self.starts.line(start));
+            }
             match bytes[start] {
                 open @ (b'[' | b'{') => self.open(open == b'[', start),
                 b']' | b'}' => drop(self.open.pop()),
                 b',' => self.advance(),
-                b'"' => self.name(token.trim_matches('"'), start),
+                b'"' => self.name(token.trim_matches('"'), start)?,
                 _ if token.parse::<f64>().is_ok_and(|value| !value.is_finite()) && !has_digit(token) => {
-                    return Some((self.next_key(), token));
+                    return Err((self.next_key(), format!("is {token}, must be a finite number; correct it")));
                 }
                 _ => {}
             }
         }
-        None
+        Ok(())
     }
 
     fn next_key(&self) -> Key {
@@ -156,7 +164,8 @@ impl Scan {
         let key = self.next_key();
         self.lines.insert(&key, self.starts.line(offset));
         let next = if is_array { key.index(0) } else { key.clone() };
-        self.open.push(Frame { key, next, index: is_array.then_some(0), at_key: !is_array });
+        let index = is_array.then_some(0);
+        self.open.push(Frame { key, next, index, names: BTreeSet::new(), at_key: !is_array });
     }
 
     fn advance(&mut self) {
@@ -170,11 +179,15 @@ impl Scan {
         }
     }
 
-    fn name(&mut self, name: &str, offset: usize) {
-        let Some(frame) = self.open.last_mut().filter(|frame| frame.at_key) else { return };
+    fn name(&mut self, name: &str, offset: usize) -> Result<(), (Key, String)> {
+        let Some(frame) = self.open.last_mut().filter(|frame| frame.at_key) else { return Ok(()) };
         frame.at_key = false;
         frame.next = frame.key.field(name);
         self.lines.insert(&frame.next, self.starts.line(offset));
+        if !frame.names.insert(name.to_string()) {
+            return Err((frame.next.clone(), "stands twice in one object; remove one".to_string()));
+        }
+        Ok(())
     }
 }
 

@@ -8,7 +8,7 @@ mod stages;
 use thiserror::Error;
 
 use super::key::Key;
-use super::{Case, Domain, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Rock, Solver};
+use super::{Case, Domain, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, Rock, Solver};
 use checks::{
     COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, number, optional, point, points, polygon, region,
     unique, whole,
@@ -179,7 +179,11 @@ fn joint_set(key: &Key, set: &super::JointSet) -> Check {
 fn rock(key: &Key, rock: &Rock) -> Check {
     number(key, "density", rock.density, Range::above(0.0).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
     number(key, "young", rock.young, Range::above(0.0).to(1e15), "Pa", "rock has 1e8 to 1e11")?;
-    number(key, "poisson", rock.poisson, Range::above(-1.0).below(0.5), "", "rock has 0.1 to 0.4")?;
+    let poisson = match rock.plane {
+        Plane::Strain => Range::above(-1.0).below(0.5),
+        Plane::Stress => Range::above(-1.0).to(0.5),
+    };
+    number(key, "poisson", rock.poisson, poisson, "", "rock has 0.1 to 0.4")?;
     if let Some(ring) = &rock.region {
         region(&key.field("region"), ring)?;
     }

@@ -84,6 +84,9 @@ impl Entity<'_> {
                 for vertex in self.groups[first..].chunk_by(|_, next| next.code != 10) {
                     shape.push(groups, self, vertex, [10, 20, 30])?;
                 }
+                if let Some(height) = find(self.groups, ELEVATION) {
+                    shape.high = shape.points.len() * usize::from(number(groups, height)? != 0.0);
+                }
             }
             "POLYLINE" if flags & (MESH | FACES) == 0 => {
                 if flags & (CURVE | SPLINE) != 0 {
@@ -101,19 +104,20 @@ impl Entity<'_> {
         Ok(Some(shape))
     }
 
-    /// Refuses an entity whose extrusion direction (codes 210 to 230) is not the z axis, as its x would be mirrored.
+    /// Refuses an entity whose extrusion direction is not the z axis, as its x and y would not be those of the drawing.
     fn must_face_up(&self, groups: &Groups) -> Result<(), CaseError> {
         match find(self.groups, 230) {
-            Some(group) if number(groups, group)? < 0.0 => {
-                let message =
-                    format!("{} is seen from below (extrusion {}); flip it in the drawing", self.kind, group.value);
-                groups.syntax(group.line, message)
+            Some(group) if number(groups, group)? != 1.0 => {
+                let message = format!("{} is not in the x-y plane (extrusion {})", self.kind, group.value);
+                groups.syntax(group.line, message + "; draw it seen from above")
             }
             _ => Ok(()),
         }
     }
 }
 
+/// Code of the height of all points of a LWPOLYLINE.
+const ELEVATION: i32 = 38;
 /// Flags of a POLYLINE.
 const CURVE: i64 = 2;
 const SPLINE: i64 = 4;

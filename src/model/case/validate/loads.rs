@@ -84,7 +84,8 @@ enum Use {
     Must,
 }
 
-/// Returns the name of a kind and its use of `point`, `edge`, `force`, `moment`, `traction`, `pressure`, `acceleration`.
+/// Returns the name of a kind and its use of `point`, `edge`, `force`, `moment`, `traction`, `pressure` and
+/// `acceleration`.
 fn fields_of(kind: LoadKind) -> (&'static str, [Use; 7]) {
     use Use::{May, Must, No};
     match kind {

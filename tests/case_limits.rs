@@ -1,0 +1,219 @@
+//! No numeric key of a case is unchecked, no text makes reading panic, and equal cases have equal fingerprints.
+
+mod case_support;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use case_support::{CASE, with_geometry};
+use enmm::io::{load_case, parse_case, schema};
+use enmm::model::Case;
+use proptest::prelude::*;
+use serde_json::Value;
+
+/// Calls `visit` with the dotted names of every number of a value, list indices left out and names of rocks and laws
+/// replaced.
+fn visit_numbers(value: &mut Value, name: &str, visit: &mut dyn FnMut(&str, &mut Value)) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(|item| visit_numbers(item, name, visit)),
+        Value::Object(fields) => {
+            let named = matches!(name, ".rock" | ".joint_law");
+            for (field, item) in fields {
+                visit_numbers(item, &format!("{name}.{}", if named { "NAME" } else { field }), visit);
+            }
+        }
+        Value::Number(_) => visit(name, value),
+        _ => {}
+    }
+}
+
+/// Collects the dotted names of every key of type `number` in a schema.
+fn numbers_of_schema(root: &Value, node: &Value, name: &str, found: &mut BTreeSet<String>) {
+    let reference = node.get("$ref").and_then(Value::as_str).map(|path| root.pointer(&path[1..]).unwrap());
+    for inner in reference.into_iter().chain(node.get("items")) {
+        numbers_of_schema(root, inner, name, found);
+    }
+    if let Some(inner) = node.get("additionalProperties") {
+        numbers_of_schema(root, inner, &format!("{name}.NAME"), found);
+    }
+    for inner in node.get("anyOf").and_then(Value::as_array).into_iter().flatten() {
+        numbers_of_schema(root, inner, name, found);
+    }
+    for (field, inner) in node.get("properties").and_then(Value::as_object).into_iter().flatten() {
+        numbers_of_schema(root, inner, &format!("{name}.{field}"), found);
+    }
+    let kind = node.get("type");
+    let is_number = |kind: &Value| kind == "number";
+    if kind.is_some_and(|kind| is_number(kind) || kind.as_array().is_some_and(|kinds| kinds.iter().any(is_number))) {
+        found.insert(name.to_string());
+    }
+}
+
+fn case_as_json() -> Value {
+    serde_json::to_value(parse_case(CASE, "slope.toml", Path::new("")).unwrap().case).unwrap()
+}
+
+#[test]
+fn every_number_of_the_schema_has_a_limit_at_both_ends() {
+    let mut names = BTreeSet::new();
+    visit_numbers(&mut case_as_json(), "", &mut |name, _| names.extend([name.to_string()]));
+    let mut expected = BTreeSet::new();
+    let schema = schema();
+    numbers_of_schema(&schema, &schema, "", &mut expected);
+    let absent: Vec<_> = expected.difference(&names).collect();
+    assert!(absent.is_empty(), "the case of this test must hold every numeric key, {absent:?} are absent");
+
+    let mut count = 0;
+    visit_numbers(&mut case_as_json(), "", &mut |_, _| count += 1);
+    for (nth, extreme) in (0..count).flat_map(|nth| [(nth, 1e30), (nth, -1e30)]) {
+        let (mut json, mut at, mut changed) = (case_as_json(), 0, None);
+        visit_numbers(&mut json, "", &mut |name, value| {
+            if at == nth && value.is_f64() {
+                *value = Value::from(extreme);
+                changed = Some(name.to_string());
+            }
+            at += 1;
+        });
+        let Some(name) = changed else { continue };
+        let case: Case = serde_json::from_value(json).unwrap();
+        let error = case.validate().err().unwrap_or_else(|| panic!("{name} may be {extreme:e}"));
+        let last = name.rsplit('.').next().unwrap();
+        assert!(error.key.contains(last), "{name} = {extreme:e} is reported at {}", error.key);
+    }
+}
+
+#[test]
+fn schema_has_a_title_and_describes_every_key() {
+    fn check(name: &str, node: &Value) {
+        for (key, inner) in node.get("properties").and_then(Value::as_object).into_iter().flatten() {
+            assert!(inner["description"].is_string(), "{name}.{key} has no description");
+        }
+    }
+    let schema = schema();
+    assert_eq!(schema["title"], "Case");
+    check("case", &schema);
+    schema["$defs"].as_object().unwrap().iter().for_each(|(name, node)| check(name, node));
+}
+
+#[test]
+fn case_written_and_read_again_is_the_same_case() {
+    let first = parse_case(CASE, "slope.toml", Path::new("")).unwrap();
+    let text = toml::to_string(&first.case).unwrap();
+    let second = parse_case(&text, "again.toml", Path::new("elsewhere")).unwrap();
+    assert_eq!(first.case, second.case);
+    assert_eq!(first.hash, second.hash);
+    assert_eq!(first.hash.len(), 16);
+}
+
+#[test]
+fn fingerprint_changes_with_any_value() {
+    let hash = |text: &str| parse_case(text, "slope.toml", Path::new("")).unwrap().hash;
+    assert_ne!(hash(CASE), hash(&CASE.replacen("density = 2650", "density = 2651", 1)));
+    assert_ne!(hash(CASE), hash(&CASE.replacen("clean", "Clean", 100)));
+}
+
+#[test]
+fn deep_nesting_is_an_error() {
+    let deep = format!("[domain]\noutline = {}", "[".repeat(100_000));
+    assert!(parse_case(&deep, "deep.toml", Path::new("")).is_err());
+    for open in ["[", "{\"outline\":"] {
+        assert!(with_geometry("g.json", &open.repeat(100_000)).is_err());
+    }
+}
+
+/// An edit: where (as a share of the text), how many bytes go, what comes instead.
+fn edits() -> impl Strategy<Value = Vec<(f64, usize, String)>> {
+    let piece = prop_oneof![
+        "[ -~\n]{0,6}",
+        prop::sample::select(vec![
+            "[",
+            "]",
+            "{",
+            "}",
+            "=",
+            "\"",
+            "nan",
+            "NaN",
+            "-Infinity",
+            "1e999",
+            "\n0\nLINE\n",
+            "é",
+            "[[",
+            "]]",
+            ".",
+            ",",
+            "true",
+            "null",
+            "-",
+            "\\",
+            "'''",
+            "#",
+            "\n10\n",
+            "\u{0}",
+            "\n0\nSECTION\n2\nENTITIES\n",
+            "POLYLINE",
+        ])
+        .prop_map(str::to_string),
+    ];
+    prop::collection::vec((0.0..1.0, 0..40_usize, piece), 1..6)
+}
+
+fn apply(text: &str, edits: &[(f64, usize, String)]) -> String {
+    let mut letters: Vec<char> = text.chars().collect();
+    for (share, length, piece) in edits {
+        let start = ((letters.len() as f64) * share) as usize;
+        let end = (start + length).min(letters.len());
+        letters.splice(start..end, piece.chars());
+    }
+    letters.into_iter().collect()
+}
+
+fn is_one_line(message: &str) -> bool {
+    !message.is_empty() && !message.contains('\n')
+}
+
+const JSON: &str = r#"{"name": "g", "outline": [[0, 0], [9, 0], [9.5, 9]],
+ "holes": [[[1, 1], [2, 1], [2, 2]]], "joints": [[[0, 0], [1, 1]], [[0, 0], [1e0, "Infinity"]]]}"#;
+const GEOJSON: &str = r#"{"type": "FeatureCollection", "features": [
+ {"type": "Feature", "properties": {"law": "clean"}, "geometry": {"type": "LineString",
+  "coordinates": [[0, 0], [1, 1]]}},
+ {"type": "Feature", "properties": null, "geometry": {"type": "Polygon",
+  "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]]}}]}"#;
+const DXF: &str = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nclean\n10\n0.0\n20\n1.0\n11\n5.0\n21\n6.0\n0\nLWPOLYLINE\n\
+                   8\nOUTLINE\n                   70\n1\n10\n0\n20\n0\n10\n9\n20\n0\n10\n9\n20\n9\n0\nPOLYLINE\n70\n1\n\
+                   0\nVERTEX\n10\n1\n20\n1\n0\nVERTEX\n10\n2\n20\n1\n0\nSEQEND\n0\nENDSEC\n0\nEOF\n";
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mutated_case_never_panics(edits in edits()) {
+        if let Err(error) = parse_case(&apply(CASE, &edits), "slope.toml", Path::new("/nowhere")) {
+            prop_assert!(is_one_line(&error.to_string()), "{error}");
+        }
+    }
+
+    #[test]
+    fn mutated_geometry_never_panics(edits in edits()) {
+        for (name, text) in [("g.json", JSON), ("g.geojson", GEOJSON), ("g.dxf", DXF)] {
+            if let Err(error) = with_geometry(name, &apply(text, &edits)) {
+                prop_assert!(is_one_line(&error), "{error}");
+            }
+        }
+    }
+}
+
+/// The data of the reference folder are not part of the project; without the folder this test says so and ends.
+#[test]
+fn reference_geometry_is_read_whole() {
+    let data = Path::new("/work/shared/data");
+    if !data.is_dir() {
+        eprintln!("skipped: no folder {}", data.display());
+        return;
+    }
+    for (name, traces) in [("traces/kb7", 240), ("traces/kb11", 707), ("slopes/tyrol_gar_slope_medium", 568)] {
+        let text = std::fs::read_to_string(data.join(format!("{name}.json"))).unwrap();
+        assert_eq!(with_geometry("g.json", &text).unwrap().case.joints.len(), traces);
+    }
+    assert!(load_case(&data.join("EXPECTED.json")).is_err());
+}
