@@ -80,8 +80,11 @@ fn cover_cases_are_counted_as_expected() {
         let (mesh, expected) = (&case["mesh"], &case["expected"]);
         let name = path.file_name().expect("a name").to_str().expect("UTF-8");
         let origin = [number(&mesh["origin"][0]), number(&mesh["origin"][1])];
-        let lattice =
-            format!("size = {:?}\nangle_deg = {:?}\norigin = {origin:?}", number(&mesh["h"]), number(&mesh["angle_deg"]));
+        let lattice = format!(
+            "size = {:?}\nangle_deg = {:?}\norigin = {origin:?}",
+            number(&mesh["h"]),
+            number(&mesh["angle_deg"])
+        );
         let found = check(&folder, name, number(&case["snap_tol"]), &lattice);
         let counts = [found.elements, found.physical_covers, found.stars, found.blocks].map(|n| n as u64);
         let wanted = ["n_elements", "n_pcs", "n_stars", "n_blocks"].map(|key| expected[key].as_u64().expect(key));

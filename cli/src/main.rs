@@ -1,5 +1,6 @@
 //! `enmm`: runs and checks case files. Exit status: 0 done, 2 bad input, 3 numerical failure, 130 interrupted.
 
+mod bench;
 mod check;
 mod progress;
 mod run;
@@ -36,6 +37,12 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Times standard models: element updates and contacts per second, share of each part of the step.
+    Bench {
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
     /// Prints the JSON Schema of the case file.
     Schema,
 }
@@ -44,6 +51,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
+        Command::Bench { json } => bench::run(json),
         Command::Schema => schema(),
     }
 }

@@ -1,5 +1,6 @@
 //! Case files, schema, results, pictures, checkpoints.
 
+pub mod bench;
 pub mod blocks;
 mod case_error;
 mod case_file;

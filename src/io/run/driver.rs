@@ -190,6 +190,7 @@ impl<'a> Driver<'a> {
 
     fn begin_stage(&mut self) {
         self.stage_clock = Instant::now();
+        self.begin_row();
         self.progress.unsettled_before = self.simulation.state().counters.unsettled;
         self.progress.potential_start = None;
         self.progress.penetration_max = 0.0;
@@ -230,7 +231,10 @@ impl<'a> Driver<'a> {
         }
         let before = if row { rows::monitors(&self.simulation) } else { Vec::new() };
         let dt_before = self.simulation.state().dt_last;
-        let sweeps_mean = if row { self.sweeps_mean() } else { 0.0 };
+        let sweeps_mean = self.sweeps_mean();
+        if row {
+            self.begin_row();
+        }
         let wanted = plan.report_due(step);
         let report = match self.simulation.advance(wanted) {
             Ok(report) => report,
@@ -246,6 +250,12 @@ impl<'a> Driver<'a> {
         Ok(Ok(Some(report)))
     }
 
+    /// Notes that there is a row now.
+    fn begin_row(&mut self) {
+        let counters = &self.simulation.state().counters;
+        self.progress.row_sweeps = [counters.sweeps, counters.substeps];
+    }
+
     fn note(&mut self, report: &StepReport) {
         let progress = &mut self.progress;
         progress.potential_start.get_or_insert(report.ledger.potential);
@@ -254,10 +264,10 @@ impl<'a> Driver<'a> {
         progress.ledger = report.ledger;
     }
 
-    /// Mean sweeps of a sub-step since the last row, and notes that there is a row now.
-    fn sweeps_mean(&mut self) -> f64 {
+    /// Mean sweeps of a sub-step since the last row.
+    fn sweeps_mean(&self) -> f64 {
         let counters = &self.simulation.state().counters;
-        let [sweeps, substeps] = std::mem::replace(&mut self.progress.row_sweeps, [counters.sweeps, counters.substeps]);
+        let [sweeps, substeps] = self.progress.row_sweeps;
         (counters.sweeps - sweeps) as f64 / (counters.substeps - substeps).max(1) as f64
     }
 
