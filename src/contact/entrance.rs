@@ -168,13 +168,12 @@ impl Narrow<'_> {
         let tolerance = self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE };
         let side = pick.side as usize;
         let next = boundary.side_next[side] as usize;
-        let start = (boundary.side_first[side] == pick.edge, boundary.side_corner[side], self.place[pick.edge as usize]);
+        let start =
+            (boundary.side_first[side] == pick.edge, boundary.side_corner[side], self.place[pick.edge as usize]);
         let end_point = self.ends(pick.edge as usize).1;
         let end = (boundary.side_last[side] == pick.edge, boundary.side_corner[next], end_point);
-        let round = [
-            boundary.side_last[boundary.side_previous[side] as usize] as usize,
-            boundary.side_first[next] as usize,
-        ];
+        let round =
+            [boundary.side_last[boundary.side_previous[side] as usize] as usize, boundary.side_first[next] as usize];
         let past = [pick.along < 0.0, pick.along > pick.length];
         for (k, (ends_here, corner, point)) in [start, end].into_iter().enumerate() {
             let strict = ends_here && corner == Corner::Convex;
@@ -195,8 +194,8 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
-            .map(|n| self.node_place(n as usize) - p);
+        let [d, e] =
+            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
         let chord = e - d;
         let faces = chord.perp(&normal) > -ENTRANCE_SINE * chord.norm();
         faces && [d, e].iter().all(|d| d.dot(&normal) >= -ENTRANCE_SINE * d.norm())
@@ -392,10 +391,8 @@ impl Narrow<'_> {
             let common = share * (1.0 - 2.0 * z + metric.square[block] * share);
             for (k, axis) in axes.iter().enumerate() {
                 let lever = contact.arms[body].perp(axis);
-                contact.compliance[k] += own.x * axis.x * axis.x
-                    + own.y * axis.y * axis.y
-                    + common
-                    + metric.spin[block] * lever * lever;
+                contact.compliance[k] +=
+                    own.x * axis.x * axis.x + own.y * axis.y * axis.y + common + metric.spin[block] * lever * lever;
             }
         }
     }

@@ -67,7 +67,8 @@ impl SearchGrid {
             }
             self.near.clear();
             let bucket = self.bucket(cell_of(p.x, cell), cell_of(p.y, cell));
-            for &edge in &self.bucket_edges[self.bucket_start[bucket] as usize..self.bucket_start[bucket + 1] as usize] {
+            for &edge in &self.bucket_edges[self.bucket_start[bucket] as usize..self.bucket_start[bucket + 1] as usize]
+            {
                 let e = edge as usize;
                 if may_meet(boundary, node, e, fixed)
                     && segment::distance(p, place[e], place[boundary.after(e)]) < cutoff

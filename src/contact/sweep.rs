@@ -5,6 +5,11 @@ use crate::mechanics::Metric;
 
 use super::{ContactState, Support, SupportRow, VertexEdge};
 
+/// Most sweeps over the supports within one sweep over the contacts.
+const SUPPORT_SWEEPS_MAX: u32 = 10;
+/// Change of a support's force, relative to the largest, at which the supports have settled.
+const SUPPORT_TOLERANCE: f64 = 1e-4;
+
 /// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time, Eq. (17).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockPush {
@@ -92,21 +97,38 @@ impl OpenClose<'_> {
         change / largest
     }
 
+    /// Sweeps the supports to and fro until they settle; returns the first sweep's change over the largest force.
     fn sweep_supports(&mut self, supports: &[Support], rows: &mut [SupportRow]) -> f64 {
-        let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
-        for row in rows {
-            let support = &supports[row.support as usize];
-            let dt = self.options.dt;
-            let velocity = row.approach + support.sample(self.increment);
-            let (k, w) = (support.stiffness, row.compliance);
-            let force = (support.preload - k * (row.displacement + dt * velocity) + k * dt * dt * w * row.force)
-                / (1.0 + k * dt * dt * w);
-            support.push((force - row.force) * dt, self.metric, self.increment);
-            change = change.max((force - row.force).abs());
-            row.force = force;
-            largest = largest.max(force.abs());
+        let mut first = None;
+        for _ in 0..SUPPORT_SWEEPS_MAX {
+            let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
+            for row in rows.iter_mut() {
+                change = change.max(self.bear(&supports[row.support as usize], row));
+            }
+            for row in rows.iter_mut().rev() {
+                change = change.max(self.bear(&supports[row.support as usize], row));
+                largest = largest.max(row.force.abs());
+            }
+            first.get_or_insert(change / largest);
+            if change <= SUPPORT_TOLERANCE * largest {
+                break;
+            }
         }
-        change / largest
+        first.unwrap_or(0.0)
+    }
+
+    /// Updates the force of one support; returns its change (N/m).
+    fn bear(&mut self, support: &Support, row: &mut SupportRow) -> f64 {
+        let dt = self.options.dt;
+        let velocity = row.approach + support.sample(self.increment);
+        let a = support.stiffness * self.options.theta * dt;
+        let force = (support.preload - support.stiffness * row.displacement - a * velocity
+            + a * dt * row.compliance * row.force)
+            / (1.0 + a * dt * row.compliance);
+        let change = force - row.force;
+        support.push(change * dt, self.metric, self.increment);
+        row.force = force;
+        change.abs()
     }
 
     /// Judges one contact open, slip or lock; returns the change of its force (N/m).

@@ -2,10 +2,10 @@
 
 use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 
+use super::Weights;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::morton;
 use super::outlines::{Outlines, mesh_only};
-use super::Weights;
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
 #[derive(Debug, Clone)]

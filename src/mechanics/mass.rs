@@ -38,11 +38,8 @@ pub struct Metric {
 impl Metric {
     /// Masses of all blocks as if free.
     pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
-        let mut metric = Self {
-            mass: vec![0.0; covers.cover_count()],
-            row_sum: vec![0.0; covers.cover_count()],
-            ..Self::default()
-        };
+        let mut metric =
+            Self { mass: vec![0.0; covers.cover_count()], row_sum: vec![0.0; covers.cover_count()], ..Self::default() };
         for e in 0..covers.element_count() {
             let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
             let weights = covers.weights(e, covers.element_centroid[e]);
@@ -64,19 +61,16 @@ impl Metric {
         let density = |e: usize| rocks[element_rock[e] as usize].density;
         let total: f64 = self.row_sum[range.clone()].iter().sum();
         let elements = covers.elements_of(block);
-        let centre: Point = elements
-            .clone()
-            .map(|e| covers.element_centroid[e] * (density(e) * covers.element_area[e]))
-            .sum::<Point>()
-            / total;
+        let centre: Point =
+            elements.clone().map(|e| covers.element_centroid[e] * (density(e) * covers.element_area[e])).sum::<Point>()
+                / total;
         let polar: f64 = elements
             .map(|e| {
                 let arm = (covers.element_centroid[e] - centre).norm_squared();
                 density(e) * (covers.element_polar[e] + covers.element_area[e] * arm)
             })
             .sum();
-        let lumped_centre: Point =
-            range.clone().map(|i| covers.star_position[i] * self.mass[i]).sum::<Point>() / total;
+        let lumped_centre: Point = range.clone().map(|i| covers.star_position[i] * self.mass[i]).sum::<Point>() / total;
         let polar_lumped: f64 =
             range.clone().map(|i| self.mass[i] * (covers.star_position[i] - lumped_centre).norm_squared()).sum();
         self.total.push(total);

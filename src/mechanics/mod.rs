@@ -11,4 +11,4 @@ pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress};
 pub use load::{Load, LoadAction, TimeTable};
 pub use mass::Metric;
-pub use motion::{BlockMotion, Damping, Kick, kick, kinetic_energy, rigid_motion, rigid_velocity};
+pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};

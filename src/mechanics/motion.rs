@@ -18,21 +18,18 @@ pub enum Damping {
     Mass(f64),
 }
 
-/// Rigid motion of a block and what one kick took from it.
+/// Where a block is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockMotion {
     /// Centroid (m).
     pub centre: Point,
-    /// Kinetic energy taken by damping in this step (J/m).
-    pub damped: f64,
 }
 
-/// Sums over the covers of a block that describe its motion.
+/// A velocity field of a block, split into its rigid part and sums over the rest.
 struct Sums {
     velocity: Vector,
-    spin: f64,
+    linear: Vector,
     moment: f64,
-    square: f64,
 }
 
 /// One block's slices of the cover arrays, and the block's place in the metric.
@@ -68,45 +65,70 @@ impl Kick<'_> {
         first / self.metric.total[self.block]
     }
 
-    /// Rigid velocity, spin and the sums of the deformation, theory Eq. (5).
-    fn sums(&self, centre: Point) -> Sums {
+    /// Rigid velocity of a field and the sums of what is left, theory Eq. (5).
+    fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let metric = self.metric;
         let total = metric.total[self.block];
-        let velocity =
-            self.covers.clone().map(|i| self.velocity[i] * metric.inertial[i]).sum::<Vector>() / total;
-        let (mut moment, mut square) = (0.0, 0.0);
-        let (mut first, mut linear) = (Vector::zeros(), Vector::zeros());
+        let velocity = self.covers.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
+        let (mut moment, mut first, mut linear) = (0.0, Vector::zeros(), Vector::zeros());
         for i in self.covers.clone() {
-            let (m, d, u) = (metric.mass[i], self.place(i) - centre, self.velocity[i] - velocity);
+            let (m, d, u) = (metric.mass[i], self.place(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
-            square += m * u.norm_squared();
         }
         moment -= first.perp(&linear) / total;
-        square -= linear.norm_squared() / total;
-        Sums { velocity, spin: moment / metric.polar_lumped[self.block], moment, square }
+        Sums { velocity, linear, moment }
+    }
+
+    /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
+    fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
+        let sum: f64 =
+            self.covers.clone().map(|i| self.metric.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity))).sum();
+        sum - of.linear.dot(&with.linear) / self.metric.total[self.block]
+    }
+
+    fn spin(&self, sums: &Sums) -> f64 {
+        sums.moment / self.metric.polar_lumped[self.block]
     }
 }
 
 /// Kinetic energy (J/m) of a block in its metric, theory Eq. (5).
 pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (metric, block) = (kick.metric, kick.block);
-    if !metric.is_free(block) {
-        return kick.covers.clone().map(|i| 0.5 * metric.mass[i] * kick.velocity[i].norm_squared()).sum();
-    }
-    let sums = kick.sums(kick.centre());
-    let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
+    let sums = kick.sums(kick.velocity, kick.centre());
+    let spin = kick.spin(&sums);
     0.5 * metric.total[block] * sums.velocity.norm_squared()
-        + 0.5 * sums.square
-        + 0.5 * (polar - lumped) / (lumped * lumped) * sums.moment * sums.moment
+        + 0.5 * kick.product(kick.velocity, kick.velocity, &sums, &sums)
+        + 0.5 * (metric.polar[block] - metric.polar_lumped[block]) * spin * spin
+}
+
+/// Work (J/m) that damping took in a step that ended with velocities `after`: the lost momentum times the mean of the
+/// velocities before and after, theory Eq. (18).
+pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
+    let (factor, whole) = match kick.damping {
+        Damping::Deformation(factor) => (factor, 0.0),
+        Damping::Mass(factor) => (factor, 1.0),
+    };
+    if factor >= 1.0 {
+        return 0.0;
+    }
+    let (metric, block, centre) = (kick.metric, kick.block, kick.centre());
+    let [old, new] = [kick.velocity, after].map(|field| kick.sums(field, centre));
+    let rigid = |with: &Sums| {
+        metric.total[block] * old.velocity.dot(&with.velocity) + metric.polar[block] * kick.spin(&old) * kick.spin(with)
+    };
+    let deforming =
+        |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - kick.spin(&old) * with.moment;
+    let both = deforming(kick.velocity, &old) + deforming(after, &new) + whole * (rigid(&old) + rigid(&new));
+    0.5 * (1.0 - factor) * both
 }
 
 /// Rigid motion of a block in its metric: centroid (m), its velocity (m/s) and the spin (rad/s).
 pub fn rigid_motion(kick: &Kick) -> (Point, Vector, f64) {
     let centre = kick.centre();
-    let sums = kick.sums(centre);
-    (centre, sums.velocity, sums.spin)
+    let sums = kick.sums(kick.velocity, centre);
+    (centre, sums.velocity, kick.spin(&sums))
 }
 
 /// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
@@ -118,10 +140,10 @@ pub fn rigid_velocity(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vecto
 }
 
 /// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes the `damped` and the
-/// `predicted` velocities and returns centroid and damped energy, theory Eqs. (3), (10)–(12).
+/// `predicted` velocities, theory Eqs. (3), (10)–(12).
 pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mut [Vector]) -> BlockMotion {
     let centre = kick.centre();
-    let loss = damp(kick, centre, predicted);
+    damp(kick, centre, predicted);
     damped.copy_from_slice(predicted);
     if kick.metric.is_free(kick.block) {
         push_free(kick, centre, force, predicted);
@@ -131,31 +153,26 @@ pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mu
             predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
         }
     }
-    BlockMotion { centre, damped: loss }
+    BlockMotion { centre }
 }
 
-fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) -> f64 {
+fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
     let own = &kick.velocity[kick.covers.clone()];
     match kick.damping {
         Damping::Deformation(factor) if factor < 1.0 => {
-            let sums = kick.sums(centre);
+            let sums = kick.sums(kick.velocity, centre);
+            let spin = kick.spin(&sums);
             for (k, i) in kick.covers.clone().enumerate() {
-                let rigid = sums.velocity + turned(kick.place(i) - centre) * sums.spin;
+                let rigid = sums.velocity + turned(kick.place(i) - centre) * spin;
                 let held = kick.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
                 predicted[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
-            let deforming = 0.5 * (sums.square - sums.moment * sums.moment / kick.metric.polar_lumped[kick.block]);
-            (1.0 - factor * factor) * deforming
         }
-        Damping::Deformation(_) => {
-            predicted.copy_from_slice(own);
-            0.0
-        }
+        Damping::Deformation(_) => predicted.copy_from_slice(own),
         Damping::Mass(factor) => {
             for (new, old) in predicted.iter_mut().zip(own) {
                 *new = old * factor;
             }
-            (1.0 - factor * factor) * kinetic_energy(kick)
         }
     }
 }

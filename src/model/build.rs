@@ -91,15 +91,15 @@ fn stiffest(rocks: &[Elasticity]) -> f64 {
 /// The internal step: an integer fraction of a tenth of the communication step, within the stability limit.
 fn internal_step(case: &Case, critical: f64) -> f64 {
     let limit = (case.solver.dt_safety * critical).min(case.solver.dt_max.unwrap_or(f64::INFINITY));
-    let communication = case.solver.communication_step.unwrap_or_else(|| round_above(10.0 * limit));
-    let tenth = communication / 10.0;
+    let tenth = case.solver.communication_step.map_or_else(|| two_digits_below(limit), |step| step / 10.0);
     tenth / (tenth / limit - 1e-9).ceil().max(1.0)
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below `value`.
-fn round_above(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= value * (1.0 - 1e-12)).unwrap_or(value)
+/// The largest number of two decimal digits that is not above `value`.
+fn two_digits_below(value: f64) -> f64 {
+    let power = value.log10().floor() as i32 - 1;
+    let digits = (value / 10f64.powi(power) + 1e-9).floor();
+    if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
 /// The laws of the case by name; a continuum, which needs none, has one without strength.
@@ -139,13 +139,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
     }
 }
 
+/// Angular frequency of each block's deformation, theory Eq. (11); a block smaller than an element deforms like one.
 fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
     let of_block = |b: usize| {
-        let speed = covers
-            .elements_of(b)
-            .map(|e| rocks[element_rock[e] as usize].shear_wave_speed())
-            .fold(0.0, f64::max);
-        2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt()
+        let speed =
+            covers.elements_of(b).map(|e| rocks[element_rock[e] as usize].shear_wave_speed()).fold(0.0, f64::max);
+        2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt().max(covers.mesh.size)
     };
     (0..covers.block_count()).map(of_block).collect()
 }
@@ -168,10 +167,10 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
         let mut fixity = Fixity { name: fix.name.clone(), covers: Vec::new(), active: fix.active };
         let mut held = Vec::new();
         if let Some(point) = fix.point {
-            let stiff = fix.stiffness.unwrap_or(SUPPORT_RATIO * stiffness * places.covers.mesh.size);
+            let stiff = fix.stiffness.unwrap_or(POINT_RATIO * stiffness * places.covers.mesh.size);
             held.push(places.point(&format!("{key}.point"), point)?.support(stiff));
         } else if let Some(edge) = fix.edge {
-            let stiff = fix.stiffness.unwrap_or(SUPPORT_RATIO * stiffness);
+            let stiff = fix.stiffness.unwrap_or(EDGE_RATIO * stiffness);
             let stress = |p: Point| in_situ_at(case, p);
             held.extend(places.boundary(&format!("{key}.edge"), edge)?.iter().map(|p| p.support(stiff, &stress)));
         } else if let Some(region) = fix.region {
@@ -197,8 +196,10 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
     Ok((fixities, supports))
 }
 
-/// Stiffness of supports over that of contacts.
-const SUPPORT_RATIO: f64 = 1000.0;
+/// Stiffness of supported edges over that of contacts.
+const EDGE_RATIO: f64 = 100.0;
+/// Stiffness of supported points over that of contacts of the length of a mesh size.
+const POINT_RATIO: f64 = 1000.0;
 
 fn in_situ_at(case: &Case, p: Point) -> [f64; 3] {
     case.in_situ.as_ref().map_or([0.0; 3], |s| {
@@ -295,7 +296,9 @@ fn warnings(noding: &NodingReport, mut warnings: Vec<String>) -> Vec<String> {
     }
     let ignored = ignored_traces(noding).len();
     if ignored > 0 {
-        warnings.push(format!("{ignored} joint traces cut no rock (outside the outline, or dead ends within one triangle)"));
+        warnings.push(format!(
+            "{ignored} joint traces cut no rock (outside the outline, or dead ends within one triangle)"
+        ));
     }
     if !noding.overlapping_traces.is_empty() {
         warnings.push(format!(

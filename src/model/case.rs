@@ -287,7 +287,7 @@ pub struct Fix {
     /// What is held.
     #[serde(default)]
     pub axes: Axes,
-    /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 times the contact stiffness.
+    /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 and 100 times the contact's.
     #[serde(default)]
     pub stiffness: Option<f64>,
     /// Whether it holds from the start.
@@ -508,7 +508,8 @@ pub enum Integrator {
 pub struct Solver {
     /// Time integration.
     pub integrator: Integrator,
-    /// Communication step (s); the internal step is an integer fraction of its tenth.
+    /// Communication step (s); the internal step is an integer fraction of its tenth. Default: ten internal steps of
+    /// the stability limit rounded down to two digits.
     pub communication_step: Option<f64>,
     /// Largest internal step (s); default: the stability limit.
     pub dt_max: Option<f64>,

@@ -29,7 +29,7 @@ pub struct Slope {
     pub pre_stress: Vec<PreStress>,
     /// Masses of all blocks as if free.
     pub metric: Metric,
-    /// 2π·cs/√A of each block (1/s): what the damping ratio multiplies.
+    /// 2π·cs/max(√A, h) of each block (1/s): what the damping ratio multiplies.
     pub block_frequency: Vec<f64>,
     /// Boundary as contact sees it.
     pub boundary: Boundary,

@@ -93,13 +93,24 @@ impl Pass<'_> {
             return BlockMotion::default();
         }
         self.push_elements(block, force);
-        let kick = Kick {
+        mechanics::kick(&self.kick(metric, block), force, predicted, damped)
+    }
+
+    fn kick<'a>(&'a self, metric: &'a mechanics::Metric, block: usize) -> Kick<'a> {
+        Kick {
             acceleration: self.acceleration,
             damping: self.block_damping(block),
             dt: self.dt,
             ..resting(self.slope, metric, &self.state.displacement, &self.state.velocity, block)
-        };
-        mechanics::kick(&kick, force, predicted, damped)
+        }
+    }
+
+    /// Work (J/m) that damping took from all blocks in a step that ended with the predicted velocities of the scratch.
+    pub fn damping_work(&self, scratch: &Scratch) -> f64 {
+        (0..scratch.motion.len())
+            .filter(|&b| !scratch.metric.fixed[b])
+            .map(|b| mechanics::damping_work(&self.kick(&scratch.metric, b), &scratch.predicted))
+            .sum()
     }
 
     /// Adds the element forces of a block to its covers, theory Eq. (7).

@@ -6,7 +6,7 @@ use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
-use super::{Regime, Step, StepReport, report};
+use super::{Regime, Step, StepReport, blocks, report};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
@@ -58,30 +58,30 @@ impl Step<'_> {
     /// Works of this sub-step: each force by the mean of the velocities before and after it, theory Eq. (18).
     fn works(&self, dt: f64) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let mut works = Ledger { damping: scratch.motion.iter().map(|m| m.damped).sum(), ..Ledger::default() };
+        let pass = blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt };
+        let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
         for contact in &scratch.contacts {
-            let before = contact.relative(&scratch.damped);
+            let before = contact.relative(&state.velocity);
             let after = contact.relative(&scratch.predicted);
             let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * dt);
-            works.contact_work +=
-                contact.history.normal_force * normal + contact.history.shear_force * shear;
+            works.contact_work += contact.history.normal_force * normal + contact.history.shear_force * shear;
             if contact.history.state == ContactState::Slip {
                 let (stored, _) = contact.shear_after(after[1] * dt);
                 let old = contact.history.shear_stored;
-                works.friction -= contact.history.shear_force * shear
-                    + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
+                works.friction -=
+                    contact.history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
             }
         }
         for row in &scratch.rows {
             let support = &slope.supports[row.support as usize];
-            let velocity = 0.5 * (support.sample(&scratch.damped) + support.sample(&scratch.predicted));
+            let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
             works.support_work += row.force * velocity * dt;
         }
         let kick_dt = 0.5 * (state.dt_last + dt);
         let extra = self.acceleration() - slope.gravity;
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
-            works.external_work += force.dot(&(scratch.damped[i] + scratch.predicted[i])) * (0.5 * kick_dt);
+            works.external_work += force.dot(&(state.velocity[i] + scratch.predicted[i])) * (0.5 * kick_dt);
         }
         works
     }
@@ -89,9 +89,7 @@ impl Step<'_> {
     /// Energies at the start of this sub-step and the unbalanced ratio.
     fn report(&self, dt: f64, works: &Ledger) -> StepReport {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let kinetic = |velocity: &[Vector]| {
-            report::kinetic(slope, &scratch.metric, &state.displacement, velocity)
-        };
+        let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.metric, &state.displacement, velocity);
         let mut ledger = state.ledger;
         ledger.add_works(works, 0.5);
         ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));

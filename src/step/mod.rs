@@ -55,7 +55,8 @@ pub fn advance(
     report: bool,
 ) -> Result<StepReport, StepError> {
     let time = state.stage_start + state.stage_step as f64 * slope.dt;
-    let mut step = Step { slope, regime, state, scratch, time, report };
+    let damping = Damping::Deformation(0.0);
+    let mut step = Step { slope, regime, state, scratch, time, report, damping };
     let outcome = step.interval(slope.dt, 0);
     step.guard()?;
     state.stage_step += 1;
@@ -82,6 +83,7 @@ struct Step<'a> {
     scratch: &'a mut Scratch,
     time: f64,
     report: bool,
+    damping: Damping,
 }
 
 impl Step<'_> {
@@ -134,9 +136,14 @@ impl Step<'_> {
             let covers = |b: u32| slope.covers.covers_of(b as usize);
             load.push(self.time, place, covers, &slope.metric.row_sum, &mut scratch.load_force);
         }
-        let acceleration = self.acceleration();
-        let damping = self.damping(dt);
-        let pass = blocks::Pass { slope, state: self.state, acceleration, damping, dt: kick_dt };
+        self.damping = self.damping_of(dt);
+        let pass = blocks::Pass {
+            slope,
+            state: &*self.state,
+            acceleration: self.acceleration(),
+            damping: self.damping,
+            dt: kick_dt,
+        };
         pass.run(self.scratch);
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
@@ -159,7 +166,7 @@ impl Step<'_> {
     }
 
     /// Damping of a step of `dt` (s), theory Eqs. (11), (12).
-    fn damping(&self, dt: f64) -> Damping {
+    fn damping_of(&self, dt: f64) -> Damping {
         match self.regime {
             Regime::Dynamic { damping } => Damping::Deformation(damping * dt),
             Regime::Static { .. } => {
@@ -218,14 +225,9 @@ impl Step<'_> {
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         scratch.increment.fill(Vector::zeros());
         scratch.push.fill(contact::BlockPush::default());
-        let options =
-            SweepOptions { dt, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
-        let iteration = OpenClose {
-            metric: &scratch.metric,
-            options,
-            increment: &mut scratch.increment,
-            push: &mut scratch.push,
-        };
+        let options = SweepOptions { dt, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
+        let iteration =
+            OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
         let swept = contact::open_close(iteration, &mut scratch.contacts, &slope.supports, &mut scratch.rows);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept

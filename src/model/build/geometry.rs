@@ -108,9 +108,8 @@ fn check_memory(case: &Case, low: Point, high: Point) -> Result<(), Invalid> {
 
 /// Joint traces of the case, then those of its sets, with their laws.
 fn traces(case: &Case, low: Point, high: Point, default_law: u32) -> Result<Vec<(Vec<Point>, u32)>, Invalid> {
-    let law = |name: &Option<String>| {
-        name.as_ref().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(default_law)
-    };
+    let law =
+        |name: &Option<String>| name.as_ref().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(default_law);
     let mut traces: Vec<(Vec<Point>, u32)> =
         case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
     let box_points = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];

@@ -57,7 +57,10 @@ fn claim(
         let name = case.rocks.keys().nth(other).map_or("", String::as_str);
         return Err(Invalid {
             key: key.into(),
-            message: format!("the rock at ({:.6}, {:.6}) belongs to `{name}` already: let them not overlap", at.x, at.y),
+            message: format!(
+                "the rock at ({:.6}, {:.6}) belongs to `{name}` already: let them not overlap",
+                at.x, at.y
+            ),
         });
     }
     owner[element] = Some(rock);
