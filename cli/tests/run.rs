@@ -24,7 +24,7 @@ fn every_promised_file_is_there_and_whole() {
     assert_eq!(summary["status"], "finished");
     assert_eq!(summary["stages"][0]["name"], "rest");
     assert!(summary["stages"][0]["converged"].is_boolean() && summary["stages"][1]["converged"].is_null());
-    assert!(summary["energy"]["residual_relative"].is_f64());
+    assert!(summary["energy"]["residual_relative"].as_f64().expect("a number").abs() < 5e-2);
     let blocks = fs::read_to_string(place.path("case/blocks.csv")).expect("blocks");
     assert!(blocks.starts_with("id,fixed,removed,detached,centroid_x [m],"), "{blocks}");
     assert_eq!(blocks.lines().count(), 1 + 3);

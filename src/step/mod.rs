@@ -68,7 +68,8 @@ pub fn advance(
 pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> Vec<VertexEdge> {
     let (mut state, mut scratch) = (state.clone(), scratch.clone());
     let time = state.stage_start + state.stage_step as f64 * slope.dt;
-    let mut step = Step { slope, regime, state: &mut state, scratch: &mut scratch, time, report: false };
+    let damping = Damping::Deformation(0.0);
+    let mut step = Step { slope, regime, state: &mut state, scratch: &mut scratch, time, report: false, damping };
     step.search();
     step.predict(slope.dt);
     step.entrance(slope.dt);
