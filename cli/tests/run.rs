@@ -75,38 +75,74 @@ fn a_numerical_failure_exits_with_3_and_keeps_the_last_good_state() {
     assert_eq!(again.status, Some(3), "the same failure again: {again:?}");
 }
 
+/// Runs a long case into `parts` and ends it with `signal` in its second stage; asserts its status.
 #[cfg(unix)]
-#[test]
-fn an_interrupted_run_continues_to_the_results_of_an_uninterrupted_one() {
-    let place = Place::with(&case(40.0).replace("friction_deg = 0.1", "friction_deg = 20"));
+fn stop(place: &Place, signal: &str, status: Option<i32>) {
     let child = place.start(&["run", "case.toml", "-o", "parts"]);
     let begin = Instant::now();
     let rows = || fs::read_to_string(place.path("parts/history.csv")).map_or(0, |text| text.lines().count());
-    while rows() < 530 {
+    while rows() < 200 {
         assert!(begin.elapsed() < Duration::from_secs(60), "no rows");
         std::thread::sleep(Duration::from_millis(2));
     }
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
     assert!(killed.success());
     let answer = Answer::of(child.wait_with_output().expect("an end"));
-    assert_eq!(answer.status, Some(130), "{answer:?}");
-    assert_eq!(json(&place.path("parts/summary.json"))["status"], "interrupted");
-    let continued = ["run", "case.toml", "-o", "parts", "--resume", "parts/checkpoint.enmm", "--quiet"];
-    assert_eq!(place.enmm(&continued).status, Some(0));
-    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
-    let same = || {
-        for name in ["blocks.csv", "history.csv", "run.pvd", "deformed.png", "frames/joints_0015.vtu"] {
-            let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
-            assert!(read("parts") == read("whole"), "{name}");
-        }
-        let stages = |folder: &str| {
-            let mut stages = json(&place.path(folder).join("summary.json"))["stages"].clone();
-            stages.as_array_mut().expect("stages").iter_mut().for_each(|stage| stage["wall_seconds"] = 0.into());
-            stages
-        };
-        assert_eq!(stages("parts"), stages("whole"));
+    assert_eq!(answer.status, status, "{answer:?}");
+}
+
+/// Asserts that `parts` and `whole` have the same results, wall times apart.
+#[cfg(unix)]
+fn assert_same(place: &Place) {
+    for name in ["blocks.csv", "history.csv", "run.pvd", "deformed.png", "frames/joints_0015.vtu"] {
+        let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
+        assert!(read("parts") == read("whole"), "{name}");
+    }
+    let stages = |folder: &str| {
+        let mut stages = json(&place.path(folder).join("summary.json"))["stages"].clone();
+        stages.as_array_mut().expect("stages").iter_mut().for_each(|stage| stage["wall_seconds"] = 0.into());
+        stages
     };
-    same();
-    assert_eq!(place.enmm(&continued).status, Some(0), "a finished run writes its results again");
-    same();
+    assert_eq!(stages("parts"), stages("whole"));
+}
+
+/// Six hundred thousand steps of a block that rests.
+#[cfg(unix)]
+fn long_rest() -> String {
+    case(300.0).replace("friction_deg = 0.1", "friction_deg = 20")
+}
+
+#[cfg(unix)]
+const CONTINUED: [&str; 7] = ["run", "case.toml", "-o", "parts", "--resume", "parts/checkpoint.enmm", "--quiet"];
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_continues_to_the_results_of_an_uninterrupted_one() {
+    let place = Place::with(&long_rest());
+    stop(&place, "-INT", Some(130));
+    assert_eq!(json(&place.path("parts/summary.json"))["status"], "interrupted");
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    assert_same(&place);
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0), "a finished run writes its results again");
+    assert_same(&place);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_continues_from_its_last_checkpoint() {
+    let place = Place::with(&format!("{}\n[output]\ncheckpoint_interval = 7.0\n", long_rest()));
+    stop(&place, "-KILL", None);
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    assert_same(&place);
+}
+
+#[test]
+fn the_schema_is_printed_as_json() {
+    let place = Place::with("");
+    let answer = place.enmm(&["schema"]);
+    assert_eq!((answer.status, answer.stderr.as_str()), (Some(0), ""));
+    let schema: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    assert!(schema["properties"]["mesh"].is_object());
 }
