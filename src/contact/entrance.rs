@@ -168,37 +168,28 @@ impl Narrow<'_> {
         let tolerance = self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE };
         let side = pick.side as usize;
         let next = boundary.side_next[side] as usize;
-        let start =
-            (boundary.side_first[side] == pick.edge, boundary.side_corner[side], self.place[pick.edge as usize]);
-        let end_point = self.ends(pick.edge as usize).1;
-        let end = (boundary.side_last[side] == pick.edge, boundary.side_corner[next], end_point);
-        let round =
-            [boundary.side_last[boundary.side_previous[side] as usize] as usize, boundary.side_first[next] as usize];
-        let past = [pick.along < 0.0, pick.along > pick.length];
-        for (k, (ends_here, corner, point)) in [start, end].into_iter().enumerate() {
-            let strict = ends_here && corner == Corner::Convex;
-            if past[k] && beyond > if strict { tolerance } else { WEDGE_TOLERANCE * self.size } {
-                return false;
-            }
-            if strict && (p - point).norm() < self.size {
-                let (a, b) = self.ends(round[k]);
-                let outward = Vector::new(b.y - a.y, a.x - b.x);
-                if (p - point).dot(&outward) > tolerance * outward.norm() {
-                    return false;
-                }
-            }
-        }
-        true
+        let [first, last] = [boundary.side_first[side], boundary.side_last[side]];
+        let ends = [
+            (first, boundary.side_corner[side], self.place[first as usize], pick.along < 0.0),
+            (last, boundary.side_corner[next], self.ends(last as usize).1, pick.along > pick.length),
+        ];
+        let round = [boundary.side_last[boundary.side_previous[side] as usize], boundary.side_first[next]];
+        ends.into_iter().zip(round).filter(|(end, _)| end.1 == Corner::Convex).all(|((edge, _, point, past), round)| {
+            let (a, b) = self.ends(round as usize);
+            let outward = Vector::new(b.y - a.y, a.x - b.x);
+            let outside = (p - point).dot(&outward) > tolerance * outward.norm();
+            let missed = edge == pick.edge && past && beyond > tolerance;
+            !missed && !(outside && (p - point).norm() < self.size)
+        })
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        let [d, e] =
-            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
-        let chord = e - d;
-        let faces = chord.perp(&normal) > -ENTRANCE_SINE * chord.norm();
-        faces && [d, e].iter().all(|d| d.dot(&normal) >= -ENTRANCE_SINE * d.norm())
+        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
+            .map(|n| self.node_place(n as usize) - p);
+        let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
+        outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
@@ -396,4 +387,15 @@ impl Narrow<'_> {
             }
         }
     }
+}
+
+/// Whether the rock between the directions to the previous and the next node is a corner of less than half a turn.
+fn is_convex(previous: Vector, next: Vector) -> bool {
+    let (cross, dot) = (next.perp(&previous), next.dot(&previous));
+    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * previous.norm() * next.norm())
+}
+
+/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge.
+fn faces(chord: Vector, normal: Vector) -> bool {
+    chord.perp(&normal) > -ENTRANCE_SINE * chord.norm()
 }
