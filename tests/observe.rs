@@ -75,8 +75,8 @@ y = 0
     run_all(&mut simulation);
     let (time, blocks) = (simulation.time(), simulation.block_states());
     let block = blocks.iter().find(|block| !block.fixed).expect("a free block");
-    // Free flight: translation and spin go on; the block stretches by ρω²L²/E ~ 1e-6, and the leapfrog places a rotation
-    // by ω·dt to second order, (ω·dt)²/12 ~ 1e-8 of it.
+    // Free flight: translation and spin go on; the block stretches by ρω²L²/E ~ 1e-6, and the leapfrog places a
+    // rotation by ω·dt to second order, (ω·dt)²/12 ~ 1e-8 of it.
     assert!((block.displacement - Vector::new(0.5, 2.0) * time).norm() < 1e-10, "{block:?}");
     assert!((block.rotation - 1.5 * time).abs() < 1e-6, "{block:?}");
     assert!((block.angular_velocity - 1.5).abs() < 1e-5, "{block:?}");
