@@ -24,8 +24,10 @@ pub struct BlockPush {
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepOptions {
-    /// Step (s).
+    /// Step (s) over which places move.
     pub dt: f64,
+    /// Time (s) over which forces act: the mean of this step and the one before it, theory Eq. (10).
+    pub kick: f64,
     /// θ of the contact springs.
     pub theta: f64,
     /// Settled when no force changes by more than this share of the largest.
@@ -80,10 +82,10 @@ impl OpenClose<'_> {
     fn warm_start(&mut self, contacts: &mut [VertexEdge], supports: &[Support], rows: &mut [SupportRow]) {
         for contact in contacts {
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            self.push(contact, force * self.options.dt);
+            self.push(contact, force * self.options.kick);
         }
         for row in rows {
-            supports[row.support as usize].push(row.force * self.options.dt, self.metric, self.increment);
+            supports[row.support as usize].push(row.force * self.options.kick, self.metric, self.increment);
         }
     }
 
@@ -119,34 +121,34 @@ impl OpenClose<'_> {
 
     /// Updates the force of one support; returns its change (N/m).
     fn bear(&mut self, support: &Support, row: &mut SupportRow) -> f64 {
-        let dt = self.options.dt;
+        let SweepOptions { dt, kick, .. } = self.options;
         let velocity = row.approach + support.sample(self.increment);
         let a = support.stiffness * self.options.theta * dt;
         let force = (support.preload - support.stiffness * row.displacement - a * velocity
-            + a * dt * row.compliance * row.force)
-            / (1.0 + a * dt * row.compliance);
+            + a * kick * row.compliance * row.force)
+            / (1.0 + a * kick * row.compliance);
         let change = force - row.force;
-        support.push(change * dt, self.metric, self.increment);
+        support.push(change * kick, self.metric, self.increment);
         row.force = force;
         change.abs()
     }
 
     /// Judges one contact open, slip or lock; returns the change of its force (N/m).
     fn judge(&mut self, contact: &mut VertexEdge) -> f64 {
-        let dt = self.options.dt;
+        let SweepOptions { dt, kick, .. } = self.options;
         let relative = self.increment_at(contact, 0) - self.increment_at(contact, 1);
         let tangent = contact.tangent();
         let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
         let shear_velocity = contact.approach[1] + relative.dot(&tangent);
         let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
         let [a, b] = [0, 1].map(|k| contact.stiffness[k] * self.options.theta * dt);
-        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * dt);
+        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
         let normal = (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
         let shear = (contact.history.shear_stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
         if step != [0.0; 2] {
-            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * dt);
+            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * kick);
         }
         step[0].abs().max(step[1].abs())
     }

@@ -23,6 +23,8 @@ pub enum Damping {
 pub struct BlockMotion {
     /// Centroid (m).
     pub centre: Point,
+    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current places; 0 of a held one.
+    pub spin: f64,
 }
 
 /// A velocity field of a block, split into its rigid part and sums over the rest.
@@ -30,6 +32,8 @@ struct Sums {
     velocity: Vector,
     linear: Vector,
     moment: f64,
+    /// Polar inertia of the lumped masses about their own centroid at the current places (kg·m²/m).
+    polar: f64,
 }
 
 /// One block's slices of the cover arrays, and the block's place in the metric.
@@ -70,15 +74,30 @@ impl Kick<'_> {
         let metric = self.metric;
         let total = metric.total[self.block];
         let velocity = self.covers.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
-        let (mut moment, mut first, mut linear) = (0.0, Vector::zeros(), Vector::zeros());
+        let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
         for i in self.covers.clone() {
             let (m, d, u) = (metric.mass[i], self.place(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
+            polar += m * d.norm_squared();
         }
         moment -= first.perp(&linear) / total;
-        Sums { velocity, linear, moment }
+        polar -= first.norm_squared() / total;
+        Sums { velocity, linear, moment, polar }
+    }
+
+    /// C at the current places: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
+    fn correction(&self, centre: Point) -> f64 {
+        let (metric, block) = (self.metric, self.block);
+        let (mut first, mut polar) = (Vector::zeros(), 0.0);
+        for i in self.covers.clone() {
+            let d = self.place(i) - centre;
+            first += d * metric.mass[i];
+            polar += metric.mass[i] * d.norm_squared();
+        }
+        polar -= first.norm_squared() / metric.total[block];
+        (metric.polar_lumped[block] / metric.polar[block] - 1.0) / polar
     }
 
     /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
@@ -97,10 +116,10 @@ impl Kick<'_> {
 pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (metric, block) = (kick.metric, kick.block);
     let sums = kick.sums(kick.velocity, kick.centre());
-    let spin = kick.spin(&sums);
+    let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
     0.5 * metric.total[block] * sums.velocity.norm_squared()
         + 0.5 * kick.product(kick.velocity, kick.velocity, &sums, &sums)
-        + 0.5 * (metric.polar[block] - metric.polar_lumped[block]) * spin * spin
+        + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
 
 /// Work (J/m) that damping took in a step that ended with velocities `after`: the lost momentum times the mean of the
@@ -115,11 +134,10 @@ pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
     }
     let (metric, block, centre) = (kick.metric, kick.block, kick.centre());
     let [old, new] = [kick.velocity, after].map(|field| kick.sums(field, centre));
-    let rigid = |with: &Sums| {
-        metric.total[block] * old.velocity.dot(&with.velocity) + metric.polar[block] * kick.spin(&old) * kick.spin(with)
-    };
-    let deforming =
-        |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - kick.spin(&old) * with.moment;
+    let turning = |with: &Sums| old.moment * with.moment / old.polar;
+    let share = metric.polar[block] / metric.polar_lumped[block];
+    let rigid = |with: &Sums| metric.total[block] * old.velocity.dot(&with.velocity) + share * turning(with);
+    let deforming = |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - turning(with);
     let both = deforming(kick.velocity, &old) + deforming(after, &new) + whole * (rigid(&old) + rigid(&new));
     0.5 * (1.0 - factor) * both
 }
@@ -145,15 +163,17 @@ pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mu
     let centre = kick.centre();
     damp(kick, centre, predicted);
     damped.copy_from_slice(predicted);
+    let mut spin = 0.0;
     if kick.metric.is_free(kick.block) {
-        push_free(kick, centre, force, predicted);
+        spin = kick.correction(centre);
+        push_free(kick, centre, spin, force, predicted);
     } else {
         for (k, i) in kick.covers.clone().enumerate() {
             let force = force[k] + kick.acceleration * kick.metric.row_sum[i];
             predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
         }
     }
-    BlockMotion { centre }
+    BlockMotion { centre, spin }
 }
 
 fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
@@ -161,7 +181,7 @@ fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
     match kick.damping {
         Damping::Deformation(factor) if factor < 1.0 => {
             let sums = kick.sums(kick.velocity, centre);
-            let spin = kick.spin(&sums);
+            let spin = sums.moment / sums.polar;
             for (k, i) in kick.covers.clone().enumerate() {
                 let rigid = sums.velocity + turned(kick.place(i) - centre) * spin;
                 let held = kick.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
@@ -178,7 +198,7 @@ fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
 }
 
 /// Adds dt·a of a free block, theory Eq. (3).
-fn push_free(kick: &Kick, centre: Point, force: &[Vector], predicted: &mut [Vector]) {
+fn push_free(kick: &Kick, centre: Point, spin: f64, force: &[Vector], predicted: &mut [Vector]) {
     let metric = kick.metric;
     let share = metric.inverse_total[kick.block];
     let total: Vector = force.iter().sum();
@@ -189,7 +209,7 @@ fn push_free(kick: &Kick, centre: Point, force: &[Vector], predicted: &mut [Vect
         mean += own * (metric.inertial[i] * share);
     }
     let common = total * share - mean + kick.acceleration;
-    let spin = metric.spin[kick.block] * torque;
+    let spin = spin * torque;
     for (k, i) in kick.covers.clone().enumerate() {
         let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];
         predicted[k] += (own + common + turned(kick.place(i) - centre) * spin) * kick.dt;

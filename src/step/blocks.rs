@@ -6,6 +6,8 @@ use crate::geometry::Vector;
 use crate::mechanics::{self, BlockMotion, Damping, Deformation, Kick, PreStress};
 use crate::state::{Scratch, Slope, State};
 
+use super::DECAY_MAX;
+
 /// Covers below which a group of blocks is not split between threads.
 const GRAIN: usize = 2048;
 
@@ -134,7 +136,7 @@ impl Pass<'_> {
     fn block_damping(&self, block: usize) -> Damping {
         match self.damping {
             Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
-                Damping::Deformation((-ratio_dt * self.slope.block_frequency[block]).exp())
+                Damping::Deformation((-(ratio_dt * self.slope.block_frequency[block]).min(DECAY_MAX)).exp())
             }
             Damping::Deformation(_) => Damping::Deformation(1.0),
             mass => mass,

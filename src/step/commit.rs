@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::contact::ContactState;
+use crate::contact::{self, ContactState};
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
@@ -41,7 +41,7 @@ impl Step<'_> {
             for i in range.clone() {
                 scratch.predicted[i] += scratch.increment[i];
             }
-            if push.impulse == Vector::zeros() && push.moment == 0.0 || !metric.is_free(block) {
+            if *push == contact::BlockPush::default() || !metric.is_free(block) {
                 continue;
             }
             let share = metric.inverse_total[block];
@@ -60,10 +60,11 @@ impl Step<'_> {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let pass = blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt };
         let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
+        let kick_dt = 0.5 * (state.dt_last + dt);
         for contact in &scratch.contacts {
             let before = contact.relative(&state.velocity);
             let after = contact.relative(&scratch.predicted);
-            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * dt);
+            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
             works.contact_work += contact.history.normal_force * normal + contact.history.shear_force * shear;
             if contact.history.state == ContactState::Slip {
                 let (stored, _) = contact.shear_after(after[1] * dt);
@@ -75,9 +76,8 @@ impl Step<'_> {
         for row in &scratch.rows {
             let support = &slope.supports[row.support as usize];
             let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
-            works.support_work += row.force * velocity * dt;
+            works.support_work += row.force * velocity * kick_dt;
         }
-        let kick_dt = 0.5 * (state.dt_last + dt);
         let extra = self.acceleration() - slope.gravity;
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];

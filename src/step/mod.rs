@@ -25,6 +25,9 @@ const CUTOFF: f64 = 0.25;
 const REACH: f64 = 0.005;
 /// Relative change of force above which an unsettled step is redone in halves, theory Eq. (16).
 const UNSETTLED: f64 = 0.1;
+/// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9 of
+/// the critical step for d > 0.62.
+const DECAY_MAX: f64 = 0.3;
 /// Most times that a step is halved.
 const HALVINGS_MAX: u32 = 4;
 
@@ -146,6 +149,9 @@ impl Step<'_> {
             dt: kick_dt,
         };
         pass.run(self.scratch);
+        for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
+            *spin = motion.spin;
+        }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
@@ -179,7 +185,7 @@ impl Step<'_> {
                     inertia += self.slope.metric.mass[i] * moved.norm_squared();
                 }
                 let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
-                Damping::Mass((-(rate * dt).min(0.3)).exp())
+                Damping::Mass((-(rate * dt).min(DECAY_MAX)).exp())
             }
         }
     }
@@ -199,7 +205,7 @@ impl Step<'_> {
             motion: &scratch.motion,
             laws: &state.laws,
             trace_law: &scratch.trace_law,
-            default_law: state.law_switch[slope.default_law as usize],
+            default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
             size,
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
             first: state.step == 0,
@@ -223,10 +229,12 @@ impl Step<'_> {
     /// Open–close iteration on the predicted velocities.
     fn open_close(&mut self, dt: f64) -> SweepReport {
         let clock = Instant::now();
+        let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         scratch.increment.fill(Vector::zeros());
         scratch.push.fill(contact::BlockPush::default());
-        let options = SweepOptions { dt, theta: slope.theta, tolerance: slope.tolerance, sweeps_max: slope.sweeps_max };
+        let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
+        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
         let iteration =
             OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
         let swept = contact::open_close(iteration, &mut scratch.contacts, &slope.supports, &mut scratch.rows);

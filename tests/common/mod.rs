@@ -1,6 +1,8 @@
 //! Helpers that the claim tests share: cases from text, runs, closed forms.
 #![allow(dead_code)]
 
+pub mod claims;
+
 use std::path::Path;
 
 use enmm::model::Simulation;
