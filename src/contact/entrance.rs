@@ -229,12 +229,13 @@ impl Narrow<'_> {
     }
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
-    /// have rock between them when the node's foot on the deeper one lies behind the other.
+    /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
     fn loser(&self, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
-        let foot_behind_shallow = shallow.gap - deep.gap * deep.tangent.dot(&shallow.tangent);
-        if !adjacent && foot_behind_shallow >= 0.0 {
+        let cosine = deep.tangent.dot(&shallow.tangent);
+        let opposed = cosine < -ENTRANCE_SINE && shallow.gap < deep.gap * cosine;
+        if !adjacent && !opposed {
             return None;
         }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
