@@ -1,0 +1,50 @@
+//! Runs are the same to the bit on one and on two threads, and when run again.
+
+mod common;
+
+use common::claims::{dynamic, rock};
+use common::simulation;
+use enmm::state::State;
+
+/// 400 loose blocks that slide apart under gravity: contacts open, slip and lock, and the blocks fill several groups.
+fn heap() -> String {
+    format!(
+        "title = \"heap\"\n[domain]\noutline = [[-6.0, -1.0], [26.0, -1.0], [26.0, 0.0], [20.0, 0.0], [16.0, 12.0], \
+         [4.0, 12.0], [0.0, 0.0], [-6.0, 0.0]]\n[mesh]\nsize = 0.5\nangle_deg = 7.0\n[[joint]]\n\
+         points = [[0.0, 0.0], [20.0, 0.0]]\n[[joint_set]]\ndip_deg = 55.0\ndip_sd_deg = 6.0\nspacing = 0.7\nseed = 5\n\
+         region = [[0.0, 0.0], [20.0, 0.0], [16.0, 12.0], [4.0, 12.0]]\n[[joint_set]]\ndip_deg = -25.0\n\
+         dip_sd_deg = 6.0\nspacing = 0.8\nseed = 6\nregion = [[0.0, 0.0], [20.0, 0.0], [16.0, 12.0], [4.0, 12.0]]\n\
+         [joint_law.joint]\nfriction_deg = 15.0\n[[fix]]\nblock = [-5.0, -0.5]\n{}{}",
+        rock(1e9, 2500.0),
+        dynamic("slide", 10.0, 0.1)
+    )
+}
+
+/// The state after some steps on so many threads.
+fn run(threads: usize) -> State {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let mut simulation = simulation(&heap());
+        let covers = &simulation.slope().covers;
+        assert!(covers.block_count() > 100 && covers.cover_count() > 4096, "{} blocks", covers.block_count());
+        for _ in 0..400 {
+            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+        }
+        simulation.state().clone()
+    })
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let one = run(1);
+    assert!(one.displacement.iter().any(|u| u.norm() > 0.05), "the heap must move");
+    for threads in [2, 3, 1] {
+        let other = run(threads);
+        let bits = |s: &State| -> Vec<[u64; 4]> {
+            let fields = s.displacement.iter().zip(&s.velocity);
+            fields.map(|(u, v)| [u.x, u.y, v.x, v.y].map(f64::to_bits)).collect()
+        };
+        assert!(bits(&one) == bits(&other), "{threads} threads differ from 1");
+        assert!(one == other, "histories and ledgers of {threads} threads differ from 1");
+    }
+}
