@@ -1,25 +1,43 @@
 //! scratch
 mod common;
+use enmm::geometry::{Point, polygon};
 #[test]
-fn chatter() {
+fn deep() {
     let path = std::env::var("CASE").unwrap_or("examples/cases/fractured_slope.toml".into());
     let loaded = enmm::io::load_case(std::path::Path::new(&path)).unwrap_or_else(|e| panic!("{e}"));
     let mut s = enmm::model::Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
-    let n: u64 = std::env::var("N").ok().and_then(|v| v.parse().ok()).unwrap_or(4000);
-    for _ in 0..n { s.advance(false).unwrap(); }
-    for _ in 0..12 {
-        let prev = s.scratch().contacts.clone();
-        s.advance(false).unwrap();
-        let mut lines = vec![];
-        for q in s.scratch().contacts.iter() {
-            let old = prev.iter().find(|p| p.history.node == q.history.node && p.history.side == q.history.side);
-            let o = old.map_or(0.0, |o| o.history.normal_force);
-            let d = (q.history.normal_force - o).abs();
-            lines.push((d, format!("    d {d:.2e} node {} {:?} side {} edge {} N {o:.3e} -> {:.3e} T {:.3e} gap {:.3e} <- {:.3e} l {:.3e} <- {:.3e} kWdt2 {:.3e} app {:.2e} {:?} n ({:.3},{:.3}) fresh {}", q.history.node, q.blocks, q.history.side, q.history.edge, q.history.normal_force, q.history.shear_force, q.gap, old.map_or(9.0, |o| o.gap), q.length, old.map_or(0.0,|o|o.length), q.compliance[0]*q.stiffness[0]*s.slope().dt.powi(2), q.approach[0], q.history.state, q.normal.x, q.normal.y, q.fresh)));
+    common::run_stage(&mut s);
+    s.next_stage().unwrap();
+    let mut found = 0;
+    let mut hist: std::collections::VecDeque<enmm::state::State> = Default::default();
+    for _ in 0..4000 {
+        hist.push_back(s.state().clone());
+        if hist.len() > 60 { hist.pop_front(); }
+        if let Err(e) = s.advance(false) { println!("{e}"); break; }
+        let fresh: Vec<_> = s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.0).copied().collect();
+        for c in fresh {
+            found += 1;
+            let now = s.state().clone();
+            let t = s.time();
+            let b = s.slope().boundary.clone();
+            println!("=== t {:.4} node {} blocks {:?} side {} edge {} offset {:.3e} n ({:.3},{:.3}) l {:.3}", t, c.history.node, c.blocks, c.history.side, c.history.edge, c.history.offset, c.normal.x, c.normal.y, c.length);
+            let pt = b.node_point[c.history.node as usize] as usize;
+            let mut shown = 0;
+            for st in hist.iter().step_by(6).chain(hist.iter().rev().take(2)) {
+                s.restore(st.clone());
+                if s.advance(false).is_err() { continue; }
+                let sc = s.scratch();
+                let p = sc.place[pt];
+                let poly = |bl: u32| -> Vec<Point> { (0..b.len()).filter(|&k| b.block[k] == bl).map(|k| sc.place[k]).collect() };
+                let small = c.blocks.iter().all(|&bl| poly(bl).len() < 60);
+                let d = if small { polygon::overlap_depth(&poly(c.blocks[0]), &poly(c.blocks[1])) } else { -1.0 };
+                println!("  t {:.4} p ({:.4},{:.4}) overlap {d:.2e}", s.time(), p.x, p.y);
+                for q in sc.contacts.iter().filter(|q| (q.blocks == c.blocks) || (q.blocks[0]==c.blocks[1] && q.blocks[1]==c.blocks[0])) { println!("     node {} {:?} side {} N {:.2e} gap {:.2e} l {:.2e} {:?} n ({:.2},{:.2})", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.gap, q.length, q.history.state, q.normal.x, q.normal.y); }
+                shown += 1;
+                if shown == 1 || shown > 11 { for bl in c.blocks { print!("     block {bl}:"); for k in (0..b.len()).filter(|&k| b.block[k] == bl) { let q = sc.place[k]; if (q-p).norm() < 1.2 { print!(" {}:({:.4},{:.4})s{}", k, q.x, q.y, b.side[k]); } } println!(); } }
+            }
+            s.restore(now);
         }
-        for p in prev.iter().filter(|p| !s.scratch().contacts.iter().any(|q| p.history.node == q.history.node && p.history.side == q.history.side)) { lines.push((p.history.normal_force.abs(), format!("    gone node {} {:?} side {} N {:.3e} gap {:.3e} l {:.2e}", p.history.node, p.blocks, p.history.side, p.history.normal_force, p.gap, p.length))); }
-        lines.sort_by(|a,b| b.0.total_cmp(&a.0));
-        println!("t {:.4}", s.time());
-        for l in &lines[..4] { println!("{}", l.1); }
+        if found > 5 { break; }
     }
 }

@@ -16,8 +16,8 @@ const HELD_BEYOND: f64 = 1e-3;
 const CORNER_TOLERANCE: f64 = 1e-9;
 /// Difference of two depths, relative to the mesh size, below which they count as equal.
 const TIE_TOLERANCE: f64 = 1e-6;
-/// Distance by which a foot may miss an edge inside a side, relative to the mesh size.
-const WEDGE_TOLERANCE: f64 = 0.05;
+/// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
+const WEDGE_RATIO: f64 = 0.5;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
 const LENGTH_FLOOR: f64 = 0.05;
 /// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
@@ -128,7 +128,7 @@ impl Narrow<'_> {
             (beyond.hypot(gap), beyond, pick)
         };
         let (_, beyond, mut pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
-        if beyond > WEDGE_TOLERANCE * self.size {
+        if beyond > WEDGE_RATIO * pick.gap.abs() + HELD_BEYOND * self.size {
             return None;
         }
         let bonded = held.is_some_and(|h| h.intact && h.normal_force < 0.0);
@@ -160,6 +160,11 @@ impl Narrow<'_> {
         (self.place[edge], self.place[self.boundary.after(edge)])
     }
 
+    /// Distance (m) beyond a corner that counts as the corner.
+    fn corner_tolerance(&self, pick: &Pick) -> f64 {
+        self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE }
+    }
+
     fn is_held(pick: &Pick) -> bool {
         pick.held.is_some_and(|h| h.state != ContactState::Open)
     }
@@ -167,7 +172,7 @@ impl Narrow<'_> {
     /// Rule (ii): the node is neither beyond a convex end of the side nor outside the line of the side round it.
     fn within(&self, pick: &Pick, p: Point, beyond: f64) -> bool {
         let boundary = self.boundary;
-        let tolerance = self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE };
+        let tolerance = self.corner_tolerance(pick);
         let side = pick.side as usize;
         let next = boundary.side_next[side] as usize;
         let [first, last] = [boundary.side_first[side], boundary.side_last[side]];
