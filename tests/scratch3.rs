@@ -1,5 +1,6 @@
 //! scratch
 mod common;
+use enmm::geometry::{Point, polygon};
 #[test]
 fn deep() {
     let path = std::env::var("CASE").unwrap_or("examples/cases/fractured_slope.toml".into());
@@ -8,19 +9,35 @@ fn deep() {
     common::run_stage(&mut s);
     s.next_stage().unwrap();
     let mut found = 0;
+    let mut hist: std::collections::VecDeque<enmm::state::State> = Default::default();
     for _ in 0..4000 {
-        let prev = s.scratch().contacts.clone();
-        let places = s.scratch().place.clone();
+        hist.push_back(s.state().clone());
+        if hist.len() > 60 { hist.pop_front(); }
         if let Err(e) = s.advance(false) { println!("{e}"); break; }
-        let b = &s.slope().boundary;
-        for c in s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.0) {
+        let fresh: Vec<_> = s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.0).copied().collect();
+        for c in fresh {
             found += 1;
+            let now = s.state().clone();
+            let t = s.time();
+            let b = s.slope().boundary.clone();
+            println!("=== t {:.4} node {} blocks {:?} side {} edge {} offset {:.3e} n ({:.3},{:.3}) l {:.3}", t, c.history.node, c.blocks, c.history.side, c.history.edge, c.history.offset, c.normal.x, c.normal.y, c.length);
             let pt = b.node_point[c.history.node as usize] as usize;
-            let p = s.scratch().place[pt];
-            println!("t {:.4} node {} at ({:.4},{:.4}) moved ({:.4},{:.4}) block {} -> block {} side {} edge {} offset {:.3e} n ({:.3},{:.3}) l {:.3}", s.time(), c.history.node, p.x, p.y, p.x-places[pt].x, p.y-places[pt].y, c.blocks[0], c.blocks[1], c.history.side, c.history.edge, c.history.offset, c.normal.x, c.normal.y, c.length);
-            for q in prev.iter().filter(|q| q.blocks == c.blocks || (q.blocks[0]==c.blocks[1] && q.blocks[1]==c.blocks[0])) { println!("     before: node {} {:?} side {} N {:.3e} T {:.3e} gap {:.3e} {:?} n ({:.3},{:.3})", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.history.shear_force, q.gap, q.history.state, q.normal.x, q.normal.y); }
-            for (nm, pl) in [("prev", &places), ("now", &s.scratch().place)] { for bl in [c.blocks[0], c.blocks[1]] { print!("     {nm} block {bl}:"); for k in (0..b.node_count()).filter(|&k| b.block[b.node_point[k] as usize] == bl) { let q = pl[b.node_point[k] as usize]; print!(" {}:({:.3},{:.3})s{}", k, q.x, q.y, b.side[b.node_point[k] as usize]); } println!(); } }
+            let mut shown = 0;
+            for st in hist.iter().step_by(6).chain(hist.iter().rev().take(2)) {
+                s.restore(st.clone());
+                if s.advance(false).is_err() { continue; }
+                let sc = s.scratch();
+                let p = sc.place[pt];
+                let poly = |bl: u32| -> Vec<Point> { (0..b.len()).filter(|&k| b.block[k] == bl).map(|k| sc.place[k]).collect() };
+                let small = c.blocks.iter().all(|&bl| poly(bl).len() < 60);
+                let d = if small { polygon::overlap_depth(&poly(c.blocks[0]), &poly(c.blocks[1])) } else { -1.0 };
+                println!("  t {:.4} p ({:.4},{:.4}) overlap {d:.2e}", s.time(), p.x, p.y);
+                for q in sc.contacts.iter().filter(|q| (q.blocks == c.blocks) || (q.blocks[0]==c.blocks[1] && q.blocks[1]==c.blocks[0])) { println!("     node {} {:?} side {} N {:.2e} gap {:.2e} l {:.2e} {:?} n ({:.2},{:.2})", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.gap, q.length, q.history.state, q.normal.x, q.normal.y); }
+                shown += 1;
+                if shown == 1 || shown > 11 { for bl in c.blocks { print!("     block {bl}:"); for k in (0..b.len()).filter(|&k| b.block[k] == bl) { let q = sc.place[k]; if (q-p).norm() < 1.2 { print!(" {}:({:.4},{:.4})s{}", k, q.x, q.y, b.side[k]); } } println!(); } }
+            }
+            s.restore(now);
         }
-        if found > 12 { break; }
+        if found > 5 { break; }
     }
 }

@@ -1,2 +1,75 @@
-//! CLI.
-fn main() {}
+//! `enmm`: runs and checks case files. Exit status: 0 done, 2 bad input, 3 numerical failure, 130 interrupted.
+
+mod bench;
+mod check;
+mod progress;
+mod run;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Bad input; nothing was written.
+const BAD_INPUT: u8 = 2;
+/// Numerical failure, or results that could not be written.
+const FAILED: u8 = 3;
+/// Interrupted by the user.
+const INTERRUPTED: u8 = 130;
+
+/// Explicit numerical manifold method for jointed rock slopes.
+#[derive(Parser)]
+#[command(name = "enmm", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Builds a case, runs all its stages and writes the results.
+    Run(run::Arguments),
+    /// Builds the model of a case and tells its counts, areas, masses and warnings.
+    Check {
+        /// Case file (TOML).
+        case: PathBuf,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Times standard models: element updates and contacts per second, share of each part of the step.
+    Bench {
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Prints the JSON Schema of the case file.
+    Schema,
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check { case, json } => check::check(&case, json),
+        Command::Bench { json } => bench::run(json),
+        Command::Schema => schema(),
+    }
+}
+
+fn schema() -> ExitCode {
+    print_line(&format!("{:#}", enmm::io::schema()));
+    ExitCode::SUCCESS
+}
+
+/// Prints a line; a reader that has gone away ends the output quietly.
+fn print_line(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Prints an error as one line and returns its exit status.
+fn fail(message: &impl std::fmt::Display, status: u8) -> ExitCode {
+    let line = message.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    eprintln!("error: {line}");
+    ExitCode::from(status)
+}

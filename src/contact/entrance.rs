@@ -16,10 +16,12 @@ const HELD_BEYOND: f64 = 1e-3;
 const CORNER_TOLERANCE: f64 = 1e-9;
 /// Difference of two depths, relative to the mesh size, below which they count as equal.
 const TIE_TOLERANCE: f64 = 1e-6;
-/// Distance by which a foot may miss an edge inside a side, relative to the mesh size.
-const WEDGE_TOLERANCE: f64 = 0.05;
+/// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
+const WEDGE_RATIO: f64 = 0.5;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
 const LENGTH_FLOOR: f64 = 0.05;
+/// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
+const PENALTY_LENGTH_FLOOR: f64 = 0.5;
 
 /// What the narrow phase reads.
 pub struct Narrow<'a> {
@@ -126,7 +128,7 @@ impl Narrow<'_> {
             (beyond.hypot(gap), beyond, pick)
         };
         let (_, beyond, mut pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
-        if beyond > WEDGE_TOLERANCE * self.size {
+        if beyond > WEDGE_RATIO * pick.gap.abs() + HELD_BEYOND * self.size {
             return None;
         }
         let bonded = held.is_some_and(|h| h.intact && h.normal_force < 0.0);
@@ -158,6 +160,11 @@ impl Narrow<'_> {
         (self.place[edge], self.place[self.boundary.after(edge)])
     }
 
+    /// Distance (m) beyond a corner that counts as the corner.
+    fn corner_tolerance(&self, pick: &Pick) -> f64 {
+        self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE }
+    }
+
     fn is_held(pick: &Pick) -> bool {
         pick.held.is_some_and(|h| h.state != ContactState::Open)
     }
@@ -165,7 +172,7 @@ impl Narrow<'_> {
     /// Rule (ii): the node is neither beyond a convex end of the side nor outside the line of the side round it.
     fn within(&self, pick: &Pick, p: Point, beyond: f64) -> bool {
         let boundary = self.boundary;
-        let tolerance = self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE };
+        let tolerance = self.corner_tolerance(pick);
         let side = pick.side as usize;
         let next = boundary.side_next[side] as usize;
         let [first, last] = [boundary.side_first[side], boundary.side_last[side]];
@@ -226,10 +233,16 @@ impl Narrow<'_> {
         }
     }
 
-    /// Which of two sides with rock between them the node does not enter: true for the first.
+    /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
+    /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
     fn loser(&self, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
+        let cosine = deep.tangent.dot(&shallow.tangent);
+        let opposed = cosine < -ENTRANCE_SINE && shallow.gap < deep.gap * cosine;
+        if !adjacent && !opposed {
+            return None;
+        }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
         let deep_loses = if Self::is_held(deep) {
             Self::is_held(shallow) && shallow.admitted || !adjacent && behind && shallow.gap > 0.0
@@ -243,21 +256,24 @@ impl Narrow<'_> {
         contest.then_some(!first_is_deeper)
     }
 
-    /// Tributary length (m) of a node over an edge, theory Eq. (13).
-    fn tributary(&self, node: usize, pick: &Pick) -> f64 {
+    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness, theory Eq. (13).
+    fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
         let boundary = self.boundary;
-        let p = self.node_place(node).dot(&pick.tangent);
+        let here = self.node_place(node);
+        let p = here.dot(&pick.tangent);
         let before = boundary.node_before[pick.edge as usize] as usize;
         let from = self.node_place(before).dot(&pick.tangent);
         let to = self.node_place(boundary.node_next[before] as usize).dot(&pick.tangent);
         let overlap = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let previous = self.node_place(boundary.node_previous[node] as usize);
         let next = self.node_place(boundary.node_next[node] as usize);
-        let here = self.node_place(node);
-        let span = 0.5 * ((previous - here).norm() + (next - here).norm());
         let (q, r) = (previous.dot(&pick.tangent), next.dot(&pick.tangent));
         let facing = if q > p { overlap(q) } else { 0.0 } + if r < p { overlap(r) } else { 0.0 };
-        (0.5 * facing).max(LENGTH_FLOOR * span) * self.share_at_corner(pick)
+        let share = self.share_at_corner(pick);
+        let span = 0.5 * ((previous - here).norm() + (next - here).norm());
+        let length = (0.5 * facing).max(LENGTH_FLOOR * span);
+        let stiff = length.max(PENALTY_LENGTH_FLOOR * span);
+        (length * share, stiff * share)
     }
 
     /// 1 inside a side, falling to ½ at its convex ends: there the corner itself is a contact as well.
@@ -284,10 +300,9 @@ impl Narrow<'_> {
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b as usize].centre);
-        let length = self.tributary(node, pick);
+        let (length, penalty_length) = self.tributary(node, pick);
         let law = self.law(node, edge);
-        let stiffness =
-            [self.laws[law as usize].normal_stiffness * length, self.laws[law as usize].shear_stiffness * length];
+        let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
         let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, stiffness, normal));
         let history = ContactHistory { edge: pick.edge, ..history };
         let mut contact = VertexEdge {

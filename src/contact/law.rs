@@ -7,6 +7,8 @@ pub struct JointLaw {
     pub normal_stiffness: f64,
     /// Shear stiffness (Pa/m).
     pub shear_stiffness: f64,
+    /// Whether normal and shear stiffness are the solver's own and no property of the joint.
+    pub penalty: [bool; 2],
     /// tan φ, peak.
     pub friction: f64,
     /// Cohesion (Pa), peak.
@@ -45,6 +47,13 @@ impl JointLaw {
             [self.residual_friction, self.residual_cohesion, self.residual_tension]
         };
         Limits { friction, cohesion: cohesion * length, tension: tension * length }
+    }
+
+    /// Normal and shear spring (N/m per metre) of a contact of tributary length `length` (m); the solver's own stiffness
+    /// acts over `penalty_length` (m).
+    pub fn stiffness(&self, length: f64, penalty_length: f64) -> [f64; 2] {
+        let over = |penalty: bool| if penalty { penalty_length } else { length };
+        [self.normal_stiffness * over(self.penalty[0]), self.shear_stiffness * over(self.penalty[1])]
     }
 
     /// Opening (m) by dilation between two values of accumulated slip (m).

@@ -5,6 +5,8 @@ use crate::mechanics::Metric;
 
 use super::{ContactState, Support, SupportRow, VertexEdge};
 
+/// Share of the largest normal force below which a contact is light: its changes are measured against that force.
+const LIGHT: f64 = 0.02;
 /// Most sweeps over the supports within one sweep over the contacts.
 const SUPPORT_SWEEPS_MAX: u32 = 10;
 /// Change of a support's force, relative to the largest, at which the supports have settled.
@@ -67,7 +69,8 @@ pub fn open_close(
     iteration.warm_start(contacts, supports, rows);
     let mut report = SweepReport::default();
     while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty()) {
-        let change = iteration.sweep_contacts(contacts);
+        let largest = contacts.iter().map(|c| c.history.normal_force.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let change = iteration.sweep_contacts(contacts, LIGHT * largest);
         let support_change = iteration.sweep_supports(supports, rows);
         report.sweeps += 1;
         report.unsettled = change.max(support_change);
@@ -89,14 +92,13 @@ impl OpenClose<'_> {
         }
     }
 
-    /// One sweep in order; returns the largest change of a force over the largest normal force.
-    fn sweep_contacts(&mut self, contacts: &mut [VertexEdge]) -> f64 {
-        let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
+    /// One sweep in order; returns the largest change of a force over its own size, or over a floor for light contacts.
+    fn sweep_contacts(&mut self, contacts: &mut [VertexEdge], floor: f64) -> f64 {
+        let mut change = 0.0f64;
         for contact in contacts {
-            change = change.max(self.judge(contact));
-            largest = largest.max(contact.history.normal_force.abs());
+            change = change.max(self.judge(contact) / contact.history.normal_force.abs().max(floor));
         }
-        change / largest
+        change
     }
 
     /// Sweeps the supports to and fro until they settle; returns the first sweep's change over the largest force.

@@ -1,15 +1,24 @@
 //! Case files, schema, results, pictures, checkpoints.
 
+pub mod bench;
+pub mod blocks;
 mod case_error;
 mod case_file;
+pub mod check;
+pub mod checkpoint;
 pub mod files;
 mod geometry_file;
 pub mod history;
 mod lines;
 pub mod picture;
+mod run;
 mod schema;
+pub mod summary;
 pub mod vtu;
 
 pub use case_error::CaseError;
 pub use case_file::{CaseSource, LoadedCase, load_case, parse_case};
+pub use check::check;
+pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use schema::schema;
+pub use summary::{RunStatus, Summary};

@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 use resvg::usvg::roxmltree;
 
 use super::files::{at_path, write_atomic};
+use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::model::Snapshot;
-use crate::model::snapshot::{JointPoint, JointState};
+use crate::model::snapshot::JointPoint;
 
 /// Cell types of VTK.
 const VERTEX: u8 = 1;
@@ -84,11 +85,11 @@ pub fn write_joints_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     grid.write(path)
 }
 
-fn state_code(state: JointState) -> u8 {
+fn state_code(state: ContactState) -> u8 {
     match state {
-        JointState::Open => 0,
-        JointState::Slip => 1,
-        JointState::Lock => 2,
+        ContactState::Open => 0,
+        ContactState::Slip => 1,
+        ContactState::Lock => 2,
     }
 }
 

@@ -34,39 +34,52 @@ impl Deformation {
         [f11 - self.cos, f12 + self.sin, f21 - self.sin, f22 - self.cos]
     }
 
-    /// First Piola–Kirchhoff stress (Pa), theory Eq. (7), row by row.
-    fn piola(&self, rock: &Elasticity, pre: &PreStress) -> [f64; 4] {
+    /// First Piola–Kirchhoff stress (Pa) without the pre-stress, theory Eq. (7), row by row.
+    fn piola(&self, rock: &Elasticity) -> [f64; 4] {
         let d = self.stretch();
         let (two_mu, volume) = (2.0 * rock.mu, rock.lambda * (self.trace - 2.0));
         let (c, s) = (self.cos, self.sin);
         [
-            two_mu * d[0] + (volume + pre[0]) * c - s * pre[2],
-            two_mu * d[1] - (volume + pre[1]) * s + c * pre[2],
-            two_mu * d[2] + (volume + pre[0]) * s + c * pre[2],
-            two_mu * d[3] + (volume + pre[1]) * c + s * pre[2],
+            two_mu * d[0] + volume * c,
+            two_mu * d[1] - volume * s,
+            two_mu * d[2] + volume * s,
+            two_mu * d[3] + volume * c,
         ]
+    }
+
+    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that goes with the rock, theory Eq. (26).
+    fn carried(&self, pre: &PreStress) -> [f64; 4] {
+        let [f11, f12, f21, f22] = self.f;
+        let [xx, yy, xy] = *pre;
+        [f11 * xx + f12 * xy, f11 * xy + f12 * yy, f21 * xx + f22 * xy, f21 * xy + f22 * yy]
     }
 
     /// Forces (N/m) on the three covers of an element of cut area `area` (m²), theory Eq. (7).
     pub fn forces(&self, g: &[Vector; 3], area: f64, rock: &Elasticity, pre: &PreStress) -> [Vector; 3] {
-        let p = self.piola(rock, pre).map(|v| -area * v);
+        let (own, carried) = (self.piola(rock), self.carried(pre));
+        let p = [0, 1, 2, 3].map(|k| -area * (own[k] + carried[k]));
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
     }
 
-    /// Stress xx, yy, xy (Pa, tension positive) in global axes: P·Rᵀ.
+    /// Stress xx, yy, xy (Pa, tension positive) in global axes: P·Rᵀ, and F·σ₀·Fᵀ/det F of the pre-stress.
     pub fn stress(&self, rock: &Elasticity, pre: &PreStress) -> [f64; 3] {
-        let p = self.piola(rock, pre);
+        let (p, q) = (self.piola(rock), self.carried(pre));
         let (c, s) = (self.cos, self.sin);
-        [p[0] * c - p[1] * s, p[2] * s + p[3] * c, p[0] * s + p[1] * c]
+        let [f11, f12, f21, f22] = self.f;
+        let volume = f11 * f22 - f12 * f21;
+        [
+            p[0] * c - p[1] * s + (q[0] * f11 + q[1] * f12) / volume,
+            p[2] * s + p[3] * c + (q[2] * f21 + q[3] * f22) / volume,
+            p[0] * s + p[1] * c + (q[0] * f21 + q[1] * f22) / volume,
+        ]
     }
 
     /// Strain energy (J per m² of reference area), theory Eq. (8), with the work of the pre-stress.
     pub fn energy(&self, rock: &Elasticity, pre: &PreStress) -> f64 {
-        let d = self.stretch();
-        let (c, s) = (self.cos, self.sin);
-        let square = d.iter().map(|v| v * v).sum::<f64>();
-        let strain = [c * d[0] + s * d[2], c * d[3] - s * d[1], 0.5 * (c * d[1] + s * d[3] + c * d[2] - s * d[0])];
-        let pre_work = pre[0] * strain[0] + pre[1] * strain[1] + 2.0 * pre[2] * strain[2];
+        let square = self.stretch().iter().map(|v| v * v).sum::<f64>();
+        let [f11, f12, f21, f22] = self.f;
+        let green = [f11 * f11 + f21 * f21 - 1.0, f12 * f12 + f22 * f22 - 1.0, f11 * f12 + f21 * f22];
+        let pre_work = 0.5 * (pre[0] * green[0] + pre[1] * green[1]) + pre[2] * green[2];
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 

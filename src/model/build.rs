@@ -45,7 +45,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
-    let laws = case.joint_laws.values().map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
+    let laws = joint_laws(case, stiffness);
     let (fixities, supports) = fixities(case, &places, stiffness)?;
     let loads = loads(case, &places)?;
     let monitors = monitors(case, &places)?;
@@ -102,12 +102,33 @@ fn two_digits_below(value: f64) -> f64 {
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
+/// The laws of the case by name; a continuum, which needs none, has one without strength.
+fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
+    let without = case::JointLaw {
+        kind: case::JointLawKind::MohrCoulomb,
+        normal_stiffness: None,
+        shear_stiffness: None,
+        friction_deg: 0.0,
+        cohesion: 0.0,
+        tension: 0.0,
+        residual_friction_deg: None,
+        residual_cohesion: None,
+        residual_tension: 0.0,
+        dilation_deg: 0.0,
+        dilation_slip: None,
+    };
+    let without = case.joint_laws.is_empty().then_some(without);
+    let laws = case.joint_laws.values().chain(&without);
+    laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect()
+}
+
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
     let tangent = |degrees: f64| degrees.to_radians().tan();
     let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
     JointLaw {
         normal_stiffness,
         shear_stiffness: law.shear_stiffness.unwrap_or(stiffness * shear_ratio),
+        penalty: [law.normal_stiffness.is_none(), law.shear_stiffness.is_none()],
         friction: tangent(law.friction_deg),
         cohesion: law.cohesion,
         tension: law.tension,

@@ -2,10 +2,12 @@
 
 pub mod build;
 pub mod case;
+mod observe;
 mod simulation;
 pub mod snapshot;
 
 pub use build::{Built, build};
 pub use case::Case;
+pub use observe::BlockState;
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;

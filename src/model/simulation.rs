@@ -1,5 +1,6 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
+use crate::contact::VertexEdge;
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
@@ -102,6 +103,11 @@ impl Simulation {
     /// A numerical failure; the state is then spoilt and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
         step::advance(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, report)
+    }
+
+    /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
+    pub fn contacts(&self) -> Vec<VertexEdge> {
+        step::contacts(self.slope(), self.regime, self.state(), &self.scratch)
     }
 
     /// Whether the stage has covered its duration, or is static and at rest by this report.

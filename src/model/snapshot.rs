@@ -1,5 +1,6 @@
 //! One instant of a slope as outputs see it: polygons with fields, without covers, weights or time stepping.
 
+use crate::contact::ContactState;
 use crate::geometry::{Point, Vector};
 
 /// Polygons stored end to end: polygon `k` has the points `start[k]..start[k + 1]`.
@@ -33,17 +34,6 @@ impl Polygons {
     }
 }
 
-/// What a contact does at the end of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum JointState {
-    /// No force.
-    Open,
-    /// Shear at the limit.
-    Slip,
-    /// Shear below the limit.
-    Lock,
-}
-
 /// A piece of joint between a boundary point and the edge it meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointPoint {
@@ -58,7 +48,7 @@ pub struct JointPoint {
     /// Shear stress on the joint (Pa).
     pub shear_stress: f64,
     /// Open, slip or lock.
-    pub state: JointState,
+    pub state: ContactState,
     /// Index of the joint law in [`Snapshot::joint_laws`].
     pub law: u32,
 }

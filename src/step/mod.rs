@@ -12,7 +12,7 @@ pub use report::{StepReport, block_motion, energies, momentum};
 
 use std::time::Instant;
 
-use crate::contact::{self, Narrow, OpenClose, SweepOptions, SweepReport};
+use crate::contact::{self, Narrow, OpenClose, SweepOptions, SweepReport, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
@@ -65,6 +65,18 @@ pub fn advance(
     state.stage_step += 1;
     state.step += 1;
     Ok(outcome)
+}
+
+/// The contacts that the next step will judge, with the forces of the last one; nothing advances.
+pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> Vec<VertexEdge> {
+    let (mut state, mut scratch) = (state.clone(), scratch.clone());
+    let time = state.stage_start + state.stage_step as f64 * slope.dt;
+    let damping = Damping::Deformation(0.0);
+    let mut step = Step { slope, regime, state: &mut state, scratch: &mut scratch, time, report: false, damping };
+    step.search();
+    step.predict(slope.dt);
+    step.entrance(slope.dt);
+    scratch.contacts
 }
 
 /// One step in progress.

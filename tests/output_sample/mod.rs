@@ -2,10 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
 use enmm::io::picture::ModelDecor;
 use enmm::model::Snapshot;
-use enmm::model::snapshot::{Boundary, JointPoint, JointState, Polygons};
+use enmm::model::snapshot::{Boundary, JointPoint, Polygons};
 
 /// Slope profile (m), counter-clockwise.
 pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56.0, 60.0], [32.0, 15.0], [0.0, 15.0]];
@@ -101,7 +102,7 @@ impl Sample {
     }
 
     fn joints(&self) -> Vec<JointPoint> {
-        let states = [JointState::Open, JointState::Slip, JointState::Lock];
+        let states = [ContactState::Open, ContactState::Slip, ContactState::Lock];
         let joint = |(k, (ends, law)): (usize, &([Point; 2], u32))| {
             let along = ends[1] - ends[0];
             JointPoint {

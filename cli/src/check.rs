@@ -1,0 +1,70 @@
+//! `enmm check`: builds a model and tells of it.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use enmm::io::CaseError;
+use enmm::io::check::Check;
+use enmm::model::Simulation;
+
+use crate::{BAD_INPUT, fail, print_line};
+
+/// Builds the model of a case and prints what it is.
+pub fn check(path: &Path, json: bool) -> ExitCode {
+    match look(path) {
+        Ok(found) if json => print_line(&json_line(&found)),
+        Ok(found) => print_line(&table(&found)),
+        Err(error) => {
+            if json {
+                print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
+            }
+            return fail(&error, BAD_INPUT);
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn look(path: &Path) -> Result<Check, CaseError> {
+    let loaded = enmm::io::load_case(path)?;
+    let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
+    let simulation = Simulation::new(loaded.case.clone()).map_err(invalid)?;
+    let found = enmm::io::check(&simulation, &loaded.warnings);
+    let mut rehearsal = simulation;
+    while rehearsal.next_stage().map_err(invalid)? {}
+    Ok(found)
+}
+
+fn json_line(found: &Check) -> String {
+    serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
+}
+
+fn table(found: &Check) -> String {
+    let range = |values: &[f64]| match values {
+        [first, .., last] => format!("{first:.6} to {last:.6}"),
+        [only] => format!("{only:.6}"),
+        [] => "none".to_owned(),
+    };
+    let stars: Vec<String> =
+        found.stars_by_cover_count.iter().map(|(covers, stars)| format!("{stars} with {covers}")).collect();
+    let rows = [
+        ("blocks", found.blocks.to_string()),
+        ("block areas (m²)", range(&found.block_areas)),
+        ("total area (m²)", format!("{:.6}", found.total_area)),
+        ("elements", found.elements.to_string()),
+        ("physical covers", found.physical_covers.to_string()),
+        ("stars by covers", stars.join(", ")),
+        ("cover masses (kg/m)", range(&found.cover_masses)),
+        ("vertices", found.vertices.to_string()),
+        ("boundary edges", found.boundary_edges.to_string()),
+        ("initial contacts", found.initial_contacts.to_string()),
+        ("critical dt (s)", format!("{:.4e}", found.critical_dt)),
+        ("small covers treated", found.small_covers_treated.to_string()),
+        ("tiny blocks", found.tiny_blocks.to_string()),
+        ("merged vertices", found.merged_vertices.to_string()),
+        ("ignored joints", found.ignored_joints.to_string()),
+        ("memory (MB)", format!("{:.1}", found.memory_bytes as f64 / 1e6)),
+    ];
+    let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<21} {value}")).collect();
+    lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.join("\n")
+}

@@ -1,0 +1,97 @@
+//! How a run shows on the screen: a bar on a terminal, plain lines elsewhere, nothing when it is to be quiet.
+
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use enmm::io::{Observer, RunProgress};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Time between plain lines.
+const LINES: Duration = Duration::from_secs(5);
+/// Time between changes of the bar.
+const REDRAW: Duration = Duration::from_millis(100);
+/// Steps of the bar.
+const BAR: u64 = 1000;
+
+/// Shows how a run goes.
+pub struct Screen {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+    start: Instant,
+    start_time: Option<f64>,
+    shown: Option<Instant>,
+    stage: usize,
+}
+
+impl Screen {
+    /// A bar on a terminal, plain lines elsewhere.
+    pub fn new(quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal() && !quiet;
+        let bar = terminal.then(|| {
+            let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}");
+            ProgressBar::new(BAR).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        });
+        Self { bar, quiet, start: Instant::now(), start_time: None, shown: None, stage: 0 }
+    }
+
+    /// Removes the bar.
+    pub fn close(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn line(&self, progress: &RunProgress) -> String {
+        let RunProgress { stage, stage_number, stage_count, time, time_left, .. } = *progress;
+        let wall = self.start.elapsed().as_secs_f64();
+        let rate = (time - self.start_time.unwrap_or(time)) / wall.max(1e-9);
+        let left = if rate > 0.0 { clock(time_left / rate) } else { "?".to_owned() };
+        format!("{stage} ({stage_number}/{stage_count})  t = {time:.4} s  {rate:.3} s/s  at most {left} left")
+    }
+}
+
+impl Observer for Screen {
+    fn step(&mut self, progress: &RunProgress) {
+        self.start_time.get_or_insert(progress.time);
+        if self.quiet {
+            return;
+        }
+        let wait = if self.bar.is_some() { REDRAW } else { LINES };
+        let due = self.shown.is_none_or(|shown| shown.elapsed() >= wait) || self.stage != progress.stage_number;
+        if !due {
+            return;
+        }
+        self.shown = Some(Instant::now());
+        self.stage = progress.stage_number;
+        let line = self.line(progress);
+        match &self.bar {
+            Some(bar) => {
+                let whole = progress.time + progress.time_left;
+                bar.set_position((BAR as f64 * progress.time / whole.max(f64::MIN_POSITIVE)) as u64);
+                bar.set_message(line);
+            }
+            None => drop(writeln!(std::io::stderr(), "{line}")),
+        }
+    }
+
+    fn warn(&mut self, message: &str) {
+        if self.quiet {
+            return;
+        }
+        let line = format!("warning: {message}");
+        match &self.bar {
+            Some(bar) => bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}"))),
+            None => drop(writeln!(std::io::stderr(), "{line}")),
+        }
+    }
+}
+
+/// `1 h 02 min`, `3 min 05 s` or `7 s`.
+fn clock(seconds: f64) -> String {
+    let whole = seconds.min(1e12).ceil() as u64;
+    match (whole / 3600, whole / 60 % 60, whole % 60) {
+        (0, 0, s) => format!("{s} s"),
+        (0, m, s) => format!("{m} min {s:02} s"),
+        (h, m, _) => format!("{h} h {m:02} min"),
+    }
+}

@@ -1,0 +1,132 @@
+//! `enmm run`: runs a case and tells where the results are.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use enmm::io::{RunError, RunOptions, RunStatus, Summary};
+
+use crate::progress::Screen;
+use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
+
+/// Set by the first interrupt.
+static INTERRUPT: AtomicBool = AtomicBool::new(false);
+
+/// Arguments of `enmm run`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Case file (TOML).
+    case: PathBuf,
+    /// Directory for the results; default: the name of the case file, here.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Threads; default: all. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Checkpoint to continue from.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Runs a case.
+pub fn run(arguments: &Arguments) -> ExitCode {
+    let loaded = match enmm::io::load_case(&arguments.case) {
+        Ok(loaded) => loaded,
+        Err(error) => return fail(&error, BAD_INPUT),
+    };
+    if let Err(error) = ctrlc::set_handler(interrupt) {
+        return fail(&format!("cannot listen for interrupts ({error})"), FAILED);
+    }
+    let options = RunOptions {
+        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case)),
+        resume: arguments.resume.clone(),
+        threads: arguments.threads.map(usize::from),
+        interrupt: Some(&INTERRUPT),
+    };
+    let mut screen = Screen::new(arguments.quiet);
+    let outcome = enmm::io::run(&loaded, &options, &mut screen);
+    screen.close();
+    match outcome {
+        Ok(summary) => report(&summary, &options.directory, arguments.quiet),
+        Err(error @ RunError::Output(_)) => fail(&error, FAILED),
+        Err(error) => fail(&error, BAD_INPUT),
+    }
+}
+
+/// The first interrupt asks for a checkpoint, the second ends the program at once.
+fn interrupt() {
+    if INTERRUPT.swap(true, Ordering::Relaxed) {
+        std::process::exit(i32::from(INTERRUPTED));
+    }
+}
+
+/// The name of the case file without its extension, in the current directory.
+fn directory_of(case: &Path) -> PathBuf {
+    let stem = case.file_stem().unwrap_or_default();
+    let directory = PathBuf::from(stem);
+    if directory.exists() && !directory.is_dir() {
+        PathBuf::from(format!("{}-results", directory.display()))
+    } else {
+        directory
+    }
+}
+
+fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
+    let checkpoint = directory.join("checkpoint.enmm");
+    if !quiet {
+        print_line(&table(summary, directory));
+    }
+    match (summary.status, &summary.failure) {
+        (RunStatus::Finished, _) => ExitCode::SUCCESS,
+        (RunStatus::Interrupted, _) => {
+            let place = checkpoint.display();
+            fail(&format!("interrupted at t = {:.6} s; continue with --resume {place}", summary.time), INTERRUPTED)
+        }
+        (RunStatus::Failed, failure) => {
+            let cause = failure.as_ref().map_or_else(String::new, |failure| {
+                let [x, y] = failure.place;
+                format!("block {} at ({x:.3}, {y:.3}) m, t = {:.6} s: {}", failure.block, failure.time, failure.cause)
+            });
+            let (time, place) = (summary.time, checkpoint.display());
+            fail(&format!("{cause}; the last good state, t = {time:.6} s, is in {place}"), FAILED)
+        }
+    }
+}
+
+fn table(summary: &Summary, directory: &Path) -> String {
+    let mut lines = vec![String::new()];
+    let mut row = |name: &str, value: String| lines.push(format!("{name:<20} {value}"));
+    row("results", directory.display().to_string());
+    if directory.join("deformed.png").exists() && summary.status != RunStatus::Interrupted {
+        row("picture to open", directory.join("deformed.png").display().to_string());
+    }
+    row("simulated time", format!("{:.6} s in {} steps", summary.time, summary.steps));
+    for stage in &summary.stages {
+        let end = match stage.converged {
+            Some(true) => ", at rest",
+            Some(false) => ", NOT at rest",
+            None => "",
+        };
+        row(&format!("stage {}", stage.name), format!("{:.4} s, {} steps{end}", stage.time, stage.steps));
+    }
+    let open_close = &summary.open_close;
+    row(
+        "open–close sweeps",
+        format!("{:.2} mean, {} most, {} steps unsettled", open_close.mean, open_close.max, open_close.unsettled),
+    );
+    row(
+        "largest penetration",
+        format!(
+            "{:.3e} m, {:.3} % of the mesh size",
+            summary.penetration_max,
+            100.0 * summary.penetration_max_relative
+        ),
+    );
+    row("energy residual", format!("{:.2e} of the largest term", summary.energy.residual_relative));
+    row("wall time", format!("{:.1} s", summary.wall_seconds.total));
+    lines.join("\n")
+}

@@ -1,0 +1,80 @@
+//! Claim: bad input exits with 2 and one line that names file, line, key and remedy, and nothing is written.
+
+mod support;
+
+use std::fs;
+
+use support::{Place, case};
+
+/// Runs a case that cannot run; asserts that nothing was written.
+fn refuse(case: &str, parts: &[&str]) {
+    let place = Place::with(case);
+    place.enmm(&["run", "case.toml"]).assert_bad_input(parts);
+    place.enmm(&["check", "case.toml"]).assert_bad_input(parts);
+    let answer = place.enmm(&["check", "case.toml", "--json"]);
+    assert_eq!(answer.status, Some(2));
+    let object: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    assert!(object["error"].as_str().expect("a message").contains(parts[0]), "{object}");
+    assert_eq!(place.names(), ["case.toml"]);
+}
+
+#[test]
+fn an_unknown_key_names_the_nearest_known_one() {
+    refuse(&case(0.1).replace("young =", "yuong ="), &["case.toml:16: ", "yuong", "young"]);
+}
+
+#[test]
+fn a_value_out_of_range_names_its_line() {
+    refuse(&case(0.1).replace("poisson = 0.25", "poisson = 0.7"), &["case.toml:17: rock.granite.poisson: "]);
+}
+
+#[test]
+fn a_later_stage_that_cannot_begin_is_found_before_the_first() {
+    let away = case(0.1).replace("excavate = [[4.5, 1.5]]", "excavate = [[40, 1.5]]");
+    refuse(&away, &["stage[1].excavate[0]", "(40, 1.5)"]);
+}
+
+#[test]
+fn a_model_that_needs_too_much_memory_is_not_built() {
+    refuse(&case(0.1).replace("size = 0.6", "size = 1e-5"), &["mesh.size", "memory_limit"]);
+}
+
+#[test]
+fn a_file_that_cannot_be_read_says_so() {
+    let place = Place::with(&case(0.1));
+    place.enmm(&["run", "absent.toml"]).assert_bad_input(&["absent.toml: cannot read"]);
+    fs::write(place.path("binary.toml"), [0xff, 0xfe, 0x00]).expect("written");
+    place.enmm(&["run", "binary.toml"]).assert_bad_input(&["binary.toml", "UTF-8"]);
+    place.enmm(&["run", "."]).assert_bad_input(&["cannot read"]);
+    assert_eq!(place.names(), ["binary.toml", "case.toml"]);
+}
+
+#[test]
+fn a_checkpoint_of_another_case_or_none_is_refused_before_anything_is_written() {
+    let place = Place::with(&case(0.02));
+    assert_eq!(place.enmm(&["run", "case.toml", "--quiet", "-o", "first"]).status, Some(0));
+    fs::write(place.path("other.toml"), case(0.03)).expect("written");
+    let resume = |case: &str, file: &str| place.enmm(&["run", case, "-o", "second", "--resume", file]);
+    resume("other.toml", "first/checkpoint.enmm").assert_bad_input(&["first/checkpoint.enmm: ", "of case "]);
+    resume("case.toml", "case.toml").assert_bad_input(&["no checkpoint"]);
+    resume("case.toml", "absent.enmm").assert_bad_input(&["absent.enmm: cannot read"]);
+    let whole = fs::read(place.path("first/checkpoint.enmm")).expect("readable");
+    fs::write(place.path("half.enmm"), &whole[..whole.len() / 2]).expect("written");
+    resume("case.toml", "half.enmm").assert_bad_input(&["truncated"]);
+    assert!(!place.path("second").exists());
+}
+
+#[test]
+fn a_directory_that_cannot_be_made_is_bad_input() {
+    let place = Place::with(&case(0.02));
+    place.enmm(&["run", "case.toml", "-o", "case.toml/results"]).assert_bad_input(&["cannot write results", "-o"]);
+}
+
+#[test]
+fn wrong_arguments_exit_with_2() {
+    let place = Place::with(&case(0.02));
+    for arguments in [&["run"][..], &["run", "case.toml", "--threads", "0"], &["fly"], &["check"]] {
+        assert_eq!(place.enmm(arguments).status, Some(2), "{arguments:?}");
+    }
+    assert_eq!(place.names(), ["case.toml"]);
+}

@@ -1,0 +1,148 @@
+//! Claim: `enmm run` leaves every promised result; a failed or interrupted run keeps what there is with a checkpoint
+//! from which it continues to the same results.
+
+mod support;
+
+use std::fs;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use support::{Answer, Place, case, json};
+
+#[test]
+fn every_promised_file_is_there_and_whole() {
+    let place = Place::with(&case(0.1));
+    let answer = place.enmm(&["run", "case.toml"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("deformed.png"), "{answer:?}");
+    assert_eq!(place.names(), ["case", "case.toml"], "results go to the name of the case");
+    let names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm"];
+    for name in names.into_iter().chain(["model.png", "deformed.png", "history.png", "frames/elements_0000.vtu"]) {
+        assert!(fs::metadata(place.path("case").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
+    }
+    let summary = json(&place.path("case/summary.json"));
+    assert_eq!(summary["status"], "finished");
+    assert_eq!(summary["stages"][0]["name"], "rest");
+    assert!(summary["stages"][0]["converged"].is_boolean() && summary["stages"][1]["converged"].is_null());
+    assert!(summary["energy"]["residual_relative"].as_f64().expect("a number").abs() < 5e-2);
+    let blocks = fs::read_to_string(place.path("case/blocks.csv")).expect("blocks");
+    assert!(blocks.starts_with("id,fixed,removed,detached,centroid_x [m],"), "{blocks}");
+    assert_eq!(blocks.lines().count(), 1 + 3);
+}
+
+#[test]
+fn rows_of_the_history_rise_in_time_and_begin_and_end_with_the_run() {
+    let place = Place::with(&case(0.1));
+    assert_eq!(place.enmm(&["run", "case.toml", "--quiet"]).status, Some(0));
+    let history = fs::read_to_string(place.path("case/history.csv")).expect("history");
+    let times: Vec<f64> =
+        history.lines().skip(1).map(|row| row.split(',').next().expect("a time").parse().expect("a number")).collect();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+    let end = json(&place.path("case/summary.json"))["time"].as_f64().expect("a number");
+    assert_eq!((times[0], times[times.len() - 1]), (0.0, end));
+}
+
+#[test]
+fn quiet_runs_print_nothing_and_threads_change_nothing() {
+    let place = Place::with(&case(0.05));
+    for threads in ["1", "2"] {
+        let answer = place.enmm(&["run", "case.toml", "--quiet", "-o", threads, "--threads", threads]);
+        assert_eq!((answer.status, answer.stdout.as_str(), answer.stderr.as_str()), (Some(0), "", ""));
+    }
+    for name in ["blocks.csv", "history.csv", "frames/elements_0003.vtu", "frames/joints_0003.vtu", "deformed.png"] {
+        let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
+        assert!(read("1") == read("2"), "{name}");
+    }
+}
+
+#[test]
+fn a_numerical_failure_exits_with_3_and_keeps_the_last_good_state() {
+    let tiny = format!("{}\n[solver]\npenetration_limit = 1e-6\n", case(0.1));
+    let place = Place::with(&tiny);
+    let answer = place.enmm(&["run", "case.toml"]);
+    assert_eq!(answer.status, Some(3), "{answer:?}");
+    assert!(answer.stderr.contains("penetration") && answer.stderr.contains("checkpoint.enmm"), "{answer:?}");
+    let summary = json(&place.path("case/summary.json"));
+    assert_eq!(summary["status"], "failed");
+    let failure = &summary["failure"];
+    assert!(failure["cause"].as_str().expect("a cause").contains("solver.penetration_limit"));
+    assert!(failure["time"].as_f64() > summary["time"].as_f64(), "the checkpoint is older than the failure");
+    assert_eq!(failure["place"].as_array().expect("a place").len(), 2);
+    for name in ["checkpoint.enmm", "history.csv", "blocks.csv", "run.pvd"] {
+        assert!(fs::metadata(place.path("case").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
+    }
+    let again = place.enmm(&["run", "case.toml", "--resume", "case/checkpoint.enmm", "--quiet"]);
+    assert_eq!(again.status, Some(3), "the same failure again: {again:?}");
+}
+
+/// Runs a long case into `parts` and ends it with `signal` in its second stage; asserts its status.
+#[cfg(unix)]
+fn stop(place: &Place, signal: &str, status: Option<i32>) {
+    let child = place.start(&["run", "case.toml", "-o", "parts"]);
+    let begin = Instant::now();
+    let rows = || fs::read_to_string(place.path("parts/history.csv")).map_or(0, |text| text.lines().count());
+    while rows() < 200 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no rows");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+    let answer = Answer::of(child.wait_with_output().expect("an end"));
+    assert_eq!(answer.status, status, "{answer:?}");
+}
+
+/// Asserts that `parts` and `whole` have the same results, wall times apart.
+#[cfg(unix)]
+fn assert_same(place: &Place) {
+    for name in ["blocks.csv", "history.csv", "run.pvd", "deformed.png", "frames/joints_0015.vtu"] {
+        let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
+        assert!(read("parts") == read("whole"), "{name}");
+    }
+    let stages = |folder: &str| {
+        let mut stages = json(&place.path(folder).join("summary.json"))["stages"].clone();
+        stages.as_array_mut().expect("stages").iter_mut().for_each(|stage| stage["wall_seconds"] = 0.into());
+        stages
+    };
+    assert_eq!(stages("parts"), stages("whole"));
+}
+
+/// Six hundred thousand steps of a block that rests.
+#[cfg(unix)]
+fn long_rest() -> String {
+    case(300.0).replace("friction_deg = 0.1", "friction_deg = 20")
+}
+
+#[cfg(unix)]
+const CONTINUED: [&str; 7] = ["run", "case.toml", "-o", "parts", "--resume", "parts/checkpoint.enmm", "--quiet"];
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_continues_to_the_results_of_an_uninterrupted_one() {
+    let place = Place::with(&long_rest());
+    stop(&place, "-INT", Some(130));
+    assert_eq!(json(&place.path("parts/summary.json"))["status"], "interrupted");
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    assert_same(&place);
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0), "a finished run writes its results again");
+    assert_same(&place);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_continues_from_its_last_checkpoint() {
+    let place = Place::with(&format!("{}\n[output]\ncheckpoint_interval = 7.0\n", long_rest()));
+    stop(&place, "-KILL", None);
+    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    assert_same(&place);
+}
+
+#[test]
+fn the_schema_is_printed_as_json() {
+    let place = Place::with("");
+    let answer = place.enmm(&["schema"]);
+    assert_eq!((answer.status, answer.stderr.as_str()), (Some(0), ""));
+    let schema: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    assert!(schema["properties"]["mesh"].is_object());
+}

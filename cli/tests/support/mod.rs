@@ -1,0 +1,122 @@
+//! The program in a folder of its own, and cases for it.
+#![allow(dead_code)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+/// A folder that goes away, with the case in it.
+pub struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub fn with(case: &str) -> Self {
+        let place = Self { folder: tempfile::tempdir().expect("a folder") };
+        fs::write(place.path("case.toml"), case).expect("written");
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8")).collect();
+        names.sort();
+        names
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_enmm"));
+        command.args(arguments).current_dir(self.folder.path());
+        command
+    }
+
+    pub fn enmm(&self, arguments: &[&str]) -> Answer {
+        Answer::of(self.command(arguments).output().expect("the program runs"))
+    }
+
+    pub fn start(&self, arguments: &[&str]) -> Child {
+        let mut command = self.command(arguments);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program runs")
+    }
+}
+
+/// What the program answered.
+#[derive(Debug)]
+pub struct Answer {
+    pub status: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Answer {
+    pub fn of(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+        Self { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    /// Asserts a status of 2 and one line that begins with `error: ` and has all `parts`.
+    pub fn assert_bad_input(&self, parts: &[&str]) {
+        assert_eq!(self.status, Some(2), "{self:?}");
+        assert_eq!(self.stderr.lines().count(), 1, "{self:?}");
+        assert!(self.stderr.starts_with("error: "), "{self:?}");
+        for part in parts {
+            assert!(self.stderr.contains(part), "{part:?} is not in {self:?}");
+        }
+    }
+}
+
+pub fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(path).expect("readable")).expect("JSON")
+}
+
+/// A block that rests on a base, then slides while a second one is taken away.
+pub fn case(duration: f64) -> String {
+    format!(
+        r#"
+title = "Two blocks"
+[domain]
+outline = [[0, 0], [6, 0], [6, 1], [5, 1], [5, 2], [4, 2], [4, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]
+[mesh]
+size = 0.6
+origin = [0.07, 0.03]
+[[joint]]
+points = [[1, 1], [2, 1]]
+law = "plane"
+[[joint]]
+points = [[4, 1], [5, 1]]
+law = "plane"
+[rock.granite]
+density = 2600
+young = 1e9
+poisson = 0.25
+[joint_law.plane]
+friction_deg = 20
+[[fix]]
+block = [3, 0.5]
+[[load]]
+kind = "block"
+point = [1.5, 1.5]
+force = [100, 0]
+[[monitor]]
+name = "top"
+point = [1.5, 1.9]
+[[stage]]
+name = "rest"
+kind = "static"
+duration = 0.2
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = {duration:?}
+excavate = [[4.5, 1.5]]
+[[stage.law]]
+law = "plane"
+friction_deg = 0.1
+"#
+    )
+}

@@ -1,0 +1,157 @@
+//! Checkpoints: a payload in a container that tells whose it is and whether it is whole.
+//!
+//! Layout, little-endian: magic `ENMMCKPT`; format version u32; engine version and case hash, each as u32 length and
+//! text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::files::write_atomic;
+
+const MAGIC: &[u8; 8] = b"ENMMCKPT";
+const FORMAT: u32 = 1;
+const TEXT_MAX: usize = 256;
+
+/// Why a checkpoint cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The file cannot be read.
+    #[error("cannot read the checkpoint ({0}); check its path and permissions")]
+    Unreadable(io::Error),
+    /// It is something else.
+    #[error("this is no checkpoint of enmm: give a checkpoint.enmm that a run has written")]
+    Foreign,
+    /// It ends too early.
+    #[error("the checkpoint is truncated after {0} bytes: use an older one, or start the run anew")]
+    Truncated(usize),
+    /// Another format or engine wrote it.
+    #[error("the checkpoint is of {found}, this is {own}: continue with that version, or start the run anew")]
+    Version {
+        /// What wrote it.
+        found: String,
+        /// What reads it.
+        own: String,
+    },
+    /// It belongs to another case.
+    #[error("the checkpoint is of case {found}, this case is {own}: use the case file that made it")]
+    OtherCase {
+        /// Hash in the checkpoint.
+        found: String,
+        /// Hash of this case.
+        own: String,
+    },
+    /// Its bytes have changed.
+    #[error("the checkpoint is damaged ({0}): use an older one, or start the run anew")]
+    Damaged(String),
+}
+
+/// Version of the engine that writes checkpoints and results.
+pub const fn engine_version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}
+
+/// Returns the bytes of a checkpoint of `payload` for the case with this hash.
+///
+/// # Errors
+/// When the payload cannot be serialised.
+pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> io::Result<Vec<u8>> {
+    let payload = postcard::to_stdvec(payload).map_err(io::Error::other)?;
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(FORMAT.to_le_bytes());
+    for text in [engine_version(), case_hash] {
+        bytes.extend((text.len() as u32).to_le_bytes());
+        bytes.extend(text.as_bytes());
+    }
+    bytes.extend((payload.len() as u64).to_le_bytes());
+    bytes.extend(crc32fast::hash(&payload).to_le_bytes());
+    bytes.extend(payload);
+    Ok(bytes)
+}
+
+/// Returns the payload of a checkpoint of the case with this hash.
+///
+/// # Errors
+/// When the bytes are no whole checkpoint of this engine and case.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, CheckpointError> {
+    let mut reader = Reader { bytes, at: 0 };
+    if reader.take(MAGIC.len()).map_err(|_| CheckpointError::Foreign)? != MAGIC {
+        return Err(CheckpointError::Foreign);
+    }
+    let format = reader.number()?;
+    if format != FORMAT {
+        return Err(version(format!("format {format}"), format!("format {FORMAT}")));
+    }
+    let engine = reader.text()?;
+    if engine != engine_version() {
+        return Err(version(format!("enmm {engine}"), format!("enmm {}", engine_version())));
+    }
+    let found = reader.text()?;
+    if found != case_hash {
+        return Err(CheckpointError::OtherCase { found, own: case_hash.to_owned() });
+    }
+    let length = u64::from_le_bytes(reader.array()?);
+    let checksum = reader.number()?;
+    let payload = reader.take(usize::try_from(length).unwrap_or(usize::MAX))?;
+    if reader.at != bytes.len() {
+        return Err(CheckpointError::Damaged("bytes follow its end".to_owned()));
+    }
+    if crc32fast::hash(payload) != checksum {
+        return Err(CheckpointError::Damaged("its checksum does not match".to_owned()));
+    }
+    postcard::from_bytes(payload).map_err(|error| CheckpointError::Damaged(error.to_string()))
+}
+
+/// Writes a checkpoint, whole or not at all.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Result<()> {
+    write_atomic(path, &encode(payload, case_hash)?)
+}
+
+/// Reads a checkpoint.
+///
+/// # Errors
+/// See [`decode`].
+pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, CheckpointError> {
+    decode(&fs::read(path).map_err(CheckpointError::Unreadable)?, case_hash)
+}
+
+fn version(found: String, own: String) -> CheckpointError {
+    CheckpointError::Version { found, own }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, length: usize) -> Result<&'a [u8], CheckpointError> {
+        let part = self.bytes[self.at..].get(..length).ok_or(CheckpointError::Truncated(self.bytes.len()))?;
+        self.at += length;
+        Ok(part)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], CheckpointError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    fn number(&mut self) -> Result<u32, CheckpointError> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    fn text(&mut self) -> Result<String, CheckpointError> {
+        let length = self.number()? as usize;
+        if length > TEXT_MAX {
+            return Err(CheckpointError::Damaged(format!("a text of {length} bytes")));
+        }
+        String::from_utf8(self.take(length)?.to_vec()).map_err(|_| CheckpointError::Damaged("no text".to_owned()))
+    }
+}

@@ -1,0 +1,427 @@
+//! The loop over stages and steps, with outputs at their times.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Vector;
+use crate::io::blocks::write_blocks;
+use crate::io::case_file::LoadedCase;
+use crate::io::checkpoint::{self, CheckpointError};
+use crate::io::history::HistoryWriter;
+use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
+use crate::io::vtu::PvdWriter;
+use crate::model::Simulation;
+use crate::model::case::{Invalid, StageKind};
+use crate::state::{Ledger, Seconds, State};
+use crate::step::{StepError, StepReport};
+
+use super::rows::{self, Plan};
+use super::{Observer, RunError, RunOptions, RunProgress, results};
+
+/// Most steps between two copies of the state to which a failed run falls back.
+const GOOD_STEPS: u64 = 200;
+
+/// What a run knows beyond its state; part of its checkpoints.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Progress {
+    /// Stages that are over.
+    done: Vec<StageRecord>,
+    /// Unsettled sub-steps before this stage.
+    unsettled_before: u64,
+    /// Potential energy at the start of this stage (J/m).
+    potential_start: Option<f64>,
+    /// Sweeps and sub-steps at the last row.
+    row_sweeps: [u64; 2],
+    /// Largest penetration at reports of this stage (m).
+    penetration_max: f64,
+    /// Unbalanced ratio at the last report.
+    unbalanced: f64,
+    /// Ledger at the last report.
+    ledger: Ledger,
+    /// Wall time before this process (s).
+    wall: WallSeconds,
+    /// Wall time of this stage before this process (s).
+    stage_wall: f64,
+}
+
+/// A checkpoint of a run. The state comes first, so that it can be read alone.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Saved {
+    state: State,
+    progress: Progress,
+}
+
+/// How a stage ended.
+enum StageEnd {
+    Over,
+    Interrupted,
+    Failed(StepError),
+}
+
+struct Driver<'a> {
+    loaded: &'a LoadedCase,
+    options: &'a RunOptions<'a>,
+    observer: &'a mut dyn Observer,
+    simulation: Simulation,
+    progress: Progress,
+    good: Saved,
+    history: HistoryWriter,
+    frames: Option<PvdWriter>,
+    clock: Instant,
+    stage_clock: Instant,
+    warnings: Vec<String>,
+}
+
+/// Runs all stages; see [`super::run`].
+pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
+    let clock = Instant::now();
+    let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
+    let simulation = Simulation::new(loaded.case.clone()).map_err(invalid)?;
+    let mut rehearsal = simulation.clone();
+    while rehearsal.next_stage().map_err(invalid)? {}
+    drop(rehearsal);
+    let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
+    let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;
+    loop {
+        match driver.run_stage()? {
+            StageEnd::Over => {}
+            StageEnd::Interrupted => return driver.close(RunStatus::Interrupted, None),
+            StageEnd::Failed(error) => return driver.fail(&error),
+        }
+        if !driver.simulation.next_stage().map_err(invalid)? {
+            return driver.close(RunStatus::Finished, None);
+        }
+        driver.begin_stage();
+    }
+}
+
+fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
+    let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
+    let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
+    if fits(simulation, &saved.state) {
+        return Ok(saved);
+    }
+    Err(refuse(CheckpointError::Damaged("its state does not fit the model".to_owned())))
+}
+
+/// Whether all indices and lengths of a state are those of the model.
+fn fits(simulation: &Simulation, state: &State) -> bool {
+    let (slope, own) = (simulation.slope(), simulation.state());
+    let covers = slope.covers.cover_count();
+    let boundary = &slope.boundary;
+    (state.stage as usize) < simulation.case().stages.len()
+        && [state.displacement.len(), state.velocity.len()] == [covers; 2]
+        && [&state.stage_displacement, &state.stage_force].iter().all(|v| v.is_empty() || v.len() == covers)
+        && state.support_force.len() == own.support_force.len()
+        && state.support_rest.len() == own.support_rest.len()
+        && state.fix_active.len() == own.fix_active.len()
+        && state.removed.len() == own.removed.len()
+        && state.laws.len() == own.laws.len()
+        && state.law_switch.len() == own.law_switch.len()
+        && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
+        && state.contacts.iter().all(|c| {
+            (c.node as usize) < boundary.node_count()
+                && (c.edge as usize) < boundary.len()
+                && (c.side as usize) < boundary.side_first.len()
+        })
+}
+
+impl<'a> Driver<'a> {
+    /// Opens or continues the results; the first thing that writes.
+    fn open(
+        loaded: &'a LoadedCase,
+        options: &'a RunOptions<'a>,
+        observer: &'a mut dyn Observer,
+        mut simulation: Simulation,
+        saved: Option<Saved>,
+        clock: Instant,
+    ) -> Result<Self, RunError> {
+        let directory = &options.directory;
+        fs::create_dir_all(directory).map_err(RunError::Directory)?;
+        let output = simulation.case().output.clone();
+        if output.pictures {
+            results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
+        }
+        let columns = rows::columns(simulation.case());
+        let history_path = directory.join("history.csv");
+        let resumed = saved.is_some();
+        let (history, frames, good) = match saved {
+            None => {
+                results::clear(directory).map_err(RunError::Directory)?;
+                let history = HistoryWriter::new(&history_path, &columns).map_err(RunError::Directory)?;
+                let frames = output.frames.then(|| PvdWriter::new(directory)).transpose();
+                let good = Saved { state: simulation.state().clone(), progress: Progress::default() };
+                (history, frames.map_err(RunError::Directory)?, good)
+            }
+            Some(good) => {
+                simulation.restore(good.state.clone());
+                let until = kept_until(&simulation);
+                let history = HistoryWriter::open_for_append(&history_path, &columns, until);
+                let frames = output.frames.then(|| PvdWriter::open_for_append(directory, until)).transpose();
+                (history.map_err(RunError::Directory)?, frames.map_err(RunError::Directory)?, good)
+            }
+        };
+        let warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
+        warnings.iter().for_each(|warning| observer.warn(warning));
+        let progress = good.progress.clone();
+        let stage_clock = Instant::now();
+        let mut driver = Self {
+            loaded,
+            options,
+            observer,
+            simulation,
+            progress,
+            good,
+            history,
+            frames,
+            clock,
+            stage_clock,
+            warnings,
+        };
+        if !resumed {
+            driver.begin_stage();
+        }
+        Ok(driver)
+    }
+
+    fn begin_stage(&mut self) {
+        self.stage_clock = Instant::now();
+        self.begin_row();
+        self.progress.unsettled_before = self.simulation.state().counters.unsettled;
+        self.progress.potential_start = None;
+        self.progress.penetration_max = 0.0;
+        self.progress.stage_wall = 0.0;
+    }
+
+    /// Runs the stage in progress to its end, unless a checkpoint says that it is over.
+    fn run_stage(&mut self) -> Result<StageEnd, RunError> {
+        let plan = Plan::of(&self.simulation);
+        let recorded = self.progress.done.len() > self.simulation.state().stage as usize;
+        let mut last = None;
+        while !recorded && !self.simulation.stage_is_over(last.as_ref()) {
+            if self.options.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                return Ok(StageEnd::Interrupted);
+            }
+            let step = self.simulation.state().stage_step;
+            if plan.checkpoint_due(step) {
+                self.save()?;
+            }
+            if plan.frame_due(step) {
+                self.push_frame()?;
+            }
+            self.tell();
+            match self.step(&plan)? {
+                Ok(report) => last = report,
+                Err(error) => return Ok(StageEnd::Failed(error)),
+            }
+        }
+        self.end_stage(last, recorded)
+    }
+
+    /// One step, with a report and a row when they are due.
+    fn step(&mut self, plan: &Plan) -> Result<Result<Option<StepReport>, StepError>, RunError> {
+        let step = self.simulation.state().stage_step;
+        let row = plan.row_due(step);
+        if row || step.is_multiple_of(GOOD_STEPS) {
+            self.keep_good();
+        }
+        let before = if row { rows::monitors(&self.simulation) } else { Vec::new() };
+        let dt_before = self.simulation.state().dt_last;
+        let sweeps_mean = self.sweeps_mean();
+        if row {
+            self.begin_row();
+        }
+        let wanted = plan.report_due(step);
+        let report = match self.simulation.advance(wanted) {
+            Ok(report) => report,
+            Err(error) => return Ok(Err(error)),
+        };
+        if !wanted {
+            return Ok(Ok(None));
+        }
+        self.note(&report);
+        if row {
+            self.write_row(&report, &before, dt_before, sweeps_mean)?;
+        }
+        Ok(Ok(Some(report)))
+    }
+
+    /// Notes that there is a row now.
+    fn begin_row(&mut self) {
+        let counters = &self.simulation.state().counters;
+        self.progress.row_sweeps = [counters.sweeps, counters.substeps];
+    }
+
+    fn note(&mut self, report: &StepReport) {
+        let progress = &mut self.progress;
+        progress.potential_start.get_or_insert(report.ledger.potential);
+        progress.penetration_max = progress.penetration_max.max(report.penetration_max);
+        progress.unbalanced = report.unbalanced;
+        progress.ledger = report.ledger;
+    }
+
+    /// Mean sweeps of a sub-step since the last row.
+    fn sweeps_mean(&self) -> f64 {
+        let counters = &self.simulation.state().counters;
+        let [sweeps, substeps] = self.progress.row_sweeps;
+        (counters.sweeps - sweeps) as f64 / (counters.substeps - substeps).max(1) as f64
+    }
+
+    fn write_row(
+        &mut self,
+        report: &StepReport,
+        before: &[(Vector, Vector)],
+        dt_before: f64,
+        sweeps_mean: f64,
+    ) -> Result<(), RunError> {
+        let after = rows::monitors(&self.simulation);
+        let dt = [dt_before, self.simulation.slope().dt];
+        let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
+        self.history.row(&row).map_err(RunError::Output)
+    }
+
+    /// Row and frame of the end of a stage, and its record; the step that the row needs is taken back.
+    fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
+        self.keep_good();
+        self.push_frame()?;
+        let end = self.simulation.state().clone();
+        let before = rows::monitors(&self.simulation);
+        let sweeps_mean = self.sweeps_mean();
+        let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
+        let report = self.simulation.advance(true);
+        if let Ok(report) = &report {
+            self.note(report);
+            converged |= self.simulation.at_rest(report);
+            self.write_row(report, &before, end.dt_last, sweeps_mean)?;
+        }
+        self.simulation.restore(end);
+        if !recorded {
+            self.warn_of_stage(converged);
+            let record = self.stage_record(Some(converged));
+            self.progress.done.push(record);
+        }
+        Ok(StageEnd::Over)
+    }
+
+    fn warn_of_stage(&mut self, converged: bool) {
+        let stage = self.simulation.stage();
+        if stage.kind == StageKind::Static && !converged {
+            let (name, time, ratio) = (&stage.name, stage.duration, self.progress.unbalanced);
+            self.warn(format!(
+                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}): \
+                 the slope moves, or the stage needs a longer duration"
+            ));
+        }
+    }
+
+    fn warn(&mut self, message: String) {
+        self.observer.warn(&message);
+        self.warnings.push(message);
+    }
+
+    fn stage_record(&self, converged: Option<bool>) -> StageRecord {
+        let (stage, state, progress) = (self.simulation.stage(), self.simulation.state(), &self.progress);
+        let potential = progress.ledger.potential;
+        StageRecord {
+            name: stage.name.clone(),
+            kind: stage.kind,
+            start: state.stage_start,
+            time: self.simulation.time() - state.stage_start,
+            steps: state.stage_step,
+            converged: converged.filter(|_| stage.kind == StageKind::Static),
+            wall_seconds: progress.stage_wall + self.stage_clock.elapsed().as_secs_f64(),
+            unbalanced: progress.unbalanced,
+            kinetic_energy: progress.ledger.kinetic,
+            potential_released: progress.potential_start.unwrap_or(potential) - potential,
+            unsettled: state.counters.unsettled - progress.unsettled_before,
+            penetration_max: progress.penetration_max,
+        }
+    }
+
+    fn tell(&mut self) {
+        let (simulation, state) = (&self.simulation, self.simulation.state());
+        let stages = &simulation.case().stages;
+        let number = state.stage as usize + 1;
+        let later: f64 = stages[number..].iter().map(|stage| stage.duration).sum();
+        let time = simulation.time();
+        self.observer.step(&RunProgress {
+            stage: &simulation.stage().name,
+            stage_number: number,
+            stage_count: stages.len(),
+            time,
+            time_left: (state.stage_start + simulation.stage().duration - time).max(0.0) + later,
+            step: state.step,
+        });
+    }
+
+    fn push_frame(&mut self) -> Result<(), RunError> {
+        let Some(frames) = &mut self.frames else { return Ok(()) };
+        frames.push(&self.simulation.snapshot()).map_err(RunError::Output)
+    }
+
+    fn keep_good(&mut self) {
+        self.good.state.clone_from(self.simulation.state());
+        self.good.progress.clone_from(&self.progress);
+    }
+
+    fn wall(&self) -> WallSeconds {
+        let parts: &Seconds = &self.simulation.scratch().seconds;
+        self.progress.wall.plus(parts, self.clock.elapsed().as_secs_f64())
+    }
+
+    /// Writes the checkpoint of the state now.
+    fn save(&self) -> Result<(), RunError> {
+        let mut progress = self.progress.clone();
+        progress.wall = self.wall();
+        progress.stage_wall += self.stage_clock.elapsed().as_secs_f64();
+        let saved = Saved { state: self.simulation.state().clone(), progress };
+        let path = self.options.directory.join("checkpoint.enmm");
+        checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)
+    }
+
+    /// Falls back to the last good state and closes.
+    fn fail(mut self, error: &StepError) -> Result<Summary, RunError> {
+        self.simulation.restore(self.good.state.clone());
+        self.progress = self.good.progress.clone();
+        self.close(RunStatus::Failed, Some(error))
+    }
+
+    /// Writes what a run leaves at its end, the checkpoint first and the summary last.
+    fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
+        self.save()?;
+        let directory = &self.options.directory;
+        write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
+        if self.simulation.case().output.pictures && status != RunStatus::Interrupted {
+            results::draw_end(&self.simulation, directory).map_err(RunError::Output)?;
+        }
+        let mut stages = self.progress.done.clone();
+        if stages.len() <= self.simulation.state().stage as usize {
+            stages.push(self.stage_record(None));
+        }
+        let record = RunRecord {
+            case_file: self.loaded.source.file(),
+            case_hash: &self.loaded.hash,
+            status,
+            failure,
+            stages,
+            ledger: &self.progress.ledger,
+            wall: self.wall(),
+            warnings: std::mem::take(&mut self.warnings),
+        };
+        let summary = Summary::new(&self.simulation, record);
+        summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;
+        Ok(summary)
+    }
+}
+
+/// Time (s) up to which rows and frames belong to the past of a restored state; it writes those of its own time
+/// again, but for those of the start of a later stage, which the stage before wrote.
+fn kept_until(simulation: &Simulation) -> f64 {
+    let state = simulation.state();
+    let half = 0.5 * simulation.slope().dt;
+    if state.stage > 0 && state.stage_step == 0 { simulation.time() + half } else { simulation.time() - half }
+}

@@ -1,0 +1,160 @@
+//! Columns and rows of `history.csv`, and how often rows, frames and checkpoints are due.
+
+use std::io;
+use std::path::Path;
+
+use crate::geometry::Vector;
+use crate::io::picture::Series;
+use crate::model::case::StageKind;
+use crate::model::{Case, Simulation};
+use crate::step::StepReport;
+
+/// Steps between reports of a static stage, which tell whether it is at rest.
+const REST_STEPS: u64 = 10;
+/// Rows of a stage that names no interval.
+const ROWS: f64 = 500.0;
+/// Frames of a stage that names no interval.
+const FRAMES: f64 = 20.0;
+
+/// Steps between outputs of one stage.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    row: u64,
+    frame: u64,
+    checkpoint: Option<u64>,
+    rest: Option<u64>,
+    first: bool,
+}
+
+impl Plan {
+    /// The plan of the stage in progress.
+    pub fn of(simulation: &Simulation) -> Self {
+        let (stage, output) = (simulation.stage(), &simulation.case().output);
+        let steps = |interval: Option<f64>, parts: f64| simulation.steps_in(interval.unwrap_or(stage.duration / parts));
+        Self {
+            row: steps(output.history_interval, ROWS),
+            frame: steps(output.frame_interval, FRAMES),
+            checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
+            rest: (stage.kind == StageKind::Static).then_some(REST_STEPS),
+            first: simulation.state().stage == 0,
+        }
+    }
+
+    /// Whether a row is due at the start of a step; the end of the stage before wrote that of step 0.
+    pub fn row_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.row) && self.begins(step)
+    }
+
+    /// Whether a frame is due at the start of a step.
+    pub fn frame_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.frame) && self.begins(step)
+    }
+
+    /// Whether a checkpoint is due at the start of a step.
+    pub fn checkpoint_due(&self, step: u64) -> bool {
+        step > 0 && self.checkpoint.is_some_and(|every| step.is_multiple_of(every))
+    }
+
+    /// Whether a step must report.
+    pub fn report_due(&self, step: u64) -> bool {
+        step == 0 || step.is_multiple_of(self.row) || self.rest.is_some_and(|every| step.is_multiple_of(every))
+    }
+
+    fn begins(&self, step: u64) -> bool {
+        step > 0 || self.first
+    }
+}
+
+/// Names and units of the columns.
+pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
+    let mut columns = vec![("time".to_owned(), "s"), ("stage".to_owned(), "")];
+    for monitor in &case.monitors {
+        for (part, unit) in [("ux", "m"), ("uy", "m"), ("vx", "m/s"), ("vy", "m/s")] {
+            columns.push((format!("{}_{part}", monitor.name), unit));
+        }
+    }
+    let energies = [
+        "kinetic_energy",
+        "strain_energy",
+        "potential_energy",
+        "stored_energy",
+        "friction_heat",
+        "contact_dissipation",
+        "damping_loss",
+        "external_work",
+        "energy_residual",
+    ];
+    columns.extend(energies.map(|name| (name.to_owned(), "J/m")));
+    columns.push(("unbalanced_ratio".to_owned(), ""));
+    columns.push(("penetration_max".to_owned(), "m"));
+    columns.extend(["locked", "slipping", "sweeps_mean"].map(|name| (name.to_owned(), "")));
+    columns
+}
+
+/// Displacement and velocity of all monitors.
+pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
+    (0..simulation.case().monitors.len()).map(|k| simulation.monitor(k)).collect()
+}
+
+/// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
+/// step before (s). Velocities, which live halfway between, are brought to the time of the row.
+pub fn row(
+    stage: u32,
+    report: &StepReport,
+    before: &[(Vector, Vector)],
+    after: &[(Vector, Vector)],
+    [dt_before, dt]: [f64; 2],
+    sweeps_mean: f64,
+) -> Vec<f64> {
+    let mut row = vec![report.time, f64::from(stage + 1)];
+    for ((u, v), (_, v_after)) in before.iter().zip(after) {
+        let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
+        row.extend([u.x, u.y, velocity.x, velocity.y]);
+    }
+    let ledger = &report.ledger;
+    row.extend([
+        ledger.kinetic,
+        ledger.strain,
+        ledger.potential,
+        ledger.stored,
+        ledger.friction,
+        ledger.contact_dissipation(),
+        ledger.damping,
+        ledger.external_work,
+        ledger.residual(),
+        report.unbalanced,
+        report.penetration_max,
+        f64::from(report.locked),
+        f64::from(report.slipping),
+        sweeps_mean,
+    ]);
+    row
+}
+
+/// The series that the picture of the histories shows, read back from `history.csv`.
+///
+/// # Errors
+/// Whatever the file system refuses, or what is not a table of numbers.
+pub fn series(path: &Path) -> io::Result<Vec<Series>> {
+    let mut reader = csv::Reader::from_path(path)?;
+    let headers = reader.headers()?.clone();
+    let mut series: Vec<(usize, Series)> = headers
+        .iter()
+        .enumerate()
+        .filter_map(|(k, header)| {
+            let (name, unit) = header.strip_suffix(']').and_then(|h| h.rsplit_once(" [")).unwrap_or((header, ""));
+            let energy = unit == "J/m" && name != "energy_residual";
+            let shown = k > 1 && (energy || name.ends_with("_ux") || name.ends_with("_uy"));
+            shown.then(|| (k, Series { name: name.to_owned(), unit: unit.to_owned(), points: Vec::new() }))
+        })
+        .collect();
+    for record in reader.records() {
+        let record = record?;
+        let number = |k: usize| record.get(k).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN);
+        for (k, series) in &mut series {
+            series.points.push((number(0), number(*k)));
+        }
+    }
+    let moves = |series: &Series| series.unit == "m" || series.points.iter().any(|point| point.1 != 0.0);
+    Ok(series.into_iter().map(|(_, series)| series).filter(moves).collect())
+}

@@ -1,0 +1,244 @@
+//! What a model shows at one instant: the snapshot that outputs draw, and the state of every block.
+//!
+//! All of it follows from the state alone, so that a restored model shows the same.
+
+use crate::contact::{ContactHistory, ContactState, VertexEdge};
+use crate::geometry::{Point, Vector, polygon};
+use crate::mechanics::{Deformation, PreStress};
+use crate::state::{Slope, State};
+use crate::step;
+
+use super::Simulation;
+use super::snapshot::{Boundary, JointPoint, Polygons, Snapshot};
+
+/// A block as hosts see it; velocities are those of half a step ago.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockState {
+    /// Block id.
+    pub id: u32,
+    /// Whether no cover of the block can move.
+    pub fixed: bool,
+    /// Whether the block has been excavated.
+    pub removed: bool,
+    /// Whether it can move and no contact on it carries force.
+    pub detached: bool,
+    /// Mass centroid now (m).
+    pub centroid: Point,
+    /// Displacement of the mass centroid (m).
+    pub displacement: Vector,
+    /// Rotation that fits the covers best by mass (rad, counter-clockwise, within ±π).
+    pub rotation: f64,
+    /// Velocity of the mass centroid (m/s).
+    pub velocity: Vector,
+    /// Angular velocity (rad/s, counter-clockwise).
+    pub angular_velocity: f64,
+    /// Area mean of the stress xx, yy, xy (Pa, tension positive).
+    pub mean_stress: [f64; 3],
+    /// Area in the reference configuration (m²).
+    pub area: f64,
+    /// Mass (kg/m).
+    pub mass: f64,
+    /// Kinetic energy (J/m).
+    pub kinetic_energy: f64,
+    /// Strain energy (J/m).
+    pub strain_energy: f64,
+    /// Contacts that carry force.
+    pub contact_count: u32,
+    /// Largest penetration of its contacts (m).
+    pub penetration_max: f64,
+}
+
+impl Simulation {
+    /// The model now, without excavated blocks.
+    pub fn snapshot(&self) -> Snapshot {
+        let (slope, state) = (self.slope(), self.state());
+        let covers = &slope.covers;
+        let mut snapshot = Snapshot {
+            time: self.time(),
+            joint_laws: self.case().joint_laws.keys().cloned().collect(),
+            rocks: self.case().rocks.keys().cloned().collect(),
+            ..Snapshot::default()
+        };
+        snapshot.elements.start.push(0);
+        for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]) {
+            for &p in covers.polygon(e) {
+                let displacement = slope.sample(e, p, &state.displacement);
+                snapshot.elements.points.push(p + displacement);
+                snapshot.displacement.push(displacement);
+                snapshot.velocity.push(slope.sample(e, p, &state.velocity));
+            }
+            snapshot.elements.start.push(snapshot.elements.points.len() as u32);
+            snapshot.stress.push(deformation(slope, state, e).stress(rock(slope, e), &pre_stress(slope, e)));
+            snapshot.block.push(covers.element_block[e]);
+            snapshot.rock.push(u32::from(slope.element_rock[e]));
+        }
+        let places = places(slope, state);
+        snapshot.boundaries = self.boundaries(&places);
+        let joint = |contact: &VertexEdge| joint_point(slope, &places, contact);
+        snapshot.joints = self.contacts().iter().map(joint).collect();
+        snapshot
+    }
+
+    /// Loops of all blocks that are there, at the current `places` of the boundary points.
+    fn boundaries(&self, places: &[Point]) -> Vec<Boundary> {
+        let (slope, state) = (self.slope(), self.state());
+        let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
+        let mut k = 0;
+        while k < slope.boundary.len() {
+            let end = loop_end(slope, k);
+            let (block, points) = (slope.boundary.block[k], places[k..end].to_vec());
+            match by_block.last_mut() {
+                Some((last, loops)) if *last == block => loops.push(points),
+                _ => by_block.push((block, vec![points])),
+            }
+            k = end;
+        }
+        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block as usize]);
+        there
+            .map(|(block, mut loops)| {
+                loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
+                Boundary {
+                    block,
+                    fixed: self.scratch().metric.fixed[block as usize],
+                    displacement: mean(slope, &state.displacement, block as usize),
+                    loops: polygons(&loops),
+                }
+            })
+            .collect()
+    }
+
+    /// The state of every block, excavated ones included, by id.
+    pub fn block_states(&self) -> Vec<BlockState> {
+        let places = places(self.slope(), self.state());
+        let mut states: Vec<BlockState> =
+            (0..self.slope().covers.block_count()).map(|block| self.block_state(block)).collect();
+        let boundary = &self.slope().boundary;
+        for contact in &self.state().contacts {
+            let node = boundary.node_point[contact.node as usize] as usize;
+            let depth = penetration(self.slope(), &places, contact);
+            for block in [boundary.block[node], boundary.block[contact.edge as usize]] {
+                let state = &mut states[block as usize];
+                state.contact_count += u32::from(contact.state != ContactState::Open);
+                state.penetration_max = state.penetration_max.max(depth);
+            }
+        }
+        for state in &mut states {
+            state.detached = state.contact_count == 0 && !state.fixed && !state.removed;
+        }
+        states
+    }
+
+    fn block_state(&self, block: usize) -> BlockState {
+        let (slope, state) = (self.slope(), self.state());
+        let covers = &slope.covers;
+        let metric = &self.scratch().metric;
+        let (_, velocity, spin, kinetic) = step::block_motion(slope, state, metric, block);
+        let displacement = mean(slope, &state.displacement, block);
+        let area = covers.block_area(block);
+        let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
+        for e in covers.elements_of(block) {
+            let (deformation, pre) = (deformation(slope, state, e), pre_stress(slope, e));
+            let of_element = deformation.stress(rock(slope, e), &pre);
+            (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
+            strain_energy += deformation.energy(rock(slope, e), &pre) * covers.element_area[e];
+        }
+        let removed = state.removed[block];
+        BlockState {
+            id: block as u32,
+            fixed: metric.fixed[block],
+            removed,
+            centroid: mean(slope, &covers.star_position, block) + displacement,
+            displacement,
+            rotation: rotation(slope, state, block),
+            velocity,
+            angular_velocity: spin,
+            mean_stress: stress,
+            area,
+            mass: slope.metric.total[block],
+            kinetic_energy: if removed { 0.0 } else { kinetic },
+            strain_energy,
+            ..BlockState::default()
+        }
+    }
+}
+
+/// One past the last point of the boundary loop that begins with point `first`.
+fn loop_end(slope: &Slope, first: usize) -> usize {
+    let mut k = first;
+    while slope.boundary.after(k) != first {
+        k = slope.boundary.after(k);
+    }
+    k + 1
+}
+
+fn polygons(loops: &[Vec<Point>]) -> Polygons {
+    let mut polygons = Polygons { start: vec![0], points: Vec::new() };
+    for points in loops {
+        polygons.points.extend_from_slice(points);
+        polygons.start.push(polygons.points.len() as u32);
+    }
+    polygons
+}
+
+/// Current places of the boundary points (m).
+fn places(slope: &Slope, state: &State) -> Vec<Point> {
+    let boundary = &slope.boundary;
+    let place = |i: u32| slope.covers.star_position[i as usize] + state.displacement[i as usize];
+    let sum = |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| place(i) * *w).sum();
+    boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
+}
+
+/// Mean of a cover field over a block's mass.
+fn mean(slope: &Slope, field: &[Vector], block: usize) -> Vector {
+    let sum: Vector = slope.covers.covers_of(block).map(|i| field[i] * slope.metric.row_sum[i]).sum();
+    sum / slope.metric.total[block]
+}
+
+/// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
+fn rotation(slope: &Slope, state: &State, block: usize) -> f64 {
+    let centre = mean(slope, &slope.covers.star_position, block);
+    let shift = mean(slope, &state.displacement, block);
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for i in slope.covers.covers_of(block) {
+        let before = slope.covers.star_position[i] - centre;
+        let after = before + state.displacement[i] - shift;
+        cosine += slope.metric.row_sum[i] * before.dot(&after);
+        sine += slope.metric.row_sum[i] * before.perp(&after);
+    }
+    sine.atan2(cosine)
+}
+
+fn deformation(slope: &Slope, state: &State, element: usize) -> Deformation {
+    let covers = &slope.covers;
+    let displacement = covers.element_covers[element].map(|i| state.displacement[i as usize]);
+    Deformation::new(displacement, &covers.gradients[covers.element_triangle[element].set as usize])
+}
+
+fn rock(slope: &Slope, element: usize) -> &crate::mechanics::Elasticity {
+    &slope.rocks[slope.element_rock[element] as usize]
+}
+
+fn pre_stress(slope: &Slope, element: usize) -> PreStress {
+    slope.pre_stress.get(element).copied().unwrap_or_default()
+}
+
+fn joint_point(slope: &Slope, places: &[Point], contact: &VertexEdge) -> JointPoint {
+    let history = &contact.history;
+    JointPoint {
+        position: places[slope.boundary.node_point[history.node as usize] as usize],
+        normal: contact.normal,
+        length: contact.length,
+        normal_stress: -history.normal_force / contact.length,
+        shear_stress: history.shear_force / contact.length,
+        state: history.state,
+        law: contact.law,
+    }
+}
+
+/// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
+fn penetration(slope: &Slope, places: &[Point], contact: &ContactHistory) -> f64 {
+    let edge = contact.edge as usize;
+    let (a, b) = (places[edge], places[slope.boundary.after(edge)]);
+    let node = places[slope.boundary.node_point[contact.node as usize] as usize];
+    ((b - a).normalize().perp(&(node - a))).max(0.0)
+}

@@ -1,0 +1,106 @@
+//! Claim: block states and snapshots show the motion, stress and contact forces that the state holds.
+
+mod common;
+
+use common::{run_all, simulation};
+use enmm::contact::ContactState;
+use enmm::geometry::{Vector, polygon};
+
+/// A block of 1 m × 1 m on a held base of 6 m × 1 m.
+fn rest(stage: &str, more: &str) -> String {
+    format!(
+        r#"
+title = "rest"
+[domain]
+outline = [[0, 0], [6, 0], [6, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]
+joint_law = "plane"
+[mesh]
+size = 0.3
+origin = [0.07, 0.03]
+[[joint]]
+points = [[1, 1], [2, 1]]
+[rock.granite]
+density = 2600
+young = 1e9
+poisson = 0.25
+[joint_law.plane]
+friction_deg = 20
+[[fix]]
+block = [3, 0.5]
+{more}
+[[stage]]
+name = "one"
+{stage}
+"#
+    )
+}
+
+#[test]
+fn a_resting_block_bears_its_weight_by_stress_and_contact() {
+    let mut simulation = simulation(&rest("kind = \"static\"\nduration = 2\nconvergence = 1e-6", ""));
+    run_all(&mut simulation);
+    let weight = 2600.0 * 9.81;
+    let blocks = simulation.block_states();
+    let (block, base) = if blocks[0].fixed { (blocks[1], blocks[0]) } else { (blocks[0], blocks[1]) };
+    assert!(base.fixed && !block.fixed && !block.detached && !block.removed);
+    assert!((block.mass - 2600.0).abs() < 1e-9 * 2600.0 && (block.area - 1.0).abs() < 1e-12);
+    // Mean vertical stress of a body under its own weight that bears at its foot: −½·ρ·g·height. The stress is that of
+    // the reference shape, which differs by the strain: 1e-5; equilibrium holds to 1e-6.
+    assert!((block.mean_stress[1] + 0.5 * weight).abs() < 1e-4 * weight, "{block:?}");
+    assert!(block.contact_count >= 2 && block.contact_count == base.contact_count);
+    let snapshot = simulation.snapshot();
+    let joints = snapshot.joints.iter().filter(|joint| joint.state != ContactState::Open);
+    let force: Vector = joints
+        .map(|joint| {
+            // The force on the node's side; a node of the base presses against the foot of the block, normal downwards.
+            let along = Vector::new(-joint.normal.y, joint.normal.x);
+            let on_node = (joint.normal * -joint.normal_stress + along * joint.shear_stress) * joint.length;
+            if joint.normal.y > 0.0 { on_node } else { -on_node }
+        })
+        .sum();
+    assert!((force.y - weight).abs() < 1e-4 * weight && force.x.abs() < 1e-4 * weight, "{force:?}");
+}
+
+#[test]
+fn a_free_block_turns_and_moves_as_its_state_says() {
+    let flight = r#"
+[[initial_velocity]]
+block = [1.5, 1.5]
+velocity = [0.5, 2.0]
+angular_velocity = 1.5
+[gravity]
+y = 0
+"#;
+    let mut simulation = simulation(&rest("kind = \"dynamic\"\nduration = 0.8\ndamping = 0", flight));
+    run_all(&mut simulation);
+    let (time, blocks) = (simulation.time(), simulation.block_states());
+    let block = blocks.iter().find(|block| !block.fixed).expect("a free block");
+    // Free flight: translation and spin go on; the block stretches by ρω²L²/E ~ 1e-6, and the leapfrog places a
+    // rotation by ω·dt to second order, (ω·dt)²/12 ~ 1e-8 of it.
+    assert!((block.displacement - Vector::new(0.5, 2.0) * time).norm() < 1e-10, "{block:?}");
+    assert!((block.rotation - 1.5 * time).abs() < 1e-6, "{block:?}");
+    assert!((block.angular_velocity - 1.5).abs() < 1e-5, "{block:?}");
+    let kinetic = 0.5 * 2600.0 * 4.25 + 0.5 * (2600.0 / 6.0) * 1.5 * 1.5;
+    assert!((block.kinetic_energy - kinetic).abs() < 1e-5 * kinetic, "{} {kinetic}", block.kinetic_energy);
+    assert!(block.detached && block.contact_count == 0);
+    let snapshot = simulation.snapshot();
+    let area: f64 = (0..snapshot.elements.len()).map(|k| polygon::area(snapshot.elements.get(k))).sum();
+    assert!((area - 7.0).abs() < 1e-6, "{area}");
+    for boundary in &snapshot.boundaries {
+        let area: f64 = (0..boundary.loops.len()).map(|k| polygon::area(boundary.loops.get(k))).sum();
+        let own = &blocks[boundary.block as usize];
+        assert!((area - own.area).abs() < 1e-6 && boundary.fixed == own.fixed);
+        assert!((boundary.displacement - own.displacement).norm() < 1e-14);
+    }
+}
+
+#[test]
+fn excavated_blocks_are_left_out_of_snapshots() {
+    let mut simulation = simulation(&rest("kind = \"dynamic\"\nduration = 0.01\nexcavate = [[1.5, 1.5]]", ""));
+    run_all(&mut simulation);
+    let (snapshot, blocks) = (simulation.snapshot(), simulation.block_states());
+    assert_eq!((snapshot.boundaries.len(), blocks.len()), (1, 2));
+    assert_eq!(blocks.iter().filter(|block| block.removed && !block.detached).count(), 1);
+    let area: f64 = (0..snapshot.elements.len()).map(|k| polygon::area(snapshot.elements.get(k))).sum();
+    assert!((area - 6.0).abs() < 1e-9 && snapshot.joints.is_empty());
+}
