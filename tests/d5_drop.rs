@@ -20,10 +20,10 @@ struct Drop {
 fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
     let low = height;
     let mut simulation = simulation(&format!(
-        "title = \"drop\"\n[domain]\noutline = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]]\n\
+        "title = \"drop\"\n[domain]\noutline = [[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]]\n\
          islands = [[[0.0, {low}], [1.0, {low}], [1.0, {high}], [0.0, {high}]]]\n[mesh]\nsize = 1.1\norigin = [0.03, 0.02]\n\
-         [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = {stiffness:e}\n[[fix]]\nblock = [-0.9, -0.9]\n{}{}\
-         [solver]\ncontact_theta = 1.0\ndt_max = {dt:e}\n",
+         [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = {stiffness:e}\n[[fix]]\nblock = [0.1, -0.9]\n{}{}\
+         [solver]\ncontact_theta = 1.0\ncontact_tolerance = 1e-9\nsweeps_max = 100\ndt_max = {dt:e}\n",
         rock(1e4 * stiffness, mass),
         dynamic("fall", 10.0, 0.0),
         high = height + 1.0,

@@ -6,15 +6,21 @@ use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::state::State;
 
-/// 400 loose blocks that slide apart under gravity: contacts open, slip and lock, and the blocks fill several groups.
+/// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several groups.
 fn heap() -> String {
+    let mut joints = String::new();
+    for row in 0..15 {
+        let (low, high) = (0.7 * row as f64, 0.7 * (row + 1) as f64);
+        joints += &format!("[[joint]]\npoints = [[0.0, {low}], [20.0, {low}]]\n");
+        for k in 0..20 {
+            let x = k as f64 + if row % 2 == 1 { 0.6 } else { 0.1 };
+            joints += &format!("[[joint]]\npoints = [[{x}, {low}], [{x}, {high}]]\n");
+        }
+    }
     format!(
-        "title = \"heap\"\n[domain]\noutline = [[-6.0, -1.0], [26.0, -1.0], [26.0, 0.0], [20.0, 0.0], [16.0, 12.0], \
-         [4.0, 12.0], [0.0, 0.0], [-6.0, 0.0]]\n[mesh]\nsize = 0.5\nangle_deg = 7.0\n[[joint]]\n\
-         points = [[0.0, 0.0], [20.0, 0.0]]\n[[joint_set]]\ndip_deg = 55.0\ndip_sd_deg = 6.0\nspacing = 0.7\nseed = 5\n\
-         region = [[0.0, 0.0], [20.0, 0.0], [16.0, 12.0], [4.0, 12.0]]\n[[joint_set]]\ndip_deg = -25.0\n\
-         dip_sd_deg = 6.0\nspacing = 0.8\nseed = 6\nregion = [[0.0, 0.0], [20.0, 0.0], [16.0, 12.0], [4.0, 12.0]]\n\
-         [joint_law.joint]\nfriction_deg = 15.0\n[[fix]]\nblock = [-5.0, -0.5]\n{}{}",
+        "title = \"heap\"\n[domain]\noutline = [[-6.0, -1.0], [30.0, -1.0], [30.0, 0.0], [20.0, 0.0], [20.0, 10.5], \
+         [0.0, 10.5], [0.0, 0.0], [-6.0, 0.0]]\n[mesh]\nsize = 0.5\nangle_deg = 7.0\n{joints}[joint_law.joint]\n\
+         friction_deg = 15.0\n[[fix]]\nblock = [-5.0, -0.5]\n[gravity]\nx = 5.0\n{}{}",
         rock(1e9, 2500.0),
         dynamic("slide", 10.0, 0.1)
     )
