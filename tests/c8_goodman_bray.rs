@@ -121,14 +121,14 @@ fn the_formulas_give_the_published_numbers() {
 
 /// The limit is one of rigid columns that touch at their corners. Here they are elastic and touch where they touch: with
 /// 20 GPa under 1 MPa they lean by 5e-5, which moves a limit by as much of the arm. The engine's own limit is asked within
-/// 2 % of tan φ; above it the slope takes up its shear, some centimetres of columns of 10 m × 40 m, and comes to rest.
+/// 1 % of tan φ; above it the slope takes up its shear, some centimetres of columns of 10 m × 40 m, and comes to rest.
 #[test]
 fn the_slope_stands_above_the_limit_and_fails_below() {
-    let (turned, moved, speed) = fate(0.785544 * 1.02, 8.0);
-    println!("+2 %: {turned:.4?} rad, {moved:.4?} m, {speed:e} m/s");
+    let (turned, moved, speed) = fate(0.785544 * 1.01, 8.0);
+    println!("+1 %: {turned:.4?} rad, {moved:.4?} m, {speed:e} m/s");
     assert!(moved.iter().all(|u| *u < 0.05) && speed < 1e-4, "{moved:?}, {speed} m/s");
-    let (turned, moved, speed) = fate(0.785544 * 0.98, 8.0);
-    println!("-2 %: {turned:.4?} rad, {moved:.4?} m, {speed:e} m/s");
+    let (turned, moved, speed) = fate(0.785544 * 0.99, 8.0);
+    println!("-1 %: {turned:.4?} rad, {moved:.4?} m, {speed:e} m/s");
     assert!(moved[8] > 0.1 && speed > 0.05, "{moved:?}, {speed} m/s");
 }
 
