@@ -75,7 +75,8 @@ fn slope(tangent: f64) -> Simulation {
     let joints: String = joints.iter().map(|j| format!("[[joint]]\npoints = {j:?}\n")).collect();
     let base = turn(&[[0.0, -20.0]], -30.0)[0];
     let mut simulation = simulation(&format!(
-        "title = \"Goodman and Bray\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = 6.0\norigin = [0.3, 0.2]\n{joints}\
+        "title = \"Goodman and Bray\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = 6.0\norigin = [0.3, \
+        0.2]\n{joints}\
          [joint_law.joint]\nfriction_deg = 60.0\n[[fix]]\nblock = {base:?}\n{}[[stage]]\nname = \"settle\"\n\
          kind = \"static\"\nduration = 60.0\n{}[[stage.law]]\nlaw = \"joint\"\nfriction_deg = {}\n",
         rock(20e9, 25e3 / 9.81),
@@ -88,7 +89,8 @@ fn slope(tangent: f64) -> Simulation {
     simulation
 }
 
-/// Turn towards downhill (rad) and displacement (m) of every column, and speed of the fastest (m/s), after some seconds.
+/// Turn towards downhill (rad) and displacement (m) of every column, and speed of the fastest (m/s), after some
+/// seconds.
 fn fate(tangent: f64, seconds: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let mut simulation = slope(tangent);
     let (_, _, middles) = geometry();
@@ -119,9 +121,10 @@ fn the_formulas_give_the_published_numbers() {
     assert_eq!((holding_force(0.7855).1, holding_force(0.7855).2, holding_force(0.65).2), (3, 3, 4));
 }
 
-/// The limit is one of rigid columns that touch at their corners. Here they are elastic and touch where they touch: with
-/// 20 GPa under 1 MPa they lean by 5e-5, which moves a limit by as much of the arm. The engine's own limit is asked within
-/// 1 % of tan φ; above it the slope takes up its shear, some centimetres of columns of 10 m × 40 m, and comes to rest.
+/// The limit is one of rigid columns that touch at their corners. Here they are elastic and touch where they touch:
+/// with 20 GPa under 1 MPa they lean by 5e-5, which moves a limit by as much of the arm. The engine's own limit is
+/// asked within 1 % of tan φ; above it the slope takes up its shear, some centimetres of columns of 10 m × 40 m, and
+/// comes to rest.
 #[test]
 fn the_slope_stands_above_the_limit_and_fails_below() {
     let (turned, moved, speed) = fate(0.785544 * 1.01, 8.0);
