@@ -19,7 +19,7 @@ const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
 const WEDGE_RATIO: f64 = 0.5;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
-const LENGTH_FLOOR: f64 = 0.05;
+const LENGTH_FLOOR: f64 = 1e-3;
 /// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
 const PENALTY_LENGTH_FLOOR: f64 = 0.5;
 
@@ -193,8 +193,8 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
-            .map(|n| self.node_place(n as usize) - p);
+        let [d, e] =
+            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
         let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
         outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
     }
@@ -268,25 +268,64 @@ impl Narrow<'_> {
         let previous = self.node_place(boundary.node_previous[node] as usize);
         let next = self.node_place(boundary.node_next[node] as usize);
         let (q, r) = (previous.dot(&pick.tangent), next.dot(&pick.tangent));
-        let facing = if q > p { overlap(q) } else { 0.0 } + if r < p { overlap(r) } else { 0.0 };
-        let share = self.share_at_corner(pick);
+        let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
+        let mut facing = 0.0;
+        if q > p {
+            facing += overlap(q) + high * self.reach_beyond(self.boundary.node_next[before], to, q, pick);
+        }
+        if r < p {
+            let beyond = self.boundary.node_previous[before];
+            facing += overlap(r) + low * self.reach_beyond(beyond, from, r, pick);
+        }
+        let share = self.share_at_corner(node, pick);
         let span = 0.5 * ((previous - here).norm() + (next - here).norm());
         let length = (0.5 * facing).max(LENGTH_FLOOR * span);
         let stiff = length.max(PENALTY_LENGTH_FLOOR * span);
         (length * share, stiff * share)
     }
 
-    /// 1 inside a side, falling to ½ at its convex ends: there the corner itself is a contact as well.
-    fn share_at_corner(&self, pick: &Pick) -> f64 {
+    /// Whether a node is the convex start of a side.
+    fn is_convex_corner(&self, node: usize) -> bool {
+        let (boundary, point) = (self.boundary, self.boundary.node_point[node]);
+        let side = boundary.side[point as usize] as usize;
+        boundary.side_first[side] == point && boundary.side_corner[side] == Corner::Convex
+    }
+
+    /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from
+    /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
+    fn tie_shares(&self, node: usize, pick: &Pick, before: usize, distances: [f64; 2]) -> [f64; 2] {
+        if !self.is_convex_corner(node) {
+            return [0.0; 2];
+        }
+        let boundary = self.boundary;
+        let after = boundary.node_point[boundary.node_next[before] as usize] as usize;
+        let inner =
+            [boundary.side_first[pick.side as usize] != boundary.node_point[before], boundary.side[after] == pick.side];
+        [0, 1].map(|k| {
+            let share = (1.0 - distances[k] / (HELD_BEYOND * self.size)).clamp(0.0, 1.0);
+            if inner[k] { share } else { 0.0 }
+        })
+    }
+
+    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the pick's edge.
+    fn reach_beyond(&self, far: u32, at: f64, target: f64, pick: &Pick) -> f64 {
+        let far = self.node_place(far as usize).dot(&pick.tangent);
+        if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
+    }
+
+    /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
+    /// an inner node, whose segments that corner has.
+    fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
         let (boundary, side) = (self.boundary, pick.side as usize);
         let band = HELD_BEYOND * self.size;
         let convex = |s: usize| boundary.side_corner[s] == Corner::Convex;
+        let least = if self.is_convex_corner(node) { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
         if boundary.side_first[side] == pick.edge && convex(side) {
-            share = share.min(0.5 + 0.5 * pick.along / band);
+            share = share.min(least + (1.0 - least) * pick.along / band);
         }
         if boundary.side_last[side] == pick.edge && convex(boundary.side_next[side] as usize) {
-            share = share.min(0.5 + 0.5 * (pick.length - pick.along) / band);
+            share = share.min(least + (1.0 - least) * (pick.length - pick.along) / band);
         }
         share.clamp(1e-3, 1.0)
     }
