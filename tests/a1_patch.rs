@@ -18,7 +18,8 @@ fn cut_rock(seed: u64) -> Simulation {
     let mut text = format!(
         "title = \"patch\"\n[domain]\noutline = [[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], \
          [4.0, 9.5], [-1.0, 5.0]]\n[mesh]\nsize = {}\nangle_deg = {}\norigin = [{}, {}]\n\
-         [rock.rock]\ndensity = 2600.0\nyoung = {YOUNG:e}\npoisson = {POISSON}\n[joint_law.joint]\nfriction_deg = 30.0\n",
+         [rock.rock]\ndensity = 2600.0\nyoung = {YOUNG:e}\npoisson = {POISSON}\n[joint_law.joint]\nfriction_deg \
+         = 30.0\n",
         number(0.6, 1.4),
         number(0.0, 60.0),
         number(-5.0, 5.0),
@@ -123,7 +124,8 @@ fn the_patches_are_cut() {
         let area: f64 = covers.element_area.iter().sum();
         let outline = [[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], [4.0, 9.5], [-1.0, 5.0]];
         let exact = common::claims::polygon_moments(&outline).0;
-        // Snapping moves points by up to 1.5e-5 m (the default tolerance) along 40 m of outline: 1e-3 m² at the very worst.
+        // Snapping moves points by up to 1.5e-5 m (the default tolerance) along 40 m of outline: 1e-3 m² at the very
+        // worst.
         assert!((area - exact).abs() < 1e-3, "{area} {exact}");
     }
     assert!(several > 100 && partial > 10, "{several} {partial}");

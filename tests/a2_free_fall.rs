@@ -21,8 +21,8 @@ fn case(gravity: [f64; 2], mesh: &str, damping: f64) -> String {
     )
 }
 
-/// Leapfrog from v0 = 0 with a half kick is exact for constant acceleration: u = ½g(n dt)². Each step rounds by ε of the
-/// place and the sum of n steps by n·ε at most: 5e3·2e-16 = 1e-12, taken ten times. Stress sees differences of u.
+/// Leapfrog from v0 = 0 with a half kick is exact for constant acceleration: u = ½g(n dt)². Each step rounds by ε of
+/// the place and the sum of n steps by n·ε at most: 5e3·2e-16 = 1e-12, taken ten times. Stress sees differences of u.
 #[test]
 fn every_point_falls_by_half_g_t_squared() {
     let meshes = ["size = 1.0", "size = 0.7\nangle_deg = 17.0\norigin = [0.123, 0.456]"];

@@ -54,8 +54,8 @@ impl Beam<'_> {
         }
     }
 
-    /// Axis of a beam under q (N/m²) by Timoshenko and Goodier, half span l = 5, half depth c = 1/2, I = 1/12; x from the
-    /// middle: v = δ − q/2EI·[l²x²/2 − x⁴/12 + (4/5 + ν/2)c²x²], δ = 5ql⁴/24EI·[1 + 12c²/5l²·(4/5 + ν/2)].
+    /// Axis of a beam under q (N/m²) by Timoshenko and Goodier, half span l = 5, half depth c = 1/2, I = 1/12; x from
+    /// the middle: v = δ − q/2EI·[l²x²/2 − x⁴/12 + (4/5 + ν/2)c²x²], δ = 5ql⁴/24EI·[1 + 12c²/5l²·(4/5 + ν/2)].
     fn axis(&self, q: f64, x: f64) -> f64 {
         let (young, poisson) = self.plane_stress();
         let (l, c, i) = (5.0f64, 0.5f64, 1.0 / 12.0);
@@ -115,7 +115,8 @@ fn the_deflection_over_the_supports_is_the_published_one() {
 
 /// A force in the middle of the axis: bending PL³/48EI = 25 mm and shear 1.2·PL/4GA = 0.75 mm; below x = 1 m the line
 /// is Px/48EI·(3L² − 4x²) + 1.2·Px/2GA. The theory of beams is right to the local field of
-/// the force, some 0.4 % of this slender beam (as measured); that field is singular, so that only a rate above 1.3 is asked.
+/// the force, some 0.4 % of this slender beam (as measured); that field is singular, so that only a rate above 1.3 is
+/// asked.
 #[test]
 fn a_force_in_the_middle_sags() {
     let load = "[[load]]\nkind = \"point\"\npoint = [5.0, 0.5]\nforce = [0.0, -100e3]\n";
@@ -128,8 +129,9 @@ fn a_force_in_the_middle_sags() {
     assert!(rate.0 > 1.3 && rate.1 > 1.3 && errors[2].abs() < 1.2e-2, "{errors:?}, {rate:?}");
 }
 
-/// Self weight, E = 10 GPa, ρ = 2500: the exact deflection is 3.685456 mm in plane strain; −29 %, −8.9 % and −2.3 % were
-/// measured on the prototype at h = 0.5, 0.25 and 0.125. A mesh that lies otherwise in the beam differs by a quarter of it.
+/// Self weight, E = 10 GPa, ρ = 2500: the exact deflection is 3.685456 mm in plane strain; −29 %, −8.9 % and −2.3 %
+/// were measured on the prototype at h = 0.5, 0.25 and 0.125. A mesh that lies otherwise in the beam differs by a
+/// quarter of it.
 #[test]
 fn self_weight_sags_with_the_known_errors() {
     let beam = Beam { plane: "strain", young: 10e9, poisson: 0.25, gravity: 9.81, load: "" };

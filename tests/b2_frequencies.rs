@@ -15,7 +15,8 @@ const POISSON: f64 = 0.25;
 /// A beam of 10 m × 1 m about the x axis without gravity or damping.
 fn beam(plane: &str, size: f64, fixes: &str) -> Simulation {
     simulation(&format!(
-        "title = \"beam\"\n[domain]\noutline = [[0.0, -0.5], [10.0, -0.5], [10.0, 0.5], [0.0, 0.5]]\n[mesh]\nsize = {size}\n\
+        "title = \"beam\"\n[domain]\noutline = [[0.0, -0.5], [10.0, -0.5], [10.0, 0.5], [0.0, 0.5]]\n[mesh]\n\
+        size = {size}\n\
          origin = [0.013, -0.007]\n[rock.rock]\ndensity = {DENSITY}\nyoung = {YOUNG:e}\npoisson = {POISSON}\n\
          plane = \"{plane}\"\n[gravity]\ny = 0.0\n{fixes}[[monitor]]\nname = \"middle\"\npoint = [5.0, 0.0]\n\
          [[monitor]]\nname = \"end\"\npoint = [10.0, 0.0]\n[[stage]]\nname = \"swing\"\nkind = \"dynamic\"\n\
@@ -64,8 +65,8 @@ fn assert_converges(name: &str, f: [f64; 3], exact: f64, tolerance: f64) -> f64 
 }
 
 /// Root of the antisymmetric Rayleigh–Lamb equation tan(qd)/tan(pd) = −4k²pq/(q² − k²)², d half the depth, for the
-/// wavelength 2L: the exact plane problem of a beam whose ends slide along x (there u_y = 0 and σ_xx = 0). Below both wave
-/// speeds p and q are imaginary: tanh(ad)/tanh(bd)·4k²ab·… = (b² + k²)², by bisection in ω.
+/// wavelength 2L: the exact plane problem of a beam whose ends slide along x (there u_y = 0 and σ_xx = 0). Below both
+/// wave speeds p and q are imaginary: tanh(ad)/tanh(bd)·4k²ab·… = (b² + k²)², by bisection in ω.
 fn rayleigh_lamb(plane: &str) -> f64 {
     let mu = YOUNG / (2.0 * (1.0 + POISSON));
     let lambda = match plane {
@@ -109,8 +110,9 @@ fn a_simply_supported_beam_swings() {
 }
 
 /// Cantilever: 1.8751²/2π·√(EI/ρA)/L² = 1.021669 Hz when slender. By Rayleigh's quotient shear takes half of
-/// 3.6EI/GAL² = 0.75 % (the share of a load at the end) and rotary inertia half of 4.65·I/AL² = 0.39 % of the frequency;
-/// plane strain is higher by 1/√(1 − ν²) = 1.0328. The corners of the clamp are singular: the limit is right to 0.3 %.
+/// 3.6EI/GAL² = 0.75 % (the share of a load at the end) and rotary inertia half of 4.65·I/AL² = 0.39 % of the
+/// frequency; plane strain is higher by 1/√(1 − ν²) = 1.0328. The corners of the clamp are singular: the limit is
+/// right to 0.3 %.
 #[test]
 fn a_cantilever_swings() {
     let slender = 1.875104f64.powi(2) / (2.0 * PI) * (YOUNG / (12.0 * DENSITY)).sqrt() / 100.0;

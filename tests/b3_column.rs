@@ -8,9 +8,11 @@ use common::{run_stage, simulation};
 /// A column of H = 10 m, 2 m wide, rollers at the sides and the base.
 fn case(size: f64, young: f64, poisson: f64, gamma: f64) -> String {
     format!(
-        "title = \"column\"\n[domain]\noutline = [[0.0, 0.0], [2.0, 0.0], [2.0, 10.0], [0.0, 10.0]]\n[mesh]\nsize = {size}\n\
+        "title = \"column\"\n[domain]\noutline = [[0.0, 0.0], [2.0, 0.0], [2.0, 10.0], [0.0, 10.0]]\n[mesh]\n\
+        size = {size}\n\
          origin = [0.1, 0.05]\n[rock.rock]\ndensity = {}\nyoung = {young:e}\npoisson = {poisson}\n\
-         [[fix]]\nedge = [[0.0, 0.0], [2.0, 0.0]]\naxes = \"y\"\n[[fix]]\nedge = [[0.0, 0.0], [0.0, 10.0]]\naxes = \"x\"\n\
+         [[fix]]\nedge = [[0.0, 0.0], [2.0, 0.0]]\naxes = \"y\"\n[[fix]]\nedge = [[0.0, 0.0], [0.0, 10.0]]\n\
+         axes = \"x\"\n\
          [[fix]]\nedge = [[2.0, 0.0], [2.0, 10.0]]\naxes = \"x\"\n[[monitor]]\nname = \"top\"\npoint = [1.0, 10.0]\n\
          [[stage]]\nname = \"weight\"\nkind = \"static\"\nduration = 10.0\nconvergence = 1e-6\n",
         gamma / 9.81
@@ -21,8 +23,8 @@ fn case(size: f64, young: f64, poisson: f64, gamma: f64) -> String {
 ///
 /// An element bears the stress of its centroid up to O(h) because its strain is uniform: ½γh at most, in both signs, so
 /// that the regression over all elements is right to a fraction of it: 0.5 % of 250 kPa. Settlement
-/// converges with h²; the base supports of 50·Ec/h give γH·h/50Ec, that is h/25H of the settlement (1e-3 at h = 0.25), and
-/// those of the sides as much again.
+/// converges with h²; the base supports of 50·Ec/h give γH·h/50Ec, that is h/25H of the settlement (1e-3 at h = 0.25),
+/// and those of the sides as much again.
 #[test]
 fn a_confined_column_settles_under_its_weight() {
     for (young, poisson, gamma) in [(1e9f64, 0.25f64, 25e3f64), (5e9, 0.35, 22e3)] {

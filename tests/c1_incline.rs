@@ -1,4 +1,5 @@
-//! Claim C1: a block on an incline slides by s = ½g(sin a − cos a·tan φ)t², sticks where it must and stops where it must.
+//! Claim C1: a block on an incline slides by s = ½g(sin a − cos a·tan φ)t², sticks where it must and stops where it
+//! must.
 
 mod common;
 
@@ -86,11 +87,11 @@ impl Incline {
 
 /// The published values at t = 1 s, recomputed: a = 30° and 45°.
 ///
-/// Coulomb's limit holds at the end of each step, so that friction is exactly N·tan φ and the impulse of N is the weight's
-/// (theory §11): the acceleration errs by 1e-5 (the block turns a little as its shear is set free). What remains is the
-/// elastic answer to the drop of strength, during which N swings: an offset of velocity of some σ/√(Eρ) with σ = 20 kPa,
-/// 2e-3 times a few per cent = 6e-5 m/s as measured. Against way in 1 s that is below 1e-4 for φ up to 25° at a = 30°, and
-/// 3e-4 at 28°, where only 0.19 m are covered.
+/// Coulomb's limit holds at the end of each step, so that friction is exactly N·tan φ and the impulse of N is the
+/// weight's (theory §11): the acceleration errs by 1e-5 (the block turns a little as its shear is set free). What
+/// remains is the elastic answer to the drop of strength, during which N swings: an offset of velocity of some σ/√(Eρ)
+/// with σ = 20 kPa, 2e-3 times a few per cent = 6e-5 m/s as measured. Against way in 1 s that is below 1e-4 for φ up
+/// to 25° at a = 30°, and 3e-4 at 28°, where only 0.19 m are covered.
 #[test]
 fn a_stiff_block_slides_by_half_a_t_squared() {
     let mut rows = vec![(30.0, 28.0, 0.193876), (23.7, 11.3, f64::NAN), (52.0, 18.0, f64::NAN)];

@@ -31,7 +31,8 @@ fn case(lower: f64, upper: f64) -> String {
     let change = |law: &str, friction: f64| format!("[[stage.law]]\nlaw = \"{law}\"\nfriction_deg = {friction}\n");
     format!(
         "title = \"two blocks\"\n[domain]\noutline = {:?}\njoint_law = \"face\"\n[mesh]\nsize = 0.6\n\
-         origin = [0.031, 0.017]\n{}{}{}{}[joint_law.face]\nfriction_deg = 0.0\n[joint_law.lower]\nfriction_deg = 45.0\n\
+         origin = [0.031, 0.017]\n{}{}{}{}[joint_law.face]\nfriction_deg = 0.0\n[joint_law.lower]\nfriction_deg \
+         = 45.0\n\
          [joint_law.upper]\nfriction_deg = 45.0\n[[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\n\
          kind = \"static\"\nduration = 5.0\n{}{}{}",
         turn(&outline, -SLOPE),
@@ -50,8 +51,8 @@ fn case(lower: f64, upper: f64) -> String {
 /// With m = 1: while both slide together 2a = 2g·sin a − g·cos a·(tan φ1 + tan φ2) and the lower needs the force
 /// a − (g·sin a − g·cos a·tan φ1) from the upper; where that is negative they part.
 ///
-/// The offset of velocity after the release (C1) is some 1e-4 m/s of 0.3 m/s; the second difference of places is free of
-/// it, and the blocks turn a little on the step: 1e-3 is asked. The force swings with waves: its mean over 0.3 s.
+/// The offset of velocity after the release (C1) is some 1e-4 m/s of 0.3 m/s; the second difference of places is free
+/// of it, and the blocks turn a little on the step: 1e-3 is asked. The force swings with waves: its mean over 0.3 s.
 #[test]
 fn the_upper_block_pushes_the_lower() {
     for (lower, upper, published) in

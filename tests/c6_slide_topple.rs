@@ -94,8 +94,8 @@ fn wide_blocks_stand_or_slide() {
 }
 
 /// tan φ_c = [tan a·(1 + 4k²) + 3k]/[4 + k² + 3k·tan a]: a narrow block topples about its toe without slip from φ_c on.
-/// At 1.5° above the limit the toe rests during the first 0.1 rad, at 3° below it slips at once. The sudden start shakes
-/// the toe by some microns only; 1 % of the way of the head is the bound.
+/// At 1.5° above the limit the toe rests during the first 0.1 rad, at 3° below it slips at once. The sudden start
+/// shakes the toe by some microns only; 1 % of the way of the head is the bound.
 #[test]
 fn narrow_blocks_topple_with_and_without_slip() {
     for (k, published) in [(0.2, 16.1440), (0.3, 20.0815), (0.4, 23.8643), (0.5, 27.4248)] {
@@ -117,8 +117,8 @@ fn narrow_blocks_topple_with_and_without_slip() {
 
 /// About the toe J = m(b² + h²)/3, so that α = 1.5g(h·sin a − b·cos a)/(b² + h²) at first, and with the tilt ϑ
 /// α = 1.5g·sin(a + ϑ − β)/√(b² + h²), tan β = b/h. The sudden start gives the elastic block a spin of some
-/// σ/√(Eρ)/b = 0.01 rad/s; so the motion is compared from 0.1 s on, with the spin that it then has. The angle at 0.1 s ± 10
-/// steps gives that spin to 1e-3 (waves), and the further angle is asked to 3e-3.
+/// σ/√(Eρ)/b = 0.01 rad/s; so the motion is compared from 0.1 s on, with the spin that it then has. The angle at 0.1 s
+/// ± 10 steps gives that spin to 1e-3 (waves), and the further angle is asked to 3e-3.
 #[test]
 fn the_toppling_accelerates_like_a_rigid_pendulum() {
     for (k, slope) in [(0.3, 30.0), (0.2, 30.0), (0.4, 30.0), (0.25, 20.0)] {

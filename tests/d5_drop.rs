@@ -21,7 +21,8 @@ fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
     let low = height;
     let mut simulation = simulation(&format!(
         "title = \"drop\"\n[domain]\noutline = [[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]]\n\
-         islands = [[[0.0, {low}], [1.0, {low}], [1.0, {high}], [0.0, {high}]]]\n[mesh]\nsize = 1.1\norigin = [0.03, 0.02]\n\
+         islands = [[[0.0, {low}], [1.0, {low}], [1.0, {high}], [0.0, {high}]]]\n[mesh]\nsize = 1.1\norigin = \
+         [0.03, 0.02]\n\
          [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = {stiffness:e}\n[[fix]]\nblock = [0.1, -0.9]\n{}{}\
          [solver]\ncontact_theta = 1.0\ncontact_tolerance = 1e-9\nsweeps_max = 100\ndt_max = {dt:e}\n",
         rock(1e4 * stiffness, mass),
@@ -53,8 +54,8 @@ fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
 /// The block's own spring (some 1e4 k in series, and waves) takes 2e-4 of the depth; backward Euler damps the half
 /// swing by half its loss of energy, πω dt/2: 2e-3 at the smallest step of ω dt = 6e-4. 3e-3 is asked, and less for v.
 ///
-/// The implicit spring loses the share πω dt of the energy in the half swing (its damping ratio is ω dt/2): the loss falls
-/// with dt, and from two steps the extrapolated loss is nil to 1e-3, the waves that the block takes along.
+/// The implicit spring loses the share πω dt of the energy in the half swing (its damping ratio is ω dt/2): the loss
+/// falls with dt, and from two steps the extrapolated loss is nil to 1e-3, the waves that the block takes along.
 #[test]
 fn a_mass_on_a_spring_keeps_its_energy() {
     for (mass, stiffness, height) in [(2500.0, 1e9, 0.5), (2000.0, 4e8, 0.2)] {

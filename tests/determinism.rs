@@ -6,7 +6,8 @@ use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::state::State;
 
-/// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several groups.
+/// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several
+/// groups.
 fn heap() -> String {
     let mut joints = String::new();
     for row in 0..15 {

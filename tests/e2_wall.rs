@@ -46,8 +46,8 @@ fn distance(a: &[enmm::geometry::Vector], b: &[enmm::geometry::Vector]) -> f64 {
 ///
 /// Drift: after 4 s of rest nothing moves by more than 1e-6 of a block. Kinetic energy: an elastic body at rest has the
 /// rounding of its forces left, v = ε·F·dt/m = 2e-16·g·10·dt: 1e-17 m/s; contacts whose iteration ends within its
-/// tolerance leave more. 1e-12 of the energy of 1 m/s is asked. Penetration: σh/0.5E_c (theory Eq. 29) with σ = ρg·height,
-/// 4e-4 of h here.
+/// tolerance leave more. 1e-12 of the energy of 1 m/s is asked. Penetration: σh/0.5E_c (theory Eq. 29) with σ =
+/// ρg·height, 4e-4 of h here.
 fn assert_rests(mut simulation: Simulation, seconds: f64) {
     let report = run_stage(&mut simulation);
     assert!(simulation.at_rest(&report), "the wall must settle: {report:?}");

@@ -11,7 +11,8 @@ use enmm::step::energies;
 /// One irregular block that swings freely after a uniform stretch.
 fn case(mesh: &str) -> String {
     format!(
-        "title = \"swing\"\n[domain]\noutline = [[0.0, 0.0], [3.0, 0.2], [3.4, 1.6], [1.8, 1.2], [0.3, 1.9]]\n[mesh]\n{mesh}\n\
+        "title = \"swing\"\n[domain]\noutline = [[0.0, 0.0], [3.0, 0.2], [3.4, 1.6], [1.8, 1.2], [0.3, 1.9]]\n\
+        [mesh]\n{mesh}\n\
          [gravity]\ny = 0.0\n{}{}",
         rock(1e9, 2500.0),
         dynamic("swing", 1e3, 0.0)
@@ -32,8 +33,8 @@ fn kept(simulation: &mut Simulation) -> f64 {
     mean.kinetic - with(&|a, b| (b - a) * 0.5).kinetic + mean.strain
 }
 
-/// Strain of 1e-6 keeps the corotated block linear to 1e-6 of its energy, a difference that swings; the drift between the
-/// means over 500 steps at both ends of 2e4 steps is what rounding leaves: 2e4·1e-16 and the rest of that swing.
+/// Strain of 1e-6 keeps the corotated block linear to 1e-6 of its energy, a difference that swings; the drift between
+/// the means over 500 steps at both ends of 2e4 steps is what rounding leaves: 2e4·1e-16 and the rest of that swing.
 #[test]
 fn an_undamped_block_keeps_its_energy() {
     for mesh in ["size = 0.4", "size = 0.9\nangle_deg = 21.0\norigin = [0.2, 0.1]"] {

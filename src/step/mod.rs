@@ -25,8 +25,8 @@ const CUTOFF: f64 = 0.25;
 const REACH: f64 = 0.005;
 /// Relative change of force above which an unsettled step is redone in halves, theory Eq. (16).
 const UNSETTLED: f64 = 0.1;
-/// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9 of
-/// the critical step for d > 0.62.
+/// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
+/// of the critical step for d > 0.62.
 const DECAY_MAX: f64 = 0.3;
 /// Most times that a step is halved.
 const HALVINGS_MAX: u32 = 4;
