@@ -193,8 +193,8 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
-        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
-            .map(|n| self.node_place(n as usize) - p);
+        let [d, e] =
+            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
         let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
         outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
     }
@@ -256,7 +256,7 @@ impl Narrow<'_> {
         contest.then_some(!first_is_deeper)
     }
 
-    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness, theory Eq. (13).
+    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness (Eq. 13).
     fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
         let boundary = self.boundary;
         let here = self.node_place(node);
@@ -379,7 +379,7 @@ impl Narrow<'_> {
         history
     }
 
-    /// z and the inverse effective masses of both bodies, theory Eq. (4).
+    /// z and the inverse effective masses of both bodies (Eq. 4).
     fn weigh(&self, contact: &mut VertexEdge) {
         let axes = [contact.normal, contact.tangent()];
         for body in 0..2 {
