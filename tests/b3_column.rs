@@ -56,13 +56,13 @@ fn base_stress(simulation: &enmm::model::Simulation) -> [f64; 2] {
     let stress = stresses(simulation, simulation.state());
     [0, 1].map(|k| {
         let (mut w, mut y, mut s, mut yy, mut ys) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for e in 0..covers.element_count() {
+        for (e, stress) in stress.iter().enumerate() {
             let (area, height) = (covers.element_area[e], covers.element_centroid[e].y);
             w += area;
             y += area * height;
-            s += area * stress[e][k];
+            s += area * stress[k];
             yy += area * height * height;
-            ys += area * height * stress[e][k];
+            ys += area * height * stress[k];
         }
         let slope = (w * ys - y * s) / (w * yy - y * y);
         (s - slope * y) / w

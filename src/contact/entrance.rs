@@ -256,7 +256,7 @@ impl Narrow<'_> {
         contest.then_some(!first_is_deeper)
     }
 
-    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness, theory Eq. (13).
+    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness (Eq. 13).
     fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
         let boundary = self.boundary;
         let here = self.node_place(node);
@@ -418,7 +418,7 @@ impl Narrow<'_> {
         history
     }
 
-    /// z and the inverse effective masses of both bodies, theory Eq. (4).
+    /// z and the inverse effective masses of both bodies (Eq. 4).
     fn weigh(&self, contact: &mut VertexEdge) {
         let axes = [contact.normal, contact.tangent()];
         for body in 0..2 {

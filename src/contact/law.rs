@@ -1,6 +1,6 @@
 //! Joint laws: stiffness and strength of a joint.
 
-/// Mohr–Coulomb joint with tension cut-off, peak and residual strength and dilation, theory Eqs. (14), (15).
+/// Mohr–Coulomb joint with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct JointLaw {
     /// Normal stiffness (Pa/m).

@@ -148,8 +148,7 @@ mod tests {
 
     #[test]
     fn buckets_hold_what_was_put_in() {
-        let mut grid = SearchGrid::default();
-        grid.bucket_start = vec![0; 17];
+        let grid = SearchGrid { bucket_start: vec![0; 17], ..SearchGrid::default() };
         for (i, j) in [(0, 0), (-5, 3), (1 << 40, -(1 << 39))] {
             assert!(grid.bucket(i, j) < 16);
         }

@@ -1,4 +1,4 @@
-//! The open–close iteration: Gauss–Seidel sweeps over contacts and supports, theory Eqs. (14)–(17).
+//! The open–close iteration: Gauss–Seidel sweeps over contacts and supports (Eqs. 14–17).
 
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
@@ -12,7 +12,7 @@ const SUPPORT_SWEEPS_MAX: u32 = 10;
 /// Change of a support's force, relative to the largest, at which the supports have settled.
 const SUPPORT_TOLERANCE: f64 = 1e-4;
 
-/// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time, Eq. (17).
+/// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time (Eq. 17).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockPush {
     /// P = Σ impulses (N·s/m).
@@ -28,7 +28,7 @@ pub struct BlockPush {
 pub struct SweepOptions {
     /// Step (s) over which places move.
     pub dt: f64,
-    /// Time (s) over which forces act: the mean of this step and the one before it, theory Eq. (10).
+    /// Time (s) over which forces act: the mean of this step and the one before it (Eq. 10).
     pub kick: f64,
     /// θ of the contact springs.
     pub theta: f64,
@@ -155,7 +155,7 @@ impl OpenClose<'_> {
         step[0].abs().max(step[1].abs())
     }
 
-    /// Velocity (m/s) that all impulses so far give to body `k` of a contact at the contact's place, Eq. (17).
+    /// Velocity (m/s) that all impulses so far give to body `k` of a contact at the contact's place (Eq. 17).
     fn increment_at(&self, contact: &VertexEdge, k: usize) -> Vector {
         let block = contact.blocks[k] as usize;
         let (metric, push) = (self.metric, &self.push[block]);

@@ -102,7 +102,7 @@ impl VertexEdge {
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
-    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m), theory Eq. (15).
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) (Eq. 15).
     pub fn shear_after(&self, shear: f64) -> (f64, f64) {
         if self.history.state == ContactState::Open {
             return (0.0, 0.0);

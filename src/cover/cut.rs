@@ -75,7 +75,7 @@ impl Covers {
         &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element + 1] as usize]
     }
 
-    /// Weights of an element's covers at a reference point, theory Eq. (1).
+    /// Weights of an element's covers at a reference point (Eq. 1).
     pub fn weights(&self, element: usize, p: Point) -> Weights {
         self.mesh.weights(self.element_triangle[element], p)
     }

@@ -82,7 +82,7 @@ impl RegularMesh {
         self.origin + self.a1 * f64::from(star[0]) + self.a2 * f64::from(star[1])
     }
 
-    /// Gradients of the three weights in an up and a down triangle (1/m), theory Eq. (1).
+    /// Gradients of the three weights in an up and a down triangle (1/m) (Eq. 1).
     pub fn gradients(&self) -> [[Vector; 3]; 2] {
         let double_area = self.a1.perp(&self.a2);
         let g1 = Vector::new(self.a2.y, -self.a2.x) / double_area;
@@ -91,7 +91,7 @@ impl RegularMesh {
         [up, up.map(|g| -g)]
     }
 
-    /// Weights of the three stars of `triangle` at `p`, linear beyond it as well, theory Eq. (1).
+    /// Weights of the three stars of `triangle` at `p`, linear beyond it as well (Eq. 1).
     pub fn weights(&self, triangle: Triangle, p: Point) -> Weights {
         let gradients = self.gradients()[triangle.set as usize];
         let d = p - self.node(triangle.nodes()[0]);

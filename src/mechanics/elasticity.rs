@@ -35,7 +35,7 @@ impl Elasticity {
     }
 }
 
-/// Stable step (s) of an equilateral mesh of side `size` (m) with equal-thirds mass, theory Eq. (9).
+/// Stable step (s) of an equilateral mesh of side `size` (m) with equal-thirds mass (Eq. 9).
 pub fn critical_dt(size: f64, rock: &Elasticity) -> f64 {
     size * (rock.density / (3.0 * (rock.lambda + rock.mu).max(rock.mu))).sqrt()
 }

@@ -7,7 +7,7 @@ use super::Elasticity;
 /// Stress xx, yy, xy (Pa) in the reference axes of an element before any displacement.
 pub type PreStress = [f64; 3];
 
-/// Deformation gradient of an element, split into rotation and stretch, theory Eq. (6).
+/// Deformation gradient of an element, split into rotation and stretch (Eq. 6).
 #[derive(Debug, Clone, Copy)]
 pub struct Deformation {
     f: [f64; 4],
@@ -34,27 +34,22 @@ impl Deformation {
         [f11 - self.cos, f12 + self.sin, f21 - self.sin, f22 - self.cos]
     }
 
-    /// First Piola–Kirchhoff stress (Pa) without the pre-stress, theory Eq. (7), row by row.
+    /// First Piola–Kirchhoff stress (Pa) without the pre-stress (Eq. 7), row by row.
     fn piola(&self, rock: &Elasticity) -> [f64; 4] {
         let d = self.stretch();
         let (two_mu, volume) = (2.0 * rock.mu, rock.lambda * (self.trace - 2.0));
         let (c, s) = (self.cos, self.sin);
-        [
-            two_mu * d[0] + volume * c,
-            two_mu * d[1] - volume * s,
-            two_mu * d[2] + volume * s,
-            two_mu * d[3] + volume * c,
-        ]
+        [two_mu * d[0] + volume * c, two_mu * d[1] - volume * s, two_mu * d[2] + volume * s, two_mu * d[3] + volume * c]
     }
 
-    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that goes with the rock, theory Eq. (26).
+    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that goes with the rock (Eq. 26).
     fn carried(&self, pre: &PreStress) -> [f64; 4] {
         let [f11, f12, f21, f22] = self.f;
         let [xx, yy, xy] = *pre;
         [f11 * xx + f12 * xy, f11 * xy + f12 * yy, f21 * xx + f22 * xy, f21 * xy + f22 * yy]
     }
 
-    /// Forces (N/m) on the three covers of an element of cut area `area` (m²), theory Eq. (7).
+    /// Forces (N/m) on the three covers of an element of cut area `area` (m²) (Eq. 7).
     pub fn forces(&self, g: &[Vector; 3], area: f64, rock: &Elasticity, pre: &PreStress) -> [Vector; 3] {
         let (own, carried) = (self.piola(rock), self.carried(pre));
         let p = [0, 1, 2, 3].map(|k| -area * (own[k] + carried[k]));
@@ -74,7 +69,7 @@ impl Deformation {
         ]
     }
 
-    /// Strain energy (J per m² of reference area), theory Eq. (8), with the work of the pre-stress.
+    /// Strain energy (J per m² of reference area; Eq. 8), with the work of the pre-stress.
     pub fn energy(&self, rock: &Elasticity, pre: &PreStress) -> f64 {
         let square = self.stretch().iter().map(|v| v * v).sum::<f64>();
         let [f11, f12, f21, f22] = self.f;

@@ -1,4 +1,4 @@
-//! Equal-thirds lumped mass and the rigid-exact correction of free blocks, theory Eqs. (2)–(4).
+//! Equal-thirds lumped mass and the rigid-exact correction of free blocks (Eqs. 2–4).
 
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};

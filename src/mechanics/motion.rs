@@ -12,9 +12,9 @@ fn turned(v: Vector) -> Vector {
 /// How velocities decay in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// Velocity relative to the block's rigid motion is multiplied by the factor, theory Eq. (11).
+    /// Velocity relative to the block's rigid motion is multiplied by the factor (Eq. 11).
     Deformation(f64),
-    /// The whole velocity is multiplied by the factor, theory Eq. (12).
+    /// The whole velocity is multiplied by the factor (Eq. 12).
     Mass(f64),
 }
 
@@ -69,7 +69,7 @@ impl Kick<'_> {
         first / self.metric.total[self.block]
     }
 
-    /// Rigid velocity of a field and the sums of what is left, theory Eq. (5).
+    /// Rigid velocity of a field and the sums of what is left (Eq. 5).
     fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let metric = self.metric;
         let total = metric.total[self.block];
@@ -112,7 +112,7 @@ impl Kick<'_> {
     }
 }
 
-/// Kinetic energy (J/m) of a block in its metric, theory Eq. (5).
+/// Kinetic energy (J/m) of a block in its metric (Eq. 5).
 pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (metric, block) = (kick.metric, kick.block);
     let sums = kick.sums(kick.velocity, kick.centre());
@@ -123,7 +123,7 @@ pub fn kinetic_energy(kick: &Kick) -> f64 {
 }
 
 /// Work (J/m) that damping took in a step that ended with velocities `after`: the lost momentum times the mean of the
-/// velocities before and after, theory Eq. (18).
+/// velocities before and after (Eq. 18).
 pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
     let (factor, whole) = match kick.damping {
         Damping::Deformation(factor) => (factor, 0.0),
@@ -158,7 +158,7 @@ pub fn rigid_velocity(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vecto
 }
 
 /// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes the `damped` and the
-/// `predicted` velocities, theory Eqs. (3), (10)–(12).
+/// `predicted` velocities (Eqs. 3, 10–12).
 pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mut [Vector]) -> BlockMotion {
     let centre = kick.centre();
     damp(kick, centre, predicted);
@@ -197,7 +197,7 @@ fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
     }
 }
 
-/// Adds dt·a of a free block, theory Eq. (3).
+/// Adds dt·a of a free block (Eq. 3).
 fn push_free(kick: &Kick, centre: Point, spin: f64, force: &[Vector], predicted: &mut [Vector]) {
     let metric = kick.metric;
     let share = metric.inverse_total[kick.block];

@@ -140,7 +140,7 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
     }
 }
 
-/// Angular frequency of each block's deformation, theory Eq. (11); a block smaller than an element deforms like one.
+/// Angular frequency of each block's deformation (Eq. 11); a block smaller than an element deforms like one.
 fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
     let of_block = |b: usize| {
         let speed =

@@ -1,4 +1,4 @@
-//! Energy ledger: where the work of every force went, theory Eq. (18).
+//! Energy ledger: where the work of every force went (Eq. 18).
 
 use serde::{Deserialize, Serialize};
 

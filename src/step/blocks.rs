@@ -115,7 +115,7 @@ impl Pass<'_> {
             .sum()
     }
 
-    /// Adds the element forces of a block to its covers, theory Eq. (7).
+    /// Adds the element forces of a block to its covers (Eq. 7).
     fn push_elements(&self, block: usize, force: &mut [Vector]) {
         let (slope, u) = (self.slope, &self.state.displacement);
         let covers = &slope.covers;

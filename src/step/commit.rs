@@ -32,7 +32,7 @@ impl Step<'_> {
         report
     }
 
-    /// Adds what the impulses of all contacts give to every cover, theory Eq. (17).
+    /// Adds what the impulses of all contacts give to every cover (Eq. 17).
     fn finish_velocities(&mut self) {
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         let metric = &scratch.metric;
@@ -55,7 +55,7 @@ impl Step<'_> {
         }
     }
 
-    /// Works of this sub-step: each force by the mean of the velocities before and after it, theory Eq. (18).
+    /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
     fn works(&self, dt: f64) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let pass = blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt };
@@ -110,7 +110,7 @@ impl Step<'_> {
         }
     }
 
-    /// ‖m·dv/dt‖ over ‖applied force‖, theory Eq. (19).
+    /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
     fn unbalanced(&self, dt: f64) -> f64 {
         let (metric, scratch) = (&self.slope.metric, &*self.scratch);
         let kick_dt = 0.5 * (self.state.dt_last + dt);

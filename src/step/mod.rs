@@ -23,7 +23,7 @@ const SKIN: f64 = 0.1;
 const CUTOFF: f64 = 0.25;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 const REACH: f64 = 0.005;
-/// Relative change of force above which an unsettled step is redone in halves, theory Eq. (16).
+/// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
 const UNSETTLED: f64 = 0.1;
 /// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
 /// of the critical step for d > 0.62.
@@ -172,7 +172,7 @@ impl Step<'_> {
         }
     }
 
-    /// Damping of a step of `dt` (s), theory Eqs. (11), (12).
+    /// Damping of a step of `dt` (s) (Eqs. 11, 12).
     fn damping_of(&self, dt: f64) -> Damping {
         match self.regime {
             Regime::Dynamic { damping } => Damping::Deformation(damping * dt),

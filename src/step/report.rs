@@ -36,7 +36,7 @@ pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], v
         .sum()
 }
 
-/// Strain energy (J/m) of all blocks that are there, theory Eq. (8).
+/// Strain energy (J/m) of all blocks that are there (Eq. 8).
 pub(super) fn strain(slope: &Slope, state: &State) -> f64 {
     let covers = &slope.covers;
     let of_element = |e: usize| {
