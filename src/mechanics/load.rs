@@ -3,6 +3,8 @@
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
+use super::Metric;
+
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeTable(pub Vec<[f64; 2]>);
@@ -54,13 +56,13 @@ impl Load {
 
     /// Adds the forces of this load at time `t` (s) to `force` (N/m per cover).
     ///
-    /// `place` gives the current position of a cover's star; `block` the covers of a block with their row-sum mass.
+    /// `place` gives the current position of a cover's star, `block` the covers of a block.
     pub fn push(
         &self,
         t: f64,
         place: impl Fn(usize) -> Point,
         block: impl Fn(u32) -> std::ops::Range<usize>,
-        row_sum: &[f64],
+        metric: &Metric,
         force: &mut [Vector],
     ) {
         let factor = self.table.at(t);
@@ -80,7 +82,7 @@ impl Load {
             }
             LoadAction::Body(_) => {}
             LoadAction::Block(id, f, moment) => {
-                push_block(block(*id), &place, row_sum, f * factor, moment * factor, force);
+                push_block(block(*id), &place, metric, f * factor, moment * factor, force);
             }
         }
     }
@@ -92,21 +94,22 @@ fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector])
     }
 }
 
-/// Spreads a force and a moment over a block as a rigid acceleration field would.
+/// Spreads a force and a moment over a block so that it moves as a rigid body: μ·f/M and m·(x − x_D)^⊥·τ/J_D.
 fn push_block(
     covers: std::ops::Range<usize>,
     place: &impl Fn(usize) -> Point,
-    row_sum: &[f64],
+    metric: &Metric,
     f: Vector,
     moment: f64,
     force: &mut [Vector],
 ) {
-    let total: f64 = row_sum[covers.clone()].iter().sum();
-    let centre = covers.clone().map(|i| place(i) * row_sum[i]).sum::<Point>() / total;
-    let polar: f64 = covers.clone().map(|i| row_sum[i] * (place(i) - centre).norm_squared()).sum();
+    let total: f64 = metric.row_sum[covers.clone()].iter().sum();
+    let centre = covers.clone().map(|i| place(i) * metric.mass[i]).sum::<Point>() / total;
+    let polar: f64 = covers.clone().map(|i| metric.mass[i] * (place(i) - centre).norm_squared()).sum();
     for i in covers {
         let arm = place(i) - centre;
-        force[i] += (f / total + Vector::new(-arm.y, arm.x) * (moment / polar)) * row_sum[i];
+        let spin = Vector::new(-arm.y, arm.x) * (metric.mass[i] * moment / polar);
+        force[i] += f * (metric.row_sum[i] / total) + spin;
     }
 }
 
@@ -126,7 +129,8 @@ mod tests {
         let places = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
         let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
-        load.push(0.0, |i| places[i], |_| 0..3, &[1.0, 2.0, 3.0], &mut force);
+        let metric = Metric { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..Metric::default() };
+        load.push(0.0, |i| places[i], |_| 0..3, &metric, &mut force);
         let torque: f64 = places.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
         assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
     }

@@ -75,7 +75,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     };
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
     let state = initial_state(case, &slope, &places)?;
-    let warnings = warnings(&plane.arrangement.report, plane.warnings);
+    let warnings = warnings(&plane.arrangement.report);
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 
@@ -288,7 +288,8 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
     })
 }
 
-fn warnings(noding: &NodingReport, mut warnings: Vec<String>) -> Vec<String> {
+fn warnings(noding: &NodingReport) -> Vec<String> {
+    let mut warnings = Vec::new();
     if noding.merged_vertices > 0 {
         warnings.push(format!(
             "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",

@@ -48,7 +48,9 @@ impl Step<'_> {
         let slope = self.slope;
         let limit = slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max);
         let square = limit * limit;
-        if let Some(i) = self.state.velocity.iter().position(|v| v.norm_squared().partial_cmp(&square).is_none_or(|o| o.is_gt())) {
+        if let Some(i) =
+            self.state.velocity.iter().position(|v| v.norm_squared().partial_cmp(&square).is_none_or(|o| o.is_gt()))
+        {
             let speed = self.state.velocity[i].norm();
             let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
             let block = slope.covers.cover_block[i];

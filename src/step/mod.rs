@@ -138,7 +138,7 @@ impl Step<'_> {
         for load in &slope.loads {
             let place = |i: usize| stars[i] + state.displacement[i];
             let covers = |b: u32| slope.covers.covers_of(b as usize);
-            load.push(self.time, place, covers, &slope.metric.row_sum, &mut scratch.load_force);
+            load.push(self.time, place, covers, &slope.metric, &mut scratch.load_force);
         }
         self.damping = self.damping_of(dt);
         let pass = blocks::Pass {

@@ -72,8 +72,13 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {
         state.stage_displacement.clone_from(&state.displacement);
-        let weight = slope.metric.row_sum.iter().map(|m| slope.gravity * *m);
-        state.stage_force.extend(weight);
+        let body: Vector = slope.loads.iter().map(|load| load.body(start)).sum();
+        state.stage_force.extend(slope.metric.row_sum.iter().map(|m| (slope.gravity + body) * *m));
+        for load in &slope.loads {
+            let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
+            let covers = |b: u32| slope.covers.covers_of(b as usize);
+            load.push(start, place, covers, &slope.metric, &mut state.stage_force);
+        }
     }
     for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
         state.velocity[slope.covers.covers_of(block)].fill(Vector::zeros());

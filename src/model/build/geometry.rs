@@ -15,9 +15,10 @@ const BYTES_PER_CELL: f64 = 4000.0;
 pub(super) struct Plane {
     pub mesh: RegularMesh,
     pub arrangement: Arrangement,
+    /// Joint traces with their laws; those of the case first, then the loops of islands, so that rock that touches stays
+    /// apart.
     pub traces: Vec<(Vec<Point>, u32)>,
     pub default_law: u32,
-    pub warnings: Vec<String>,
 }
 
 /// Points of a list of pairs.
@@ -35,17 +36,23 @@ pub(super) fn arrange_case(case: &Case) -> Result<Plane, Invalid> {
     let (low, high) = loops.bounds();
     check_memory(case, low, high)?;
     let default_law = case.default_joint_law().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(0);
-    let traces = traces(case, low, high, default_law)?;
+    let mut traces = traces(case, low, high, default_law)?;
+    let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
+    let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));
+    traces.extend(islands);
     let mut segments = loops.segments();
     for (k, (points, _)) in traces.iter().enumerate() {
         segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, k as u32)));
     }
     segments.extend(mesh.segments(low, high));
-    let arrangement = arrange(&segments, tolerance).map_err(invalid("domain"))?;
-    Ok(Plane { mesh, arrangement, traces, default_law, warnings: Vec::new() })
+    let mut arrangement = arrange(&segments, tolerance).map_err(invalid("domain"))?;
+    let report = &mut arrangement.report;
+    report.traces.truncate(user_traces);
+    report.overlapping_traces.retain(|pair| pair.iter().all(|&t| (t as usize) < user_traces));
+    Ok(Plane { mesh, arrangement, traces, default_law })
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: u32) -> Segment {
