@@ -14,7 +14,7 @@ fn deep() {
         hist.push_back(s.state().clone());
         if hist.len() > 60 { hist.pop_front(); }
         if let Err(e) = s.advance(false) { println!("{e}"); break; }
-        let fresh: Vec<_> = s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.0).copied().collect();
+        let fresh: Vec<_> = s.scratch().contacts.iter().filter(|c| c.fresh && c.history.offset > 0.05).copied().collect();
         for c in fresh {
             found += 1;
             let now = s.state().clone();
@@ -23,7 +23,7 @@ fn deep() {
             println!("=== t {:.4} node {} blocks {:?} side {} edge {} offset {:.3e} n ({:.3},{:.3}) l {:.3}", t, c.history.node, c.blocks, c.history.side, c.history.edge, c.history.offset, c.normal.x, c.normal.y, c.length);
             let pt = b.node_point[c.history.node as usize] as usize;
             let mut shown = 0;
-            for st in hist.iter().step_by(6).chain(hist.iter().rev().take(2)) {
+            for st in hist.iter().step_by(12).chain(hist.iter().rev().take(2)) {
                 s.restore(st.clone());
                 if s.advance(false).is_err() { continue; }
                 let sc = s.scratch();
@@ -34,10 +34,10 @@ fn deep() {
                 println!("  t {:.4} p ({:.4},{:.4}) overlap {d:.2e}", s.time(), p.x, p.y);
                 for q in sc.contacts.iter().filter(|q| (q.blocks == c.blocks) || (q.blocks[0]==c.blocks[1] && q.blocks[1]==c.blocks[0])) { println!("     node {} {:?} side {} N {:.2e} gap {:.2e} l {:.2e} {:?} n ({:.2},{:.2})", q.history.node, q.blocks, q.history.side, q.history.normal_force, q.gap, q.length, q.history.state, q.normal.x, q.normal.y); }
                 shown += 1;
-                if shown == 1 || shown > 11 { for bl in c.blocks { print!("     block {bl}:"); for k in (0..b.len()).filter(|&k| b.block[k] == bl) { let q = sc.place[k]; if (q-p).norm() < 1.2 { print!(" {}:({:.4},{:.4})s{}", k, q.x, q.y, b.side[k]); } } println!(); } }
+                if shown == 1 || shown > 4 { for bl in c.blocks { print!("     block {bl}:"); for k in (0..b.len()).filter(|&k| b.block[k] == bl) { let q = sc.place[k]; if (q-p).norm() < 1.2 { print!(" {}:({:.4},{:.4})s{}", k, q.x, q.y, b.side[k]); } } println!(); } }
             }
             s.restore(now);
         }
-        if found > 5 { break; }
+        if found > 1 { break; }
     }
 }
