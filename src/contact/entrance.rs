@@ -18,6 +18,8 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
 const WEDGE_RATIO: f64 = 0.5;
+/// Cosine from which two faces that look at each other lie on each other: 10°.
+const FLUSH_COSINE: f64 = 0.985;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
 const LENGTH_FLOOR: f64 = 1e-3;
 /// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
@@ -43,6 +45,12 @@ pub struct Narrow<'a> {
     pub trace_law: &'a [u32],
     /// Law of contacts between faces that were no joints.
     pub default_law: u32,
+    /// Velocities (m/s) of the covers during the last step.
+    pub velocity: &'a [Vector],
+    /// Last step (s).
+    pub dt_last: f64,
+    /// Contacts of the last step, ordered by node and side.
+    pub history: &'a [ContactHistory],
     /// Mesh size (m).
     pub size: f64,
     /// Gap (m) below which a contact takes part in the iteration.
@@ -51,6 +59,13 @@ pub struct Narrow<'a> {
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by place.
     pub in_situ: Option<&'a (dyn Fn(Point) -> [f64; 3] + Sync)>,
+}
+
+/// One end of a side.
+#[derive(Debug, Clone, Copy)]
+enum End {
+    Start,
+    Finish,
 }
 
 /// A node over an edge of one side.
@@ -67,16 +82,9 @@ struct Pick {
 }
 
 /// Judges every candidate and appends the contacts that take part in this step, ordered by node and side.
-///
-/// `history` is that of the last step in the same order.
-pub fn entrance_edges(
-    narrow: &Narrow,
-    candidates: &[Candidate],
-    history: &[ContactHistory],
-    contacts: &mut Vec<VertexEdge>,
-) {
+pub fn entrance_edges(narrow: &Narrow, candidates: &[Candidate], contacts: &mut Vec<VertexEdge>) {
     let mut picks: [Option<Pick>; 12] = [None; 12];
-    let mut known = history;
+    let mut known = narrow.history;
     let mut rest = candidates;
     while let Some(first) = rest.first() {
         let (group, others) = rest.split_at(rest.partition_point(|c| c.node == first.node));
@@ -84,7 +92,7 @@ pub fn entrance_edges(
         known = &known[known.partition_point(|h| h.node < first.node)..];
         let mine = &known[..known.partition_point(|h| h.node == first.node)];
         let count = narrow.pick_edges(first.node as usize, group, mine, &mut picks);
-        narrow.choose_sides(&mut picks[..count]);
+        narrow.choose_sides(first.node as usize, &mut picks[..count]);
         for pick in picks[..count].iter().flatten().filter(|p| p.admitted) {
             contacts.push(narrow.contact(first.node as usize, pick));
         }
@@ -122,7 +130,7 @@ impl Narrow<'_> {
             let length = (b - a).norm();
             let tangent = (b - a) / length;
             let along = (p - a).dot(&tangent);
-            let gap = (p - a).dot(&Vector::new(tangent.y, -tangent.x));
+            let gap = (p - a).dot(&right_of(tangent));
             let beyond = (-along).max(along - length).max(0.0);
             let pick = Pick { side: c.side, edge: c.edge, gap, along, length, tangent, held, admitted: false };
             (beyond.hypot(gap), beyond, pick)
@@ -135,8 +143,8 @@ impl Narrow<'_> {
         let near = bonded || pick.gap - self.allowance(&pick) < self.reach;
         pick.admitted = near
             && !(held.is_none() && self.is_false_sight(node, &pick))
-            && self.within(&pick, p, beyond)
-            && self.enters(node, &pick, p);
+            && self.enters(node, &pick, p)
+            && self.within(node, &pick, p, beyond);
         Some(pick)
     }
 
@@ -169,30 +177,91 @@ impl Narrow<'_> {
         pick.held.is_some_and(|h| h.state != ContactState::Open)
     }
 
-    /// Rule (ii): the node is neither beyond a convex end of the side nor outside the line of the side round it.
-    fn within(&self, pick: &Pick, p: Point, beyond: f64) -> bool {
+    /// Rule (ii): at a convex end of the side the node is not beyond the end, and not past the facet round it.
+    fn within(&self, node: usize, pick: &Pick, p: Point, beyond: f64) -> bool {
+        let tolerance = self.corner_tolerance(pick);
+        [End::Start, End::Finish].into_iter().all(|end| {
+            let (edge, corner, point) = self.end(pick.side as usize, end);
+            if corner == Corner::Reflex {
+                return true;
+            }
+            let past = match end {
+                End::Start => pick.along < 0.0,
+                End::Finish => pick.along > pick.length,
+            };
+            let missed = edge == pick.edge && past && beyond > tolerance;
+            !missed && ((p - point).norm() >= self.size || self.is_inside_round(node, pick, p, end))
+        })
+    }
+
+    /// Edge, corner and place of an end of a side.
+    fn end(&self, side: usize, end: End) -> (u32, Corner, Point) {
+        let boundary = self.boundary;
+        match end {
+            End::Start => {
+                let first = boundary.side_first[side];
+                (first, boundary.side_corner[side], self.place[first as usize])
+            }
+            End::Finish => {
+                let last = boundary.side_last[side];
+                let corner = boundary.side_corner[boundary.side_next[side] as usize];
+                (last, corner, self.ends(last as usize).1)
+            }
+        }
+    }
+
+    /// Whether the node, at a convex `end` of the side, is inside the facet that meets this one there.
+    ///
+    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
+    /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as well,
+    /// or else (q, the side of p that turns towards it). Inside both, the node enters this one if it carries force, or
+    /// if it is the shallower and the other carries none. Faces that lie on each other do not exclude each other.
+    fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
         let side = pick.side as usize;
-        let next = boundary.side_next[side] as usize;
-        let [first, last] = [boundary.side_first[side], boundary.side_last[side]];
-        let ends = [
-            (first, boundary.side_corner[side], self.place[first as usize], pick.along < 0.0),
-            (last, boundary.side_corner[next], self.ends(last as usize).1, pick.along > pick.length),
-        ];
-        let round = [boundary.side_last[boundary.side_previous[side] as usize], boundary.side_first[next]];
-        ends.into_iter().zip(round).filter(|(end, _)| end.1 == Corner::Convex).all(|((edge, _, point, past), round)| {
-            let (a, b) = self.ends(round as usize);
-            let outward = Vector::new(b.y - a.y, a.x - b.x);
-            let outside = (p - point).dot(&outward) > tolerance * outward.norm();
-            let missed = edge == pick.edge && past && beyond > tolerance;
-            !missed && !(outside && (p - point).norm() < self.size)
-        })
+        let (edge, _, q) = self.end(side, end);
+        let (round, corner, neighbour) = match end {
+            End::Start => {
+                (boundary.side_last[boundary.side_previous[side] as usize], edge, boundary.node_previous[node])
+            }
+            End::Finish => {
+                let next = boundary.side_first[boundary.side_next[side] as usize];
+                (next, next, boundary.node_next[node])
+            }
+        };
+        let (a, b) = self.ends(round as usize);
+        let outward = right_of(b - a).normalize();
+        let own = self.node_place(neighbour as usize) - p;
+        let facing = match end {
+            End::Start => right_of(-own),
+            End::Finish => right_of(own),
+        }
+        .normalize();
+        let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
+        if flush || own.dot(&outward) >= 0.0 {
+            return (p - q).dot(&outward) <= tolerance;
+        }
+        let gap = (q - p).dot(&facing);
+        let own_side = || match end {
+            End::Start => boundary.side_of_node_before(node),
+            End::Finish => boundary.side[boundary.node_point[node] as usize],
+        };
+        let both = pick.gap <= 0.0 && gap <= 0.0 && !Self::is_held(pick);
+        gap <= tolerance
+            && !(both && gap > pick.gap + TIE_TOLERANCE * self.size)
+            && !(both && self.carries(boundary.node_before[corner as usize], own_side()))
+    }
+
+    /// Whether a node carried force against a side in the last step.
+    fn carries(&self, node: u32, side: u32) -> bool {
+        let at = self.history.partition_point(|h| (h.node, h.side) < (node, side));
+        self.history.get(at).is_some_and(|h| (h.node, h.side) == (node, side) && h.state != ContactState::Open)
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
-        let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
+        let normal = right_of(pick.tangent);
         let [d, e] =
             [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
         let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
@@ -201,7 +270,7 @@ impl Narrow<'_> {
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    fn choose_sides(&self, picks: &mut [Option<Pick>]) {
+    fn choose_sides(&self, node: usize, picks: &mut [Option<Pick>]) {
         for i in 0..picks.len() {
             for j in i + 1..picks.len() {
                 let (Some(a), Some(b)) = (picks[i], picks[j]) else { continue };
@@ -211,7 +280,7 @@ impl Narrow<'_> {
                 }
                 let loser = match self.corner_between(a.side, b.side) {
                     Some(Corner::Reflex) => None,
-                    corner => self.loser(&a, &b, corner.is_some()),
+                    corner => self.loser(node, &a, &b, corner.is_some()),
                 };
                 if let Some(first) = loser
                     && let Some(pick) = &mut picks[if first { i } else { j }]
@@ -220,6 +289,18 @@ impl Narrow<'_> {
                 }
             }
         }
+    }
+
+    /// Whether the node was behind the side already before the last step, so that it did not come in through it.
+    fn was_deep(&self, node: usize, pick: &Pick) -> bool {
+        let (boundary, p) = (self.boundary, self.node_place(node));
+        let point = boundary.node_point[node] as usize;
+        let at = |covers: &[u32; 3], weights: Weights| -> Vector {
+            covers.iter().zip(weights).map(|(&i, w)| self.velocity[i as usize] * w).sum()
+        };
+        let covers = &boundary.covers[pick.edge as usize];
+        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, self.weights_at(covers, p));
+        relative.dot(&right_of(pick.tangent)) * self.dt_last - pick.gap > FIRST_SIGHT_DEPTH * self.size
     }
 
     fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {
@@ -235,7 +316,7 @@ impl Narrow<'_> {
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
     /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
-    fn loser(&self, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
+    fn loser(&self, node: usize, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
@@ -247,7 +328,8 @@ impl Narrow<'_> {
         let deep_loses = if Self::is_held(deep) {
             Self::is_held(shallow) && shallow.admitted || !adjacent && behind && shallow.gap > 0.0
         } else {
-            behind || shallow.admitted && shallow.gap <= 0.0
+            let far = !adjacent && shallow.gap > 0.0 || deep.held.is_none() && self.was_deep(node, deep);
+            behind && far || shallow.admitted && shallow.gap <= 0.0
         };
         if deep_loses {
             return Some(first_is_deeper);
@@ -334,7 +416,7 @@ impl Narrow<'_> {
         let boundary = self.boundary;
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
-        let normal = Vector::new(pick.tangent.y, -pick.tangent.x);
+        let normal = right_of(pick.tangent);
         let covers = [boundary.covers[point], boundary.covers[edge]];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
@@ -441,6 +523,11 @@ impl Narrow<'_> {
             }
         }
     }
+}
+
+/// The direction a quarter turn to the right: outward where rock is on the left.
+fn right_of(along: Vector) -> Vector {
+    Vector::new(along.y, -along.x)
 }
 
 /// Whether the rock between the directions to the previous and the next node is a corner of less than half a turn.

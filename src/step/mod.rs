@@ -206,13 +206,16 @@ impl Step<'_> {
             laws: &state.laws,
             trace_law: &scratch.trace_law,
             default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
+            velocity: &state.velocity,
+            dt_last: state.dt_last,
+            history: &state.contacts,
             size,
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
             first: state.step == 0,
             in_situ: slope.in_situ.is_some().then_some(&in_situ),
         };
         scratch.contacts.clear();
-        contact::entrance_edges(&narrow, &scratch.search.candidates, &state.contacts, &mut scratch.contacts);
+        contact::entrance_edges(&narrow, &scratch.search.candidates, &mut scratch.contacts);
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
         }
