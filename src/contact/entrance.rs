@@ -55,6 +55,8 @@ pub struct Narrow<'a> {
     pub size: f64,
     /// Gap (m) below which a contact takes part in the iteration.
     pub reach: f64,
+    /// Nodes and sides with the side's rock between them, sorted.
+    pub behind: &'a [[u32; 2]],
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by place.
@@ -148,11 +150,12 @@ impl Narrow<'_> {
         Some(pick)
     }
 
-    /// Whether a deep first sight cannot be a contact: nothing overlaps at the start, nor ever within one block.
+    /// Whether a deep first sight cannot be a contact: within one block, or of a side with rock before it.
     fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
         let boundary = self.boundary;
         let own = boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize];
-        (self.first || own) && -pick.gap > FIRST_SIGHT_DEPTH * self.size
+        own && -pick.gap > FIRST_SIGHT_DEPTH * self.size
+            || pick.gap < -TIE_TOLERANCE * self.size && self.behind.binary_search(&[node as u32, pick.side]).is_ok()
     }
 
     /// Closure that the contact's springs do not see (m).

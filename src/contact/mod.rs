@@ -12,7 +12,7 @@ mod vertex_edge;
 pub use boundary::{Boundary, BoundaryOptions, Corner};
 pub use entrance::{Narrow, entrance_edges};
 pub use law::{JointLaw, Limits};
-pub use search::{Candidate, SearchGrid};
+pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use support::{Support, SupportRow};
 pub use sweep::{BlockPush, OpenClose, SweepOptions, SweepReport, open_close};
 pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

@@ -1,11 +1,14 @@
 //! Which nodes are near which edges: a bucket grid over the edges, rebuilt when nodes have moved far enough.
 
-use crate::geometry::{Point, segment};
+use crate::geometry::{Point, Vector, segment};
 
 use super::Boundary;
 
+/// Depth, relative to the search cutoff, from which a side that comes into view has rock before it.
+const BEHIND_DEPTH: f64 = 4e-6;
+
 /// A node and an edge that may meet before the next search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct Candidate {
     /// Node.
     pub node: u32,
@@ -15,18 +18,18 @@ pub struct Candidate {
     pub edge: u32,
 }
 
-/// Bucket grid over edges, its candidates, and the places at which they were found.
-#[derive(Debug, Clone, Default)]
-pub struct SearchGrid {
+/// What the last search found, and where the nodes were then.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Near {
     /// Near pairs, ordered by node, side and edge.
     pub candidates: Vec<Candidate>,
+    /// Nodes and sides, sorted, that came into view with the side's own rock between them: at the start, when nothing
+    /// overlaps, or through a thin block. The node is not inside such a side, however deep it lies behind it.
+    pub behind: Vec<[u32; 2]>,
     found_at: Vec<Point>,
-    bucket_start: Vec<u32>,
-    bucket_edges: Vec<u32>,
-    near: Vec<Candidate>,
 }
 
-impl SearchGrid {
+impl Near {
     /// Whether a node has moved more than `slack` (m) since the last search.
     pub fn is_stale(&self, boundary: &Boundary, place: &[Point], slack: f64) -> bool {
         self.found_at.len() != boundary.node_count()
@@ -37,30 +40,67 @@ impl SearchGrid {
                 .any(|(&p, old)| (place[p as usize] - old).norm_squared() > slack * slack)
     }
 
-    /// Forgets the last search, so that the next step searches anew.
+    /// Makes the next step search anew.
     pub fn forget(&mut self) {
         self.found_at.clear();
     }
 
-    /// Finds all nodes within `cutoff` (m) of an edge of another block, or of the other side of a partial cut.
+    /// Keeps the pairs behind rock that are still in view, and adds those that have come into view deep.
     ///
-    /// `place` holds the current boundary points; blocks in `removed` and pairs of blocks in `fixed` do not count.
-    pub fn search(
-        &mut self,
-        boundary: &Boundary,
-        place: &[Point],
-        cell: f64,
-        cutoff: f64,
-        removed: &[bool],
-        fixed: &[bool],
-    ) {
+    /// `old` and `behind` are scratch lists: the candidates before this search and the pairs behind rock after it.
+    fn renew_behind(&mut self, old: &[Candidate], behind: &mut Vec<[u32; 2]>, gap: impl Fn(&[Candidate]) -> f64) {
+        behind.clear();
+        let pair = |c: &Candidate| [c.node, c.side];
+        for edges in self.candidates.chunk_by(|a, b| pair(a) == pair(b)) {
+            let key = pair(&edges[0]);
+            let known = old.binary_search_by(|c| pair(c).cmp(&key)).is_ok();
+            let was_behind = self.behind.binary_search(&key).is_ok();
+            if was_behind || !known && gap(edges) < 0.0 {
+                behind.push(key);
+            }
+        }
+        std::mem::swap(&mut self.behind, behind);
+    }
+}
+
+/// Bucket grid over edges: buffers of a search.
+#[derive(Debug, Clone, Default)]
+pub struct SearchGrid {
+    bucket_start: Vec<u32>,
+    bucket_edges: Vec<u32>,
+    near: Vec<Candidate>,
+    old: Vec<Candidate>,
+    behind: Vec<[u32; 2]>,
+}
+
+/// What a search reads.
+pub struct SearchView<'a> {
+    /// Boundary of the blocks.
+    pub boundary: &'a Boundary,
+    /// Current places of the boundary points (m).
+    pub place: &'a [Point],
+    /// Size of a grid cell (m).
+    pub cell: f64,
+    /// Distance (m) within which a pair is near.
+    pub cutoff: f64,
+    /// Blocks that do not count.
+    pub removed: &'a [bool],
+    /// Blocks of which no two can meet.
+    pub fixed: &'a [bool],
+}
+
+impl SearchGrid {
+    /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
+    pub fn search(&mut self, view: &SearchView, found: &mut Near) {
+        let &SearchView { boundary, place, cell, cutoff, removed, fixed } = view;
         self.fill_buckets(boundary, place, cell, cutoff, removed);
-        self.candidates.clear();
-        self.found_at.clear();
+        std::mem::swap(&mut self.old, &mut found.candidates);
+        found.candidates.clear();
+        found.found_at.clear();
         for node in 0..boundary.node_count() {
             let point = boundary.node_point[node] as usize;
             let p = place[point];
-            self.found_at.push(p);
+            found.found_at.push(p);
             let block = boundary.block[point] as usize;
             if removed[block] {
                 continue;
@@ -78,8 +118,9 @@ impl SearchGrid {
             }
             self.near.sort_unstable();
             self.near.dedup();
-            self.candidates.extend_from_slice(&self.near);
+            found.candidates.extend_from_slice(&self.near);
         }
+        found.renew_behind(&self.old, &mut self.behind, |edges| gap_behind(view, edges) + BEHIND_DEPTH * cutoff);
     }
 
     fn bucket(&self, i: i64, j: i64) -> usize {
@@ -121,6 +162,18 @@ impl SearchGrid {
         self.bucket_start.rotate_right(1);
         self.bucket_start[0] = 0;
     }
+}
+
+/// Gap (m) of a node over the nearest of some edges of one side; negative behind it.
+fn gap_behind(view: &SearchView, edges: &[Candidate]) -> f64 {
+    let p = view.place[view.boundary.node_point[edges[0].node as usize] as usize];
+    let over = |c: &Candidate| {
+        let (a, b) = (view.place[c.edge as usize], view.place[view.boundary.after(c.edge as usize)]);
+        let along = b - a;
+        let gap = (p - a).dot(&Vector::new(along.y, -along.x)) / along.norm();
+        (segment::distance(p, a, b), gap)
+    };
+    edges.iter().map(over).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::INFINITY, |nearest| nearest.1)
 }
 
 fn cell_of(v: f64, cell: f64) -> i64 {

@@ -10,7 +10,7 @@ pub use slope::{Fixity, Slope};
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactHistory, JointLaw};
+use crate::contact::{ContactHistory, JointLaw, Near};
 use crate::geometry::Vector;
 
 /// Everything that changes in time and that a checkpoint holds.
@@ -32,6 +32,8 @@ pub struct State {
     pub velocity: Vec<Vector>,
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,
+    /// Near pairs of the last search.
+    pub near: Near,
     /// Force of each support (N/m).
     pub support_force: Vec<f64>,
     /// Displacement along each support's direction at which it bears only its preload (m).

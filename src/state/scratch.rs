@@ -21,7 +21,7 @@ pub struct Scratch {
     pub motion: Vec<BlockMotion>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
-    /// Near pairs.
+    /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,

@@ -12,7 +12,7 @@ pub use report::{StepReport, block_motion, energies, momentum};
 
 use std::time::Instant;
 
-use crate::contact::{self, Narrow, OpenClose, SweepOptions, SweepReport, VertexEdge};
+use crate::contact::{self, Narrow, OpenClose, SearchView, SweepOptions, SweepReport, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
@@ -120,9 +120,16 @@ impl Step<'_> {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
         }));
         let size = slope.covers.mesh.size;
-        if scratch.search.is_stale(boundary, &scratch.place, SKIN * size) {
-            let removed = &self.state.removed;
-            scratch.search.search(boundary, &scratch.place, size, CUTOFF * size, removed, &scratch.metric.fixed);
+        if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
+            let view = SearchView {
+                boundary,
+                place: &scratch.place,
+                cell: size,
+                cutoff: CUTOFF * size,
+                removed: &self.state.removed,
+                fixed: &scratch.metric.fixed,
+            };
+            scratch.search.search(&view, &mut self.state.near);
             self.state.counters.searches += 1;
         }
         scratch.seconds.search += clock.elapsed().as_secs_f64();
@@ -211,11 +218,12 @@ impl Step<'_> {
             history: &state.contacts,
             size,
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
+            behind: &state.near.behind,
             first: state.step == 0,
             in_situ: slope.in_situ.is_some().then_some(&in_situ),
         };
         scratch.contacts.clear();
-        contact::entrance_edges(&narrow, &scratch.search.candidates, &mut scratch.contacts);
+        contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
         }

@@ -25,7 +25,6 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
-    scratch.search.forget();
 }
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
@@ -68,6 +67,7 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;
+    state.near.forget();
     state.stage_displacement.clear();
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {
