@@ -93,6 +93,11 @@ impl VertexEdge {
 }
 
 impl VertexEdge {
+    /// Penetration (m) that the springs resist: without what was there at first sight.
+    pub fn loaded_penetration(&self) -> f64 {
+        self.penetration - self.history.offset
+    }
+
     /// Normal and shear component of a cover field at the node relative to the edge.
     pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
         let at = |k: usize| -> Vector {

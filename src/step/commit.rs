@@ -153,8 +153,7 @@ impl Step<'_> {
                 state.counters.deepest_contact = state.counters.deepest_contact.max(history.offset);
             }
             history.offset *= fade;
-            let loaded = contact.penetration - history.offset;
-            state.counters.penetration_max = state.counters.penetration_max.max(loaded);
+            state.counters.penetration_max = state.counters.penetration_max.max(contact.loaded_penetration());
             state.contacts.push(history);
         }
         for row in &scratch.rows {
