@@ -18,6 +18,8 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
 const WEDGE_RATIO: f64 = 0.5;
+/// Share of its depth to which another facet must be shallower for a deep contact to give way.
+const SHALLOWER: f64 = 0.25;
 /// Cosine from which two faces that look at each other lie on each other: 10°.
 const FLUSH_COSINE: f64 = 0.985;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -62,7 +64,7 @@ pub struct Narrow<'a> {
 }
 
 /// One end of a side.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Start,
     Finish,
@@ -215,7 +217,8 @@ impl Narrow<'_> {
     /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
     /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as well,
     /// or else (q, the side of p that turns towards it). Inside both, the node enters this one if it carries force, or
-    /// if it is the shallower and the other carries none. Faces that lie on each other do not exclude each other.
+    /// if it is the shallower and the other carries none; a deep contact gives way to a far shallower one. Faces that lie
+    /// on each other do not exclude each other.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
@@ -231,11 +234,7 @@ impl Narrow<'_> {
         let (a, b) = self.ends(round as usize);
         let outward = right_of(b - a).normalize();
         let own = self.node_place(neighbour as usize) - p;
-        let facing = match end {
-            End::Start => right_of(-own),
-            End::Finish => right_of(own),
-        }
-        .normalize();
+        let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
@@ -245,10 +244,13 @@ impl Narrow<'_> {
             End::Start => boundary.side_of_node_before(node),
             End::Finish => boundary.side[boundary.node_point[node] as usize],
         };
-        let both = pick.gap <= 0.0 && gap <= 0.0 && !Self::is_held(pick);
-        gap <= tolerance
-            && !(both && gap > pick.gap + TIE_TOLERANCE * self.size)
-            && !(both && self.carries(boundary.node_before[corner as usize], own_side()))
+        if gap > tolerance || pick.gap > 0.0 || gap > 0.0 {
+            return gap <= tolerance;
+        }
+        if Self::is_held(pick) {
+            return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
+        }
+        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
     }
 
     /// Whether a node carried force against a side in the last step.
