@@ -18,6 +18,8 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
 const WEDGE_RATIO: f64 = 0.5;
+/// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
+const LEDGE: f64 = 5e-4;
 /// Share of its depth to which another facet must be shallower for a deep contact to give way.
 const SHALLOWER: f64 = 0.25;
 /// Cosine from which two faces that look at each other lie on each other: 10°.
@@ -225,7 +227,9 @@ impl Narrow<'_> {
         let side = pick.side as usize;
         let (edge, _, q) = self.end(side, end);
         let (round, corner, neighbour) = match end {
-            End::Start => (boundary.side_last[boundary.side_previous[side] as usize], edge, boundary.node_previous[node]),
+            End::Start => {
+                (boundary.side_last[boundary.side_previous[side] as usize], edge, boundary.node_previous[node])
+            }
             End::Finish => {
                 let next = boundary.side_first[boundary.side_next[side] as usize];
                 (next, next, boundary.node_next[node])
@@ -240,11 +244,14 @@ impl Narrow<'_> {
             return (p - q).dot(&outward) <= tolerance;
         }
         let gap = (q - p).dot(&facing);
+        if pick.gap > 0.0 && gap <= 0.0 && !Self::is_held(pick) {
+            return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
+        }
         let own_side = || match end {
             End::Start => boundary.side_of_node_before(node),
             End::Finish => boundary.side[boundary.node_point[node] as usize],
         };
-        if gap > tolerance || pick.gap > 0.0 || gap > 0.0 {
+        if pick.gap > 0.0 || gap > 0.0 {
             return gap <= tolerance;
         }
         if Self::is_held(pick) {
@@ -262,8 +269,8 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
         let normal = right_of(pick.tangent);
-        let [d, e] = [self.boundary.node_previous[node], self.boundary.node_next[node]]
-            .map(|n| self.node_place(n as usize) - p);
+        let [d, e] =
+            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
         let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
         outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
     }
@@ -293,14 +300,20 @@ impl Narrow<'_> {
 
     /// Whether the node was behind the side already before the last step, so that it did not come in through it.
     fn was_deep(&self, node: usize, pick: &Pick) -> bool {
-        let (boundary, p) = (self.boundary, self.node_place(node));
+        self.opened(node, pick) - pick.gap > FIRST_SIGHT_DEPTH * self.size
+    }
+
+    /// How far (m) the gap opened in the last step.
+    fn opened(&self, node: usize, pick: &Pick) -> f64 {
+        let boundary = self.boundary;
         let point = boundary.node_point[node] as usize;
         let at = |covers: &[u32; 3], weights: Weights| -> Vector {
             covers.iter().zip(weights).map(|(&i, w)| self.velocity[i as usize] * w).sum()
         };
         let covers = &boundary.covers[pick.edge as usize];
-        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, self.weights_at(covers, p));
-        relative.dot(&right_of(pick.tangent)) * self.dt_last - pick.gap > FIRST_SIGHT_DEPTH * self.size
+        let weights = self.weights_at(covers, self.node_place(node));
+        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, weights);
+        relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 
     fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {
