@@ -18,6 +18,10 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
 const WEDGE_RATIO: f64 = 0.5;
+/// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
+const LEDGE: f64 = 5e-4;
+/// Share of its depth to which another facet must be shallower for a deep contact to give way.
+const SHALLOWER: f64 = 0.25;
 /// Cosine from which two faces that look at each other lie on each other: 10°.
 const FLUSH_COSINE: f64 = 0.985;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -64,7 +68,7 @@ pub struct Narrow<'a> {
 }
 
 /// One end of a side.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Start,
     Finish,
@@ -218,7 +222,8 @@ impl Narrow<'_> {
     /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
     /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as well,
     /// or else (q, the side of p that turns towards it). Inside both, the node enters this one if it carries force, or
-    /// if it is the shallower and the other carries none. Faces that lie on each other do not exclude each other.
+    /// if it is the shallower and the other carries none; a deep contact gives way to a far shallower one. Faces that lie
+    /// on each other do not exclude each other.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
@@ -236,24 +241,26 @@ impl Narrow<'_> {
         let (a, b) = self.ends(round as usize);
         let outward = right_of(b - a).normalize();
         let own = self.node_place(neighbour as usize) - p;
-        let facing = match end {
-            End::Start => right_of(-own),
-            End::Finish => right_of(own),
-        }
-        .normalize();
+        let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
         }
         let gap = (q - p).dot(&facing);
+        if pick.gap > 0.0 && gap <= 0.0 && !Self::is_held(pick) {
+            return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
+        }
         let own_side = || match end {
             End::Start => boundary.side_of_node_before(node),
             End::Finish => boundary.side[boundary.node_point[node] as usize],
         };
-        let both = pick.gap <= 0.0 && gap <= 0.0 && !Self::is_held(pick);
-        gap <= tolerance
-            && !(both && gap > pick.gap + TIE_TOLERANCE * self.size)
-            && !(both && self.carries(boundary.node_before[corner as usize], own_side()))
+        if pick.gap > 0.0 || gap > 0.0 {
+            return gap <= tolerance;
+        }
+        if Self::is_held(pick) {
+            return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
+        }
+        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
     }
 
     /// Whether a node carried force against a side in the last step.
@@ -296,14 +303,20 @@ impl Narrow<'_> {
 
     /// Whether the node was behind the side already before the last step, so that it did not come in through it.
     fn was_deep(&self, node: usize, pick: &Pick) -> bool {
-        let (boundary, p) = (self.boundary, self.node_place(node));
+        self.opened(node, pick) - pick.gap > FIRST_SIGHT_DEPTH * self.size
+    }
+
+    /// How far (m) the gap opened in the last step.
+    fn opened(&self, node: usize, pick: &Pick) -> f64 {
+        let boundary = self.boundary;
         let point = boundary.node_point[node] as usize;
         let at = |covers: &[u32; 3], weights: Weights| -> Vector {
             covers.iter().zip(weights).map(|(&i, w)| self.velocity[i as usize] * w).sum()
         };
         let covers = &boundary.covers[pick.edge as usize];
-        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, self.weights_at(covers, p));
-        relative.dot(&right_of(pick.tangent)) * self.dt_last - pick.gap > FIRST_SIGHT_DEPTH * self.size
+        let weights = self.weights_at(covers, self.node_place(node));
+        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, weights);
+        relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 
     fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {

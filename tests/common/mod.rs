@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod claims;
+pub mod overlap;
 
 use std::path::Path;
 
