@@ -219,11 +219,11 @@ impl Narrow<'_> {
 
     /// Whether the node, at a convex `end` of the side, is inside the facet that meets this one there.
     ///
-    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
-    /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as well,
-    /// or else (q, the side of p that turns towards it). Inside both, the node enters this one if it carries force, or
-    /// if it is the shallower and the other carries none; a deep contact gives way to a far shallower one. Faces that lie
-    /// on each other do not exclude each other.
+    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's
+    /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
+    /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
+    /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
+    /// shallower one. Faces that lie on each other do not exclude each other.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
