@@ -146,7 +146,7 @@ impl Boundary {
             if station.node {
                 self.node_point.push(index);
             }
-            let element = station.piece.element as usize;
+            let element = covers.host[station.piece.element as usize] as usize;
             self.covers.push(covers.element_covers[element]);
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);

@@ -3,6 +3,7 @@
 use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 
 use super::Weights;
+use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::morton;
 use super::outlines::{Outlines, mesh_only};
@@ -40,6 +41,8 @@ pub struct Covers {
     pub block_elements: Vec<u32>,
     /// First physical cover of each block, and the number of covers at the end.
     pub block_covers: Vec<u32>,
+    /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
+    pub host: Vec<u32>,
     /// Boundary loops of the blocks.
     pub outlines: Outlines,
 }
@@ -145,6 +148,7 @@ pub fn cut(mesh: RegularMesh, arrangement: &Arrangement) -> Covers {
         element_of_face[raw.face[old as usize] as usize] = new as u32;
     }
     covers.outlines = Outlines::trace(arrangement, &element_of_face, &covers.element_block);
+    covers.host = hosts(&covers);
     covers
 }
 
@@ -356,6 +360,7 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
         star_position: Vec::new(),
         cover_block: Vec::new(),
         block_covers: Vec::new(),
+        host: Vec::new(),
         outlines: Outlines::default(),
     }
 }

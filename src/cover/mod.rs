@@ -2,6 +2,7 @@
 //! Knows nothing of stress or time.
 
 mod cut;
+mod host;
 mod mesh;
 mod order;
 mod outlines;

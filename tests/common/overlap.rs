@@ -25,7 +25,8 @@ pub fn deepest_overlap(simulation: &Simulation) -> Overlap {
         let other = boundary.block[edge as usize];
         [own.min(other), own.max(other)]
     };
-    let mut pairs: Vec<[u32; 2]> = simulation.state().near.candidates.iter().map(|c| blocks_of(c.node, c.edge)).collect();
+    let mut pairs: Vec<[u32; 2]> =
+        simulation.state().near.candidates.iter().map(|c| blocks_of(c.node, c.edge)).collect();
     pairs.sort_unstable();
     pairs.dedup();
     pairs.retain(|pair| pair[0] != pair[1]);
