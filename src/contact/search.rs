@@ -4,8 +4,11 @@ use crate::geometry::{Point, Vector, segment};
 
 use super::Boundary;
 
-/// Depth, relative to the search cutoff, from which a side that comes into view has rock before it.
-const BEHIND_DEPTH: f64 = 4e-6;
+/// Depth, relative to the search cutoff, from which a side that comes into view has rock before it: deeper than contacts
+/// go, but for the first search, when nothing overlaps.
+const BEHIND_DEPTH: f64 = 0.012;
+/// The same for the first search.
+const BEHIND_DEPTH_FIRST: f64 = 4e-6;
 
 /// A node and an edge that may meet before the next search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -120,7 +123,8 @@ impl SearchGrid {
             self.near.dedup();
             found.candidates.extend_from_slice(&self.near);
         }
-        found.renew_behind(&self.old, &mut self.behind, |edges| gap_behind(view, edges) + BEHIND_DEPTH * cutoff);
+        let depth = cutoff * if self.old.is_empty() { BEHIND_DEPTH_FIRST } else { BEHIND_DEPTH };
+        found.renew_behind(&self.old, &mut self.behind, |edges| gap_over(view, edges) + depth);
     }
 
     fn bucket(&self, i: i64, j: i64) -> usize {
@@ -164,14 +168,16 @@ impl SearchGrid {
     }
 }
 
-/// Gap (m) of a node over the nearest of some edges of one side; negative behind it.
-fn gap_behind(view: &SearchView, edges: &[Candidate]) -> f64 {
+/// Gap (m) of a node over the nearest of some edges of one side, negative behind it; infinite where its foot misses.
+fn gap_over(view: &SearchView, edges: &[Candidate]) -> f64 {
     let p = view.place[view.boundary.node_point[edges[0].node as usize] as usize];
     let over = |c: &Candidate| {
         let (a, b) = (view.place[c.edge as usize], view.place[view.boundary.after(c.edge as usize)]);
-        let along = b - a;
-        let gap = (p - a).dot(&Vector::new(along.y, -along.x)) / along.norm();
-        (segment::distance(p, a, b), gap)
+        let (d, side) = (p - a, b - a);
+        let foot = d.dot(&side);
+        let gap = d.dot(&Vector::new(side.y, -side.x)) / side.norm();
+        let hit = foot >= 0.0 && foot <= side.norm_squared();
+        (segment::distance(p, a, b), if hit { gap } else { f64::INFINITY })
     };
     edges.iter().map(over).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::INFINITY, |nearest| nearest.1)
 }

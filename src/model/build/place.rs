@@ -79,7 +79,7 @@ impl Places<'_> {
 
     /// The material point at a place.
     pub fn point(&self, key: &str, point: [f64; 2]) -> Result<MaterialPoint, Invalid> {
-        let element = self.covers.host[self.element(key, point)?] as usize;
+        let element = self.element(key, point)?;
         Ok(MaterialPoint {
             block: self.covers.element_block[element],
             covers: self.covers.element_covers[element],
@@ -109,7 +109,7 @@ impl Places<'_> {
     }
 
     fn outer_piece(&self, piece: &BoundaryPiece) -> OuterPiece {
-        let element = self.covers.host[piece.element as usize] as usize;
+        let element = piece.element as usize;
         OuterPiece {
             block: self.covers.element_block[element],
             covers: self.covers.element_covers[element],
