@@ -3,9 +3,9 @@
 use super::cut::Covers;
 
 /// Share of a full cover's area below which a cover is too light to carry forces of its own.
-const LIGHT_COVER: f64 = 1e-3;
+const LIGHT_COVER: f64 = 0.05;
 /// Rings of neighbours that are searched for a host.
-const RINGS: usize = 2;
+const RINGS: usize = 3;
 
 /// For each element, itself or the best neighbour within its block.
 ///

@@ -542,7 +542,7 @@ impl Default for Solver {
             shear_ratio: 0.5,
             contact_theta: 4.0,
             contact_tolerance: 1e-2,
-            sweeps_max: 40,
+            sweeps_max: 100,
             penetration_limit: 0.2,
             memory_limit: 8 << 30,
         }
