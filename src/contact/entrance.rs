@@ -22,6 +22,8 @@ const WEDGE_RATIO: f64 = 0.5;
 const LEDGE: f64 = 5e-4;
 /// Share of its depth to which another facet must be shallower for a deep contact to give way.
 const SHALLOWER: f64 = 0.25;
+/// Cosine from which two sides of a block look apart, with rock between them: 60°.
+const OPPOSED_COSINE: f64 = 0.5;
 /// Cosine from which two faces that look at each other lie on each other: 10°.
 const FLUSH_COSINE: f64 = 0.985;
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -336,13 +338,13 @@ impl Narrow<'_> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
-        let opposed = cosine < -ENTRANCE_SINE && shallow.gap < deep.gap * cosine;
+        let opposed = cosine < -OPPOSED_COSINE && shallow.gap < deep.gap * cosine;
         if !adjacent && !opposed {
             return None;
         }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
         let deep_loses = if Self::is_held(deep) {
-            Self::is_held(shallow) && shallow.admitted || !adjacent && behind && shallow.gap > 0.0
+            Self::is_held(shallow) && shallow.admitted
         } else {
             let far = !adjacent && shallow.gap > 0.0 || deep.held.is_none() && self.was_deep(node, deep);
             behind && far || shallow.admitted && shallow.gap <= 0.0
