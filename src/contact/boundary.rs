@@ -29,7 +29,7 @@ impl Default for BoundaryOptions {
     }
 }
 
-/// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]`, rock on its left, inside one element.
+/// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]` inside one element, rock on its left.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Covers of the element of edge `k`; they carry point `k` as well.
@@ -117,6 +117,18 @@ impl Boundary {
     /// Whether the node lies on a partial cut.
     pub fn node_partial(&self, node: usize) -> bool {
         self.partial[self.node_point[node] as usize] || self.partial[self.point_before(node)]
+    }
+
+    /// The edge round the corner that a point beyond the start or the end of edge `edge` faces, if the side ends there.
+    pub fn side_round(&self, edge: u32, before: bool, beyond: bool) -> Option<u32> {
+        let side = self.side[edge as usize] as usize;
+        if before && self.side_first[side] == edge {
+            Some(self.side_last[self.side_previous[side] as usize])
+        } else if beyond && self.side_last[side] == edge {
+            Some(self.side_first[self.side_next[side] as usize])
+        } else {
+            None
+        }
     }
 
     /// Side that ends at or passes through a node.

@@ -49,7 +49,7 @@ impl JointLaw {
         Limits { friction, cohesion: cohesion * length, tension: tension * length }
     }
 
-    /// Normal and shear spring (N/m per metre) of a contact of tributary length `length` (m); the solver's own stiffness
+    /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness
     /// acts over `penalty_length` (m).
     pub fn stiffness(&self, length: f64, penalty_length: f64) -> [f64; 2] {
         let over = |penalty: bool| if penalty { penalty_length } else { length };

@@ -4,8 +4,8 @@ use crate::geometry::{Point, Vector, segment};
 
 use super::Boundary;
 
-/// Depth, relative to the search cutoff, from which a side that comes into view has rock before it: deeper than contacts
-/// go, but for the first search, when nothing overlaps.
+/// Depth, relative to the search cutoff, from which a side that comes into view has rock before it: deeper than
+/// contacts go, but for the first search, when nothing overlaps.
 const BEHIND_DEPTH: f64 = 0.012;
 /// The same for the first search.
 const BEHIND_DEPTH_FIRST: f64 = 4e-6;
@@ -168,18 +168,24 @@ impl SearchGrid {
     }
 }
 
-/// Gap (m) of a node over the nearest of some edges of one side, negative behind it; infinite where its foot misses.
+/// Gap (m) of a node over the nearest of some edges of one side, negative behind it; infinite where the node is beyond
+/// an end of the side and outside the side round that corner.
 fn gap_over(view: &SearchView, edges: &[Candidate]) -> f64 {
     let p = view.place[view.boundary.node_point[edges[0].node as usize] as usize];
-    let over = |c: &Candidate| {
-        let (a, b) = (view.place[c.edge as usize], view.place[view.boundary.after(c.edge as usize)]);
-        let (d, side) = (p - a, b - a);
-        let foot = d.dot(&side);
-        let gap = d.dot(&Vector::new(side.y, -side.x)) / side.norm();
-        let hit = foot >= 0.0 && foot <= side.norm_squared();
-        (segment::distance(p, a, b), if hit { gap } else { f64::INFINITY })
+    let ends = |e: usize| (view.place[e], view.place[view.boundary.after(e)]);
+    let gap = |e: usize| {
+        let (a, b) = ends(e);
+        (p - a).dot(&Vector::new(b.y - a.y, a.x - b.x)) / (b - a).norm()
     };
-    edges.iter().map(over).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::INFINITY, |nearest| nearest.1)
+    let distance = |c: &&Candidate| {
+        let (a, b) = ends(c.edge as usize);
+        segment::distance(p, a, b)
+    };
+    let Some(nearest) = edges.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else { return f64::INFINITY };
+    let (a, b) = ends(nearest.edge as usize);
+    let along = (p - a).dot(&(b - a));
+    let round = view.boundary.side_round(nearest.edge, along < 0.0, along > (b - a).norm_squared());
+    if round.is_some_and(|e| gap(e as usize) > 0.0) { f64::INFINITY } else { gap(nearest.edge as usize) }
 }
 
 fn cell_of(v: f64, cell: f64) -> i64 {

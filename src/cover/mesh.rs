@@ -38,7 +38,7 @@ pub struct RegularMesh {
 }
 
 impl RegularMesh {
-    /// Lays a lattice of side `size` (m), direction `angle` (rad) and node (0, 0) at `origin` over the box `low`–`high`.
+    /// Lays a lattice of side `size` (m), direction `angle` (rad) and node (0, 0) at `origin` over a box.
     pub fn new(size: f64, angle: f64, origin: Point, low: Point, high: Point) -> Self {
         let turn = angle + std::f64::consts::FRAC_PI_3;
         let mut mesh = Self {

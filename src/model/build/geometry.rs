@@ -15,8 +15,8 @@ const BYTES_PER_CELL: f64 = 4000.0;
 pub(super) struct Plane {
     pub mesh: RegularMesh,
     pub arrangement: Arrangement,
-    /// Joint traces with their laws; those of the case first, then the loops of islands, so that rock that touches stays
-    /// apart.
+    /// Joint traces with their laws: those of the case first, then the loops of islands, so that rock that touches
+    /// stays apart.
     pub traces: Vec<(Vec<Point>, u32)>,
     pub default_law: u32,
 }
