@@ -120,7 +120,7 @@ impl Simulation {
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let Regime::Static { ramp } = self.regime else { return false };
-        let energy = report.ledger.potential.abs().max(report.ledger.strain);
+        let energy = report.ledger.potential.abs().max(report.ledger.strain.abs());
         report.time >= self.state().stage_start + 1.5 * ramp
             && report.unbalanced <= self.stage().convergence.unwrap_or(CONVERGENCE)
             && report.ledger.kinetic <= REST * energy

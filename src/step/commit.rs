@@ -120,7 +120,8 @@ impl Step<'_> {
             net += ((scratch.predicted[i] - scratch.damped[i]) * (metric.mass[i] / kick_dt)).norm_squared();
             applied += (scratch.load_force[i] + acceleration * metric.row_sum[i]).norm_squared();
         }
-        (net / applied.max(f64::MIN_POSITIVE)).sqrt()
+        let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
+        (net / applied.max(stage).max(f64::MIN_POSITIVE)).sqrt()
     }
 
     /// The forces out of balance in the first step of a static stage that begins under full load.
