@@ -1,20 +1,14 @@
 //! Claim: real traces, slopes and cover cases give the block counts, areas and element counts on which independent
 //! noders agree. The data stay outside the repository; the tests say so and skip when the folder is absent.
 
+mod common;
+
 use std::path::{Path, PathBuf};
+
+use common::shared::shared;
 
 use enmm::geometry::{Arrangement, Label, NONE, Point, Segment, arrange};
 use serde_json::Value;
-
-fn shared() -> Option<PathBuf> {
-    let given = std::env::var_os("ENMM_SHARED").map(PathBuf::from);
-    let above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().skip(1).map(|folder| folder.join("shared"));
-    let found = given.into_iter().chain(above).map(|folder| folder.join("data")).find(|data| data.is_dir());
-    if found.is_none() {
-        eprintln!("skipped: no shared data folder (set ENMM_SHARED)");
-    }
-    found
-}
 
 fn read(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("readable")).expect("valid JSON")

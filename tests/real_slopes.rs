@@ -2,15 +2,8 @@
 
 mod common;
 
-use std::path::PathBuf;
-
+use common::shared::shared;
 use enmm::model::Simulation;
-
-/// The folder of shared data, if this checkout lies beside it.
-fn shared() -> Option<PathBuf> {
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    here.ancestors().map(|a| a.join("shared/data")).find(|p| p.is_dir())
-}
 
 /// A gravity stage over a geometry file, its lowest part held, on a mesh of `size` (m).
 fn case(file: &str, size: f64, held_below: f64, friction: f64) -> String {
@@ -25,7 +18,6 @@ fn case(file: &str, size: f64, held_below: f64, friction: f64) -> String {
 /// Settles for at most `steps` steps; energy must not appear and nothing may run away.
 fn settles(file: &str, size: f64, held_below: f64, friction: f64, steps: u64) {
     let Some(data) = shared() else {
-        eprintln!("skipped: shared/data is absent");
         return;
     };
     let loaded = enmm::io::parse_case(&case(file, size, held_below, friction), "real.toml", &data)

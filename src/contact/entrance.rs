@@ -2,7 +2,7 @@
 
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{BlockMotion, Metric};
+use crate::mechanics::{BlockMotion, Metric, StressField};
 
 use super::{Boundary, Candidate, ContactHistory, ContactState, Corner, JointLaw, VertexEdge};
 
@@ -66,7 +66,7 @@ pub struct Narrow<'a> {
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by place.
-    pub in_situ: Option<&'a (dyn Fn(Point) -> [f64; 3] + Sync)>,
+    pub in_situ: Option<&'a StressField>,
 }
 
 /// One end of a side.
@@ -507,7 +507,7 @@ impl Narrow<'_> {
             history.offset = -pick.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
-            let [xx, yy, xy] = stress(self.boundary.reference[self.boundary.node_point[node] as usize]);
+            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = history.normal_force / stiffness[0];

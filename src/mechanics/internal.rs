@@ -1,11 +1,29 @@
 //! Corotated linear elasticity of one element from total displacements.
 
-use crate::geometry::Vector;
+use crate::geometry::{Point, Vector};
 
 use super::Elasticity;
 
 /// Stress xx, yy, xy (Pa) in the reference axes of an element before any displacement.
 pub type PreStress = [f64; 3];
+
+/// Stress before any displacement that varies with height alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressField {
+    /// Stress xx, yy, xy (Pa) at the reference height.
+    pub value: PreStress,
+    /// Change of the three with height (Pa/m).
+    pub gradient: [f64; 3],
+    /// Reference height (m).
+    pub y_reference: f64,
+}
+
+impl StressField {
+    /// Stress (Pa) at a place.
+    pub fn at(&self, p: Point) -> PreStress {
+        [0, 1, 2].map(|k| self.value[k] + self.gradient[k] * (p.y - self.y_reference))
+    }
+}
 
 /// Deformation gradient of an element, split into rotation and stretch (Eq. 6).
 #[derive(Debug, Clone, Copy)]

@@ -8,7 +8,7 @@ mod mass;
 mod motion;
 
 pub use elasticity::{Elasticity, critical_dt};
-pub use internal::{Deformation, PreStress};
+pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, TimeTable};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::contact::{Boundary, BoundaryOptions, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
-use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, TimeTable, critical_dt};
+use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Fixity, Slope, State};
 
@@ -41,7 +41,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let plane = geometry::arrange_case(case)?;
     let covers = cover::cut(plane.mesh, &plane.arrangement);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, tolerance: 2.0 * plane.arrangement.report.tolerance };
+    let places = Places { covers: &covers, tolerance: places_tolerance(&plane.arrangement.report) };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
@@ -64,7 +64,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         supports,
         loads,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
-        in_situ: case.in_situ.as_ref().map(|s| ([s.sxx, s.syy, s.sxy], s.gradient, s.y_reference)),
+        in_situ: in_situ(case),
         dt: internal_step(case, critical),
         critical_dt: critical,
         theta: case.solver.contact_theta,
@@ -151,13 +151,7 @@ fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]
 }
 
 fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
-    case.in_situ.as_ref().map_or_else(Vec::new, |s| {
-        let at = |p: &Point| {
-            let height = p.y - s.y_reference;
-            [s.sxx + s.gradient[0] * height, s.syy + s.gradient[1] * height, s.sxy + s.gradient[2] * height]
-        };
-        covers.element_centroid.iter().map(at).collect()
-    })
+    in_situ(case).map_or_else(Vec::new, |field| covers.element_centroid.iter().map(|p| field.at(*p)).collect())
 }
 
 fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
@@ -172,7 +166,7 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
             held.push(places.point(&format!("{key}.point"), point)?.support(stiff));
         } else if let Some(edge) = fix.edge {
             let stiff = fix.stiffness.unwrap_or(EDGE_RATIO * stiffness);
-            let stress = |p: Point| in_situ_at(case, p);
+            let stress = |p: Point| in_situ(case).map_or([0.0; 3], |field| field.at(p));
             held.extend(places.boundary(&format!("{key}.edge"), edge)?.iter().map(|p| p.support(stiff, &stress)));
         } else if let Some(region) = fix.region {
             let covers = places.covers_in(&format!("{key}.box"), region)?;
@@ -202,11 +196,13 @@ const EDGE_RATIO: f64 = 100.0;
 /// Stiffness of supported points over that of contacts of the length of a mesh size.
 const POINT_RATIO: f64 = 1000.0;
 
-fn in_situ_at(case: &Case, p: Point) -> [f64; 3] {
-    case.in_situ.as_ref().map_or([0.0; 3], |s| {
-        let height = p.y - s.y_reference;
-        [s.sxx + s.gradient[0] * height, s.syy + s.gradient[1] * height, s.sxy + s.gradient[2] * height]
-    })
+fn in_situ(case: &Case) -> Option<StressField> {
+    let field = |s: &case::InSitu| StressField {
+        value: [s.sxx, s.syy, s.sxy],
+        gradient: s.gradient,
+        y_reference: s.y_reference,
+    };
+    case.in_situ.as_ref().map(field)
 }
 
 fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {

@@ -3,7 +3,7 @@
 use crate::contact::{Boundary, JointLaw, Support};
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Elasticity, Load, Metric, PreStress};
+use crate::mechanics::{Elasticity, Load, Metric, PreStress, StressField};
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,8 +47,8 @@ pub struct Slope {
     pub loads: Vec<Load>,
     /// Gravity (m/s²).
     pub gravity: Vector,
-    /// In-situ stress xx, yy, xy (Pa) as value and gradient (Pa/m) about a height (m).
-    pub in_situ: Option<([f64; 3], [f64; 3], f64)>,
+    /// In-situ stress, if any.
+    pub in_situ: Option<StressField>,
     /// Internal step (s).
     pub dt: f64,
     /// Stability limit (s).
@@ -64,11 +64,6 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// In-situ stress xx, yy, xy (Pa) at a place.
-    pub fn in_situ_at(&self, p: Point) -> [f64; 3] {
-        self.in_situ.map_or([0.0; 3], |(value, gradient, y)| [0, 1, 2].map(|k| value[k] + gradient[k] * (p.y - y)))
-    }
-
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
     pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
         let weights = self.covers.weights(element, p);

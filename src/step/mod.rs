@@ -202,7 +202,6 @@ impl Step<'_> {
         let clock = Instant::now();
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
-        let in_situ = |p: Point| slope.in_situ_at(p);
         let narrow = Narrow {
             boundary: &slope.boundary,
             place: &scratch.place,
@@ -220,7 +219,7 @@ impl Step<'_> {
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
             behind: &state.near.behind,
             first: state.step == 0,
-            in_situ: slope.in_situ.is_some().then_some(&in_situ),
+            in_situ: slope.in_situ.as_ref(),
         };
         scratch.contacts.clear();
         contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
