@@ -1,7 +1,7 @@
 //! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
 
 use crate::cover::{BoundaryPiece, Covers, Weights};
-use crate::geometry::{NONE, Point};
+use crate::geometry::{NONE, Point, Vector};
 
 /// What the end of a side is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,6 +101,11 @@ impl Boundary {
     /// Number of nodes.
     pub fn node_count(&self) -> usize {
         self.node_point.len()
+    }
+
+    /// A cover field at point `k`.
+    pub fn sample(&self, k: usize, field: &[Vector]) -> Vector {
+        self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
     }
 
     /// Point after point `k`.

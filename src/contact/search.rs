@@ -43,6 +43,13 @@ impl Near {
                 .any(|(&p, old)| (place[p as usize] - old).norm_squared() > slack * slack)
     }
 
+    /// Copies without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.candidates.clone_from(&other.candidates);
+        self.behind.clone_from(&other.behind);
+        self.found_at.clone_from(&other.found_at);
+    }
+
     /// Makes the next step search anew.
     pub fn forget(&mut self) {
         self.found_at.clear();

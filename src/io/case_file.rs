@@ -23,6 +23,19 @@ pub struct LoadedCase {
     pub warnings: Vec<String>,
 }
 
+impl LoadedCase {
+    /// A case that has been read or changed elsewhere; `file` stands in messages.
+    ///
+    /// # Errors
+    /// The first value that cannot be used.
+    pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
+        let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
+        case.validate().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
+        let hash = fingerprint(&case).map_err(|message| source.locate("", &message))?;
+        Ok(Self { case, source, hash, warnings: Vec::new() })
+    }
+}
+
 /// Where the values of a case came from.
 #[derive(Debug, Clone, Default)]
 pub struct CaseSource {

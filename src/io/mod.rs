@@ -19,6 +19,7 @@ pub mod vtu;
 pub use case_error::CaseError;
 pub use case_file::{CaseSource, LoadedCase, load_case, parse_case};
 pub use check::check;
+pub(crate) use run::Plan as RestPlan;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use schema::schema;
 pub use summary::{RunStatus, Summary};

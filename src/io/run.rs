@@ -6,6 +6,8 @@ mod driver;
 mod results;
 mod rows;
 
+pub(crate) use rows::Plan;
+
 use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

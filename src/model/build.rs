@@ -2,6 +2,7 @@
 
 mod geometry;
 mod place;
+mod ports;
 mod rock;
 
 use std::collections::BTreeMap;
@@ -11,7 +12,7 @@ use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Fixity, Slope, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 
 use place::Places;
 
@@ -49,11 +50,14 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let (fixities, supports) = fixities(case, &places, stiffness)?;
     let loads = loads(case, &places)?;
     let monitors = monitors(case, &places)?;
+    let boundary = Boundary::new(&covers, &BoundaryOptions::default());
+    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
+    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
     let slope = Slope {
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
-        boundary: Boundary::new(&covers, &BoundaryOptions::default()),
+        boundary,
         rocks,
         element_rock,
         metric,
@@ -63,6 +67,8 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         fixities,
         supports,
         loads,
+        ports,
+        water,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
         dt: internal_step(case, critical),
@@ -71,6 +77,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,
+        failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
         covers,
     };
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
@@ -267,6 +274,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         stage_start: 0.0,
         stage_step: 0,
         step: 0,
+        part: 0.0,
         dt_last: 0.0,
         displacement: vec![Vector::zeros(); covers],
         velocity,
@@ -280,6 +288,8 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         law_switch: (0..slope.laws.len() as u32).collect(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
+        drive: Drive::hold(Inputs::of(slope)),
+        events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
         ledger: Default::default(),
         counters: Default::default(),
     })

@@ -54,6 +54,12 @@ pub struct Case {
     /// Stress before the first stage.
     #[serde(default)]
     pub in_situ: Option<InSitu>,
+    /// Water with a level surface.
+    #[serde(default)]
+    pub water: Option<Water>,
+    /// Named places where hosts exchange values with the model.
+    #[serde(default, rename = "port")]
+    pub ports: Vec<Port>,
     /// Stages in order.
     #[serde(rename = "stage")]
     pub stages: Vec<Stage>,
@@ -384,6 +390,44 @@ pub struct InSitu {
     pub y_reference: f64,
 }
 
+/// Water with a level surface: hydrostatic pressure on the faces that it reaches, at their current places.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Water {
+    /// Height y of the surface at the start (m); hosts may move it.
+    pub level: f64,
+    /// Density (kg/m³).
+    #[serde(default = "water_density")]
+    pub density: f64,
+    /// Whether joints below the level are full: pressure on both of their faces.
+    #[serde(default = "yes")]
+    pub joints: bool,
+    /// Segments (m) of the outer boundary that the water reaches; default: all that no `[[fix]]` edge holds.
+    #[serde(default)]
+    pub faces: Option<Vec<[[f64; 2]; 2]>>,
+}
+
+fn water_density() -> f64 {
+    1000.0
+}
+
+/// A named place where hosts exchange values with the model; exactly one of `block`, `boundary`, `joint`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Port {
+    /// Name: letters, digits and underscores.
+    pub name: String,
+    /// The block that holds this point (m): force and moment in, motion and contact force out.
+    #[serde(default)]
+    pub block: Option<[f64; 2]>,
+    /// The parts of the outer boundary on this segment (m): traction and pressure in, motion and stress out.
+    #[serde(default)]
+    pub boundary: Option<[[f64; 2]; 2]>,
+    /// The joint faces on this segment (m): fluid pressure in, contact forces and slip out.
+    #[serde(default)]
+    pub joint: Option<[[f64; 2]; 2]>,
+}
+
 /// How a stage treats time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -527,6 +571,8 @@ pub struct Solver {
     pub sweeps_max: u32,
     /// Penetration, relative to the mesh size, at which the run stops as failed.
     pub penetration_limit: f64,
+    /// Displacement (m) beyond which a block counts as failed; default: the mesh size.
+    pub failure_displacement: Option<f64>,
     /// Memory (bytes) that a model may need.
     pub memory_limit: u64,
 }
@@ -544,6 +590,7 @@ impl Default for Solver {
             contact_tolerance: 1e-2,
             sweeps_max: 100,
             penetration_limit: 0.2,
+            failure_displacement: None,
             memory_limit: 8 << 30,
         }
     }

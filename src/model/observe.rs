@@ -111,7 +111,7 @@ impl Simulation {
     pub fn block_states(&self) -> Vec<BlockState> {
         let places = places(self.slope(), self.state());
         let mut states: Vec<BlockState> =
-            (0..self.slope().covers.block_count()).map(|block| self.block_state(block)).collect();
+            (0..self.slope().covers.block_count()).map(|block| self.motion_of(block)).collect();
         let boundary = &self.slope().boundary;
         for contact in &self.state().contacts {
             let node = boundary.node_point[contact.node as usize] as usize;
@@ -128,20 +128,15 @@ impl Simulation {
         states
     }
 
-    fn block_state(&self, block: usize) -> BlockState {
+    /// The state of one block without what its contacts tell.
+    pub fn motion_of(&self, block: usize) -> BlockState {
         let (slope, state) = (self.slope(), self.state());
         let covers = &slope.covers;
         let metric = &self.scratch().metric;
         let (_, velocity, spin, kinetic) = step::block_motion(slope, state, metric, block);
         let displacement = mean(slope, &state.displacement, block);
         let area = covers.block_area(block);
-        let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
-        for e in covers.elements_of(block) {
-            let (deformation, pre) = (deformation(slope, state, e), pre_stress(slope, e));
-            let of_element = deformation.stress(rock(slope, e), &pre);
-            (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += deformation.energy(rock(slope, e), &pre) * covers.element_area[e];
-        }
+        let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
         BlockState {
             id: block as u32,
@@ -152,13 +147,35 @@ impl Simulation {
             rotation: rotation(slope, state, block),
             velocity,
             angular_velocity: spin,
-            mean_stress: stress,
+            mean_stress,
             area,
             mass: slope.metric.total[block],
             kinetic_energy: if removed { 0.0 } else { kinetic },
             strain_energy,
             ..BlockState::default()
         }
+    }
+}
+
+impl Simulation {
+    /// Area mean of the stress xx, yy, xy (Pa, tension positive) and the strain energy (J/m) of a block.
+    pub fn stress_of(&self, block: usize) -> ([f64; 3], f64) {
+        let (slope, state) = (self.slope(), self.state());
+        let covers = &slope.covers;
+        let area = covers.block_area(block);
+        let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
+        for e in covers.elements_of(block) {
+            let (deformation, pre) = (deformation(slope, state, e), pre_stress(slope, e));
+            let of_element = deformation.stress(rock(slope, e), &pre);
+            (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
+            strain_energy += deformation.energy(rock(slope, e), &pre) * covers.element_area[e];
+        }
+        (stress, strain_energy)
+    }
+
+    /// Current places of the boundary points (m).
+    pub fn places(&self) -> Vec<Point> {
+        places(self.slope(), self.state())
     }
 }
 

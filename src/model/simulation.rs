@@ -2,7 +2,7 @@
 
 use crate::contact::VertexEdge;
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Ledger, Scratch, Slope, State};
+use crate::state::{Drive, Inputs, Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::build::{Built, build, index_of};
@@ -69,7 +69,18 @@ impl Simulation {
 
     /// Simulated time (s).
     pub fn time(&self) -> f64 {
-        self.state().stage_start + self.state().stage_step as f64 * self.slope().dt
+        let state = self.state();
+        state.stage_start + state.stage_step as f64 * self.slope().dt + state.part
+    }
+
+    /// Whether steps keep to the calling thread.
+    pub fn set_serial(&mut self, serial: bool) {
+        self.scratch.serial = serial;
+    }
+
+    /// What a host has set, to be changed.
+    pub fn drive(&mut self) -> &mut Drive {
+        &mut self.built.state.drive
     }
 
     /// Internal steps that cover `seconds` of simulated time.
@@ -103,6 +114,50 @@ impl Simulation {
     /// A numerical failure; the state is then spoilt and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
         step::advance(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, report)
+    }
+
+    /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_part(&mut self, dt: f64) -> Result<StepReport, StepError> {
+        step::advance_part(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, dt)
+    }
+
+    /// Energies and the unbalanced ratio now; nothing advances.
+    pub fn report(&self) -> StepReport {
+        step::outlook(self.slope(), self.regime, self.state(), &self.scratch)
+    }
+
+    /// Whether all indices and lengths of a state are those of this model.
+    pub fn fits(&self, state: &State) -> bool {
+        let (slope, own) = (self.slope(), self.state());
+        let covers = slope.covers.cover_count();
+        let boundary = &slope.boundary;
+        let inputs_fit = |inputs: &Inputs| {
+            inputs.block_force.len() == own.removed.len()
+                && inputs.block_moment.len() == own.removed.len()
+                && inputs.port_traction.len() == slope.ports.len()
+                && inputs.port_pressure.len() == slope.ports.len()
+        };
+        (state.stage as usize) < self.case.stages.len()
+            && [state.displacement.len(), state.velocity.len()] == [covers; 2]
+            && [&state.stage_displacement, &state.stage_force].iter().all(|v| v.is_empty() || v.len() == covers)
+            && state.support_force.len() == own.support_force.len()
+            && state.support_rest.len() == own.support_rest.len()
+            && state.fix_active.len() == own.fix_active.len()
+            && state.removed.len() == own.removed.len()
+            && state.laws.len() == own.laws.len()
+            && state.law_switch.len() == own.law_switch.len()
+            && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
+            && inputs_fit(&state.drive.from)
+            && inputs_fit(&state.drive.to)
+            && state.events.fit(own.removed.len(), slope.trace_law.len())
+            && state.contacts.iter().all(|c| {
+                (c.node as usize) < boundary.node_count()
+                    && (c.edge as usize) < boundary.len()
+                    && (c.side as usize) < boundary.side_first.len()
+            })
     }
 
     /// The contacts that the next step will judge, with the forces of the last one; nothing advances.

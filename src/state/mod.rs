@@ -1,12 +1,16 @@
 //! The three heaps: [`Slope`] (fixed once built), [`State`] (all that a checkpoint holds), [`Scratch`] (buffers).
 
+mod events;
+mod inputs;
 mod ledger;
 mod scratch;
 mod slope;
 
+pub use events::{Event, EventKind, Events};
+pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use scratch::{Scratch, Seconds};
-pub use slope::{Fixity, Slope};
+pub use slope::{Fixity, Port, PortKind, Slope, Water};
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +28,8 @@ pub struct State {
     pub stage_step: u64,
     /// Internal steps done in all stages.
     pub step: u64,
+    /// Part of the next internal step that is done already (s); 0 on the grid of internal steps.
+    pub part: f64,
     /// Part of an internal step by which the last kick was shifted: the last sub-step (s).
     pub dt_last: f64,
     /// Displacement of each physical cover (m).
@@ -50,10 +56,37 @@ pub struct State {
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).
     pub stage_force: Vec<Vector>,
+    /// What a host has set.
+    pub drive: Drive,
+    /// What happened.
+    pub events: Events,
     /// Energy ledger.
     pub ledger: Ledger,
     /// Counters of the whole run.
     pub counters: Counters,
+}
+
+impl State {
+    /// Copies another state of the same model without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { stage, stage_start, stage_step, step, part, dt_last, ledger, counters, .. } = self;
+        (*stage, *stage_start, *stage_step, *step) = (other.stage, other.stage_start, other.stage_step, other.step);
+        (*part, *dt_last, *ledger, *counters) = (other.part, other.dt_last, other.ledger, other.counters);
+        self.displacement.clone_from(&other.displacement);
+        self.velocity.clone_from(&other.velocity);
+        self.contacts.clone_from(&other.contacts);
+        self.near.copy_from(&other.near);
+        self.support_force.clone_from(&other.support_force);
+        self.support_rest.clone_from(&other.support_rest);
+        self.fix_active.clone_from(&other.fix_active);
+        self.removed.clone_from(&other.removed);
+        self.laws.clone_from(&other.laws);
+        self.law_switch.clone_from(&other.law_switch);
+        self.stage_displacement.clone_from(&other.stage_displacement);
+        self.stage_force.clone_from(&other.stage_force);
+        self.drive.copy_from(&other.drive);
+        self.events.copy_from(&other.events);
+    }
 }
 
 /// Counters of the whole run.

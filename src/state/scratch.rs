@@ -35,6 +35,8 @@ pub struct Scratch {
     pub trace_law: Vec<u32>,
     /// Largest speed of a cover (m/s).
     pub speed_max: f64,
+    /// Whether the step keeps to the calling thread; the bits are the same.
+    pub serial: bool,
     /// Seconds spent in each part of the step.
     pub seconds: Seconds,
 }

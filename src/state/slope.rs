@@ -16,6 +16,41 @@ pub struct Fixity {
     pub active: bool,
 }
 
+/// What a port gives access to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PortKind {
+    /// A block: force and moment in, motion and contact force out.
+    Block,
+    /// A part of the outer boundary: traction and pressure in, motion and stress out.
+    Boundary,
+    /// Joint faces: fluid pressure in, contact forces and slip out.
+    Joint,
+}
+
+/// A named place where hosts exchange values with the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Port {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: PortKind,
+    /// The block, or the block of the first edge.
+    pub block: u32,
+    /// Boundary edges; none for a block.
+    pub edges: Vec<u32>,
+}
+
+/// Water with a level surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Water {
+    /// Density (kg/m³).
+    pub density: f64,
+    /// Height y of the surface at the start (m).
+    pub level: f64,
+    /// Boundary edges that it reaches.
+    pub edges: Vec<u32>,
+}
+
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
 #[derive(Debug, Clone)]
 pub struct Slope {
@@ -45,6 +80,10 @@ pub struct Slope {
     pub supports: Vec<Support>,
     /// Loads.
     pub loads: Vec<Load>,
+    /// Ports.
+    pub ports: Vec<Port>,
+    /// Water, if any.
+    pub water: Option<Water>,
     /// Gravity (m/s²).
     pub gravity: Vector,
     /// In-situ stress, if any.
@@ -61,6 +100,8 @@ pub struct Slope {
     pub sweeps_max: u32,
     /// Penetration (m) at which the run fails.
     pub penetration_limit: f64,
+    /// Displacement (m) beyond which a block counts as failed.
+    pub failure_displacement: f64,
 }
 
 impl Slope {

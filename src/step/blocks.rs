@@ -11,11 +11,18 @@ use super::DECAY_MAX;
 /// Covers below which a group of blocks is not split between threads.
 const GRAIN: usize = 2048;
 
+/// Covers below which a group of blocks is not split between threads.
+pub(super) fn grain(serial: bool) -> usize {
+    if serial { usize::MAX } else { GRAIN }
+}
+
 /// What every block of a pass shares.
 pub(super) struct Pass<'a> {
     pub slope: &'a Slope,
     pub state: &'a State,
     pub acceleration: Vector,
+    /// Covers below which a group of blocks is not split between threads.
+    pub grain: usize,
     /// Deformation damping carries ξ·dt here; each block turns it into its own factor.
     pub damping: Damping,
     pub dt: f64,
@@ -60,7 +67,7 @@ impl Pass<'_> {
     fn group(&self, metric: &mechanics::Metric, group: Group) {
         let covers = &self.slope.covers;
         let first = covers.block_covers[group.blocks.start] as usize;
-        if group.force.len() > GRAIN && group.blocks.len() > 1 {
+        if group.force.len() > self.grain && group.blocks.len() > 1 {
             let half = (first + group.force.len() / 2) as u32;
             let starts = &covers.block_covers[group.blocks.start + 1..group.blocks.end];
             let block = group.blocks.start + 1 + starts.partition_point(|&c| c < half).min(starts.len() - 1);

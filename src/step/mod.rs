@@ -57,25 +57,52 @@ pub fn advance(
     scratch: &mut Scratch,
     report: bool,
 ) -> Result<StepReport, StepError> {
-    let time = state.stage_start + state.stage_step as f64 * slope.dt;
-    let damping = Damping::Deformation(0.0);
-    let mut step = Step { slope, regime, state, scratch, time, report, damping };
-    let outcome = step.interval(slope.dt, 0);
+    let rest = slope.dt - state.part;
+    let mut step = Step::new(slope, regime, state, scratch);
+    step.report = report;
+    let outcome = step.interval(rest, 0);
     step.guard()?;
     state.stage_step += 1;
     state.step += 1;
+    state.part = 0.0;
     Ok(outcome)
+}
+
+/// Advances `dt` (s), a part of an internal step.
+///
+/// # Errors
+/// As [`advance`].
+pub fn advance_part(
+    slope: &Slope,
+    regime: Regime,
+    state: &mut State,
+    scratch: &mut Scratch,
+    dt: f64,
+) -> Result<StepReport, StepError> {
+    let mut step = Step::new(slope, regime, state, scratch);
+    let outcome = step.interval(dt, 0);
+    step.guard()?;
+    state.part += dt;
+    Ok(outcome)
+}
+
+/// Energies and the unbalanced ratio that the next step will find at its start; nothing advances.
+pub fn outlook(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> StepReport {
+    let (mut state, mut scratch) = (state.clone(), scratch.clone());
+    let rest = slope.dt - state.part;
+    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
+    step.report = true;
+    step.interval(rest, 0)
 }
 
 /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
 pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> Vec<VertexEdge> {
     let (mut state, mut scratch) = (state.clone(), scratch.clone());
-    let time = state.stage_start + state.stage_step as f64 * slope.dt;
-    let damping = Damping::Deformation(0.0);
-    let mut step = Step { slope, regime, state: &mut state, scratch: &mut scratch, time, report: false, damping };
+    let dt = slope.dt - state.part;
+    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     step.search();
-    step.predict(slope.dt);
-    step.entrance(slope.dt);
+    step.predict(dt);
+    step.entrance(dt);
     scratch.contacts
 }
 
@@ -88,6 +115,13 @@ struct Step<'a> {
     time: f64,
     report: bool,
     damping: Damping,
+}
+
+impl<'a> Step<'a> {
+    fn new(slope: &'a Slope, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
+        let time = state.stage_start + state.stage_step as f64 * slope.dt + state.part;
+        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0) }
+    }
 }
 
 impl Step<'_> {
@@ -154,6 +188,7 @@ impl Step<'_> {
             acceleration: self.acceleration(),
             damping: self.damping,
             dt: kick_dt,
+            grain: blocks::grain(scratch.serial),
         };
         pass.run(self.scratch);
         for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {

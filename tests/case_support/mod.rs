@@ -128,6 +128,24 @@ sxy = 1e5
 gradient = [1e4, 2e4, 0.0]
 y_reference = 5.0
 
+[water]
+level = 1.5
+density = 1000.0
+joints = false
+faces = [[[10.0, 0.0], [10.0, 5.0]]]
+
+[[port]]
+name = "keystone"
+block = [3.0, 3.0]
+
+[[port]]
+name = "wall"
+boundary = [[10.0, 0.0], [10.0, 5.0]]
+
+[[port]]
+name = "seam"
+joint = [[0.0, 2.0], [10.0, 3.0]]
+
 [[stage]]
 name = "settle"
 kind = "static"
@@ -173,6 +191,7 @@ contact_theta = 4.0
 contact_tolerance = 0.01
 sweeps_max = 12
 penetration_limit = 0.5
+failure_displacement = 0.1
 memory_limit = 1000000000
 "#;
 

@@ -102,32 +102,10 @@ pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observe
 fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
     let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
     let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
-    if fits(simulation, &saved.state) {
+    if simulation.fits(&saved.state) {
         return Ok(saved);
     }
     Err(refuse(CheckpointError::Damaged("its state does not fit the model".to_owned())))
-}
-
-/// Whether all indices and lengths of a state are those of the model.
-fn fits(simulation: &Simulation, state: &State) -> bool {
-    let (slope, own) = (simulation.slope(), simulation.state());
-    let covers = slope.covers.cover_count();
-    let boundary = &slope.boundary;
-    (state.stage as usize) < simulation.case().stages.len()
-        && [state.displacement.len(), state.velocity.len()] == [covers; 2]
-        && [&state.stage_displacement, &state.stage_force].iter().all(|v| v.is_empty() || v.len() == covers)
-        && state.support_force.len() == own.support_force.len()
-        && state.support_rest.len() == own.support_rest.len()
-        && state.fix_active.len() == own.fix_active.len()
-        && state.removed.len() == own.removed.len()
-        && state.laws.len() == own.laws.len()
-        && state.law_switch.len() == own.law_switch.len()
-        && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
-        && state.contacts.iter().all(|c| {
-            (c.node as usize) < boundary.node_count()
-                && (c.edge as usize) < boundary.len()
-                && (c.side as usize) < boundary.side_first.len()
-        })
 }
 
 impl<'a> Driver<'a> {

@@ -3,6 +3,7 @@
 
 mod checks;
 mod loads;
+mod ports;
 mod stages;
 
 use thiserror::Error;
@@ -47,6 +48,10 @@ impl Case {
         if let Some(stress) = &self.in_situ {
             in_situ(&root.field("in_situ"), stress)?;
         }
+        if let Some(water) = &self.water {
+            ports::validate_water(&root.field("water"), water)?;
+        }
+        ports::validate_ports(&root.field("port"), &self.ports)?;
         stages::validate_stages(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
         output(&root.field("output"), &self.output)?;
@@ -264,7 +269,10 @@ fn solver(key: &Key, solver: &Solver) -> Check {
     number(key, "shear_ratio", solver.shear_ratio, Range::above(0.0).to(10.0), "", "0.5 is the default")?;
     number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
     number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
-    whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "8 is the default")?;
-    number(key, "penetration_limit", solver.penetration_limit, share, "", "0.5 is the default")?;
+    whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "100 is the default")?;
+    number(key, "penetration_limit", solver.penetration_limit, share, "", "0.2 is the default")?;
+    let length = Range::above(0.0).to(COORDINATE_MAX);
+    let hint = "leave it out for the mesh size";
+    optional(key, "failure_displacement", solver.failure_displacement, length, "m", hint)?;
     whole(key, "memory_limit", solver.memory_limit, (1, u64::MAX), "8589934592 (8 GiB) is the default")
 }

@@ -1,0 +1,50 @@
+//! What a host is told when something cannot be done. The model is then as it was before the call.
+
+use crate::io::CaseError;
+use crate::io::checkpoint::CheckpointError;
+use crate::model::case::Invalid;
+use crate::step::StepError;
+
+/// Why a call did nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum CosimulationError {
+    /// The case cannot be used.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A stage of the case cannot begin.
+    #[error("{0}")]
+    Stage(Invalid),
+    /// A value is not finite or out of range, or names something that does not exist.
+    #[error("{name}: is {value}, must be {limit}; {remedy}")]
+    Value {
+        /// What was set.
+        name: String,
+        /// The value.
+        value: String,
+        /// What it must be.
+        limit: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A communication step does not begin where the model stands.
+    #[error("t: is {given} s, must be the time of the model, {own} s; step from there, or restore a saved state")]
+    Time {
+        /// Start that the host gave (s).
+        given: f64,
+        /// Time of the model (s).
+        own: f64,
+    },
+    /// The step failed numerically.
+    #[error("{0}; the model has been rolled back: take a smaller load step, or look at the block")]
+    Step(#[from] StepError),
+    /// A saved state cannot be used.
+    #[error(transparent)]
+    State(#[from] CheckpointError),
+}
+
+impl CosimulationError {
+    /// The error of a value.
+    pub(super) fn value(name: impl Into<String>, value: impl ToString, limit: &str, remedy: &'static str) -> Self {
+        Self::Value { name: name.into(), value: value.to_string(), limit: limit.into(), remedy }
+    }
+}

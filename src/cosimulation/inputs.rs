@@ -1,0 +1,155 @@
+//! What a host can set. Every value is checked, holds until it is set anew, and is part of saved states.
+//!
+//! A value that is set acts from the start of the next communication step on, or is reached at its end by
+//! [`Interpolation::Linear`](super::Interpolation). During the ramp of a first static stage all inputs grow with gravity.
+
+use crate::geometry::Vector;
+use crate::state::{Inputs, PortKind};
+
+use super::{Cosimulation, CosimulationError};
+
+/// Largest magnitude of any input, far beyond all physics: sums of such values stay finite.
+const VALUE_MAX: f64 = 1e15;
+/// Largest acceleration (m/s²).
+const ACCELERATION_MAX: f64 = 1e4;
+/// Largest height of water (m).
+const LEVEL_MAX: f64 = 1e9;
+/// Largest strength factor.
+const FACTOR_MAX: f64 = 1e6;
+
+impl Cosimulation {
+    /// Sets gravity (m/s², y up: the standard is (0, −9.81)).
+    ///
+    /// # Errors
+    /// A value that is not finite or too large.
+    pub fn set_gravity(&mut self, gravity: Vector) -> Result<(), CosimulationError> {
+        vector("gravity", gravity, ACCELERATION_MAX, "m/s²")?;
+        self.set(|inputs| replace(&mut inputs.gravity, gravity));
+        Ok(())
+    }
+
+    /// Sets the acceleration of the base (m/s²). Displacements and velocities are relative to the base, and all rock
+    /// feels the opposite acceleration.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large.
+    pub fn set_base_acceleration(&mut self, acceleration: Vector) -> Result<(), CosimulationError> {
+        vector("base_acceleration", acceleration, ACCELERATION_MAX, "m/s²")?;
+        self.set(|inputs| replace(&mut inputs.base_acceleration, acceleration));
+        Ok(())
+    }
+
+    /// Sets the height y of the water surface (m); the case must have `[water]`.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a case without water.
+    pub fn set_water_level(&mut self, level: f64) -> Result<(), CosimulationError> {
+        number("water_level", level, LEVEL_MAX, "m")?;
+        if self.simulation.slope().water.is_none() {
+            let remedy = "add `[water]` with `level` to the case";
+            return Err(CosimulationError::value("water_level", level, "that of a case with water", remedy));
+        }
+        self.set(|inputs| replace(&mut inputs.water_level, level));
+        Ok(())
+    }
+
+    /// Sets the factor by which cohesion, tan φ and tensile strength of all joints are multiplied (1 at the start).
+    ///
+    /// # Errors
+    /// A value that is not finite, negative or too large.
+    pub fn set_strength_factor(&mut self, factor: f64) -> Result<(), CosimulationError> {
+        if !(0.0..=FACTOR_MAX).contains(&factor) {
+            let remedy = "1 leaves the strength as in the case";
+            return Err(CosimulationError::value("strength_factor", factor, "at least 0 and at most 1e6", remedy));
+        }
+        self.set(|inputs| replace(&mut inputs.strength_factor, factor));
+        Ok(())
+    }
+
+    /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise).
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a block that does not exist.
+    pub fn set_block_force(&mut self, block: u32, force: Vector, moment: f64) -> Result<(), CosimulationError> {
+        self.check_block(block)?;
+        vector(&format!("force on block {block}"), force, VALUE_MAX, "N/m")?;
+        number(&format!("moment on block {block}"), moment, VALUE_MAX, "N·m/m")?;
+        let k = block as usize;
+        self.set(|inputs| {
+            replace(&mut inputs.block_force[k], force) | replace(&mut inputs.block_moment[k], moment)
+        });
+        Ok(())
+    }
+
+    /// Sets traction (Pa, global axes, per reference length) on the boundary of a port.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a port that does not exist or is no boundary.
+    pub fn set_boundary_traction(&mut self, port: usize, traction: Vector) -> Result<(), CosimulationError> {
+        let name = self.check_port(port, &[PortKind::Boundary], "a port of a boundary")?;
+        vector(&format!("traction on port {name}"), traction, VALUE_MAX, "Pa")?;
+        self.set(|inputs| replace(&mut inputs.port_traction[port], traction));
+        Ok(())
+    }
+
+    /// Sets fluid pressure (Pa, pushing into the rock) on the boundary, or on both faces of the joints, of a port.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a port that does not exist or is a block.
+    pub fn set_pressure(&mut self, port: usize, pressure: f64) -> Result<(), CosimulationError> {
+        let kinds = [PortKind::Boundary, PortKind::Joint];
+        let name = self.check_port(port, &kinds, "a port of a boundary or of joints")?;
+        number(&format!("pressure on port {name}"), pressure, VALUE_MAX, "Pa")?;
+        self.set(|inputs| replace(&mut inputs.port_pressure[port], pressure));
+        Ok(())
+    }
+
+    /// Checks that a block exists.
+    pub(super) fn check_block(&self, block: u32) -> Result<(), CosimulationError> {
+        let count = self.simulation.slope().covers.block_count();
+        if (block as usize) < count {
+            return Ok(());
+        }
+        let limit = format!("less than the number of blocks, {count}");
+        Err(CosimulationError::value("block", block, &limit, "ask for the states of the blocks to see their ids"))
+    }
+
+    fn check_port(&self, port: usize, kinds: &[PortKind], what: &str) -> Result<String, CosimulationError> {
+        match self.ports().get(port) {
+            Some(found) if kinds.contains(&found.kind) => Ok(found.name.clone()),
+            Some(found) => Err(CosimulationError::value("port", &found.name, what, "use the input of its own kind")),
+            None => {
+                let limit = format!("less than the number of ports, {}", self.ports().len());
+                Err(CosimulationError::value("port", port, &limit, "name the place by `[[port]]` in the case"))
+            }
+        }
+    }
+
+    /// Sets inputs; `change` tells whether one is new.
+    fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
+        let drive = self.simulation.drive();
+        let was_moving = drive.is_moving();
+        drive.arrive();
+        self.standing.changed |= change(&mut drive.to) || was_moving;
+    }
+}
+
+/// Replaces a value and tells whether its bits are new.
+fn replace<T: Copy + PartialEq>(old: &mut T, new: T) -> bool {
+    let changed = *old != new;
+    *old = new;
+    changed
+}
+
+fn number(name: &str, value: f64, most: f64, unit: &str) -> Result<(), CosimulationError> {
+    if value.is_finite() && value.abs() <= most {
+        return Ok(());
+    }
+    let limit = format!("a finite number of at most {most:e} {unit} in magnitude");
+    Err(CosimulationError::value(name, format!("{value} {unit}"), &limit, "correct the value; the old one still holds"))
+}
+
+fn vector(name: &str, value: Vector, most: f64, unit: &str) -> Result<(), CosimulationError> {
+    number(&format!("{name}, x"), value.x, most, unit)?;
+    number(&format!("{name}, y"), value.y, most, unit)
+}

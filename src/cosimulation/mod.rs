@@ -1,0 +1,253 @@
+//! A model that a host drives through communication steps: inputs, transactional steps, events, ports, saved states.
+//! The C ABI and the FMUs are thin over [`Cosimulation`].
+
+mod error;
+mod inputs;
+mod interval;
+mod observe;
+mod parameter;
+mod saved;
+
+pub use crate::state::{Event, EventKind, PortKind};
+pub use error::CosimulationError;
+pub use interval::{Interval, StepInfo};
+pub use observe::{PortState, Totals};
+pub use parameter::{Parameter, ParameterError, apply, parameters};
+pub use saved::Saved;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::io::{LoadedCase, RestPlan};
+use crate::model::case::{Case, StageKind};
+use crate::model::{BlockState, Simulation};
+use crate::state::{Inputs, Port, State};
+use crate::step::{StepError, StepReport};
+
+/// Most threads of a model.
+const THREADS_MAX: usize = 1024;
+
+/// How inputs go through a communication step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interpolation {
+    /// A new value acts from the start of the next communication step on (zero-order hold).
+    #[default]
+    Hold,
+    /// A new value is reached at the end of the next communication step, linearly from the one before.
+    Linear,
+}
+
+/// Where a model stands beside its state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Standing {
+    /// Steps of all stages before time 0.
+    origin: u64,
+    /// Whether the initial equilibrium has been sought.
+    started: bool,
+    /// Whether an input has changed since the last step ended.
+    changed: bool,
+    interpolation: Interpolation,
+}
+
+/// A model in the hands of a host.
+///
+/// Time 0 is the start of the first dynamic stage: static stages before it are the initial equilibrium, which
+/// [`Cosimulation::start`] (or the first step) seeks under the inputs that were set before. A case of static stages
+/// alone starts at time 0 with the first of them. After the last stage of the case the model goes on in it.
+#[derive(Debug, Clone)]
+pub struct Cosimulation {
+    simulation: Simulation,
+    hash: String,
+    /// State at the last point of the internal grid, when the model stands between two.
+    grid: Option<Box<State>>,
+    standing: Standing,
+    /// What a failed step falls back to.
+    backup: Saved,
+    /// Threads of steps, when there is more than the caller's own.
+    pool: Option<Arc<rayon::ThreadPool>>,
+}
+
+impl Cosimulation {
+    /// Builds the model of a case.
+    ///
+    /// # Errors
+    /// The first value of the case that does not fit, with file and line.
+    pub fn new(loaded: &LoadedCase) -> Result<Self, CosimulationError> {
+        let mut simulation = Simulation::new(loaded.case.clone())
+            .map_err(|invalid| CosimulationError::Case(loaded.source.locate(&invalid.key, &invalid.message)))?;
+        simulation.set_serial(true);
+        let backup = Saved::of(simulation.state());
+        Ok(Self {
+            simulation,
+            hash: loaded.hash.clone(),
+            grid: None,
+            standing: Standing::default(),
+            backup,
+            pool: None,
+        })
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        self.simulation.case()
+    }
+
+    /// Fingerprint of the case, part of every serialised state.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// The model and its state.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Time (s) since the start of the first dynamic stage.
+    pub fn time(&self) -> f64 {
+        let state = self.simulation.state();
+        (state.step - self.standing.origin) as f64 * self.internal_step() + state.part
+    }
+
+    /// Internal step (s).
+    pub fn internal_step(&self) -> f64 {
+        self.simulation.slope().dt
+    }
+
+    /// Communication step (s) that the case suggests.
+    pub fn communication_step(&self) -> f64 {
+        self.case().solver.communication_step.unwrap_or(10.0 * self.internal_step())
+    }
+
+    /// Time (s) that the stages of the case cover together, static ones before the first dynamic one left out.
+    pub fn stop_time(&self) -> f64 {
+        stop_time(self.case())
+    }
+
+    /// Ports of the case, in its order.
+    pub fn ports(&self) -> &[Port] {
+        &self.simulation.slope().ports
+    }
+
+    /// Events so far, in order; their times count as [`Cosimulation::time`] does.
+    pub fn events(&self) -> impl ExactSizeIterator<Item = Event> + '_ {
+        let start = self.start_time();
+        self.simulation.state().events.list.iter().map(move |event| Event { time: event.time - start, ..*event })
+    }
+
+    /// Whether the initial equilibrium has been sought.
+    pub fn is_started(&self) -> bool {
+        self.standing.started
+    }
+
+    /// Seeks the initial equilibrium: runs the static stages before the first dynamic one. Does nothing later.
+    ///
+    /// # Errors
+    /// A numerical failure; the model is then as it was before.
+    pub fn start(&mut self) -> Result<(), CosimulationError> {
+        if self.standing.started {
+            return Ok(());
+        }
+        self.simulation.drive().arrive();
+        let before = self.save();
+        match self.run_initial_stages() {
+            Ok(()) => {
+                self.standing.origin = self.simulation.state().step;
+                self.standing.started = true;
+                self.standing.changed = false;
+                Ok(())
+            }
+            Err(error) => {
+                self.take(before);
+                Err(error)
+            }
+        }
+    }
+
+    fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
+        for _ in 0..initial_stages(self.case()) {
+            let plan = RestPlan::of(&self.simulation);
+            let mut last = None;
+            while !self.simulation.stage_is_over(last.as_ref()) {
+                let wanted = plan.report_due(self.simulation.state().stage_step);
+                let report = self.step(None, wanted)?;
+                last = wanted.then_some(report);
+            }
+            self.next_stage()?;
+        }
+        Ok(())
+    }
+
+    fn next_stage(&mut self) -> Result<bool, CosimulationError> {
+        let located = |invalid: crate::model::case::Invalid| CosimulationError::Stage(invalid);
+        self.simulation.next_stage().map_err(located)
+    }
+
+    /// State of every block, by id.
+    pub fn block_states(&self) -> Vec<BlockState> {
+        self.simulation.block_states()
+    }
+
+    /// Values that the host has set, or the case's own.
+    pub fn inputs(&self) -> &Inputs {
+        &self.simulation.state().drive.to
+    }
+
+    /// How inputs go through a communication step from now on.
+    pub fn set_interpolation(&mut self, interpolation: Interpolation) {
+        self.standing.interpolation = interpolation;
+    }
+
+    /// How inputs go through a communication step.
+    pub fn interpolation(&self) -> Interpolation {
+        self.standing.interpolation
+    }
+
+    /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it.
+    ///
+    /// # Errors
+    /// No thread at all, more than 1024, or threads that the system refuses.
+    pub fn set_threads(&mut self, threads: usize) -> Result<(), CosimulationError> {
+        let refuse = |limit: &str| CosimulationError::value("threads", threads, limit, "1 suits all small models");
+        if !(1..=THREADS_MAX).contains(&threads) {
+            return Err(refuse("at least 1 and at most 1024"));
+        }
+        self.pool = match threads {
+            1 => None,
+            _ => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                Some(Arc::new(pool.map_err(|error| refuse(&format!("a number that the system grants ({error})")))?))
+            }
+        };
+        self.simulation.set_serial(self.pool.is_none());
+        Ok(())
+    }
+
+    /// Advances the model by an internal step, or the `part` (s) of one, on the threads that have been set.
+    fn step(&mut self, part: Option<f64>, report: bool) -> Result<StepReport, StepError> {
+        let simulation = &mut self.simulation;
+        let mut act = || match part {
+            Some(dt) => simulation.advance_part(dt),
+            None => simulation.advance(report),
+        };
+        match &self.pool {
+            Some(pool) => pool.install(act),
+            None => act(),
+        }
+    }
+
+    /// Simulated time (s) at time 0.
+    fn start_time(&self) -> f64 {
+        self.simulation.time() - self.time()
+    }
+}
+
+/// Number of static stages before the first dynamic one; 0 when there is no dynamic one.
+fn initial_stages(case: &Case) -> usize {
+    case.stages.iter().position(|stage| stage.kind == StageKind::Dynamic).unwrap_or(0)
+}
+
+/// See [`Cosimulation::stop_time`].
+pub fn stop_time(case: &Case) -> f64 {
+    case.stages[initial_stages(case)..].iter().map(|stage| stage.duration).sum()
+}

@@ -1,0 +1,161 @@
+//! What a host can read: ports and totals. All of it follows from the state alone.
+
+use crate::contact::{Boundary, ContactHistory, ContactState};
+use crate::geometry::{Point, Vector};
+use crate::state::{EventKind, Ledger, Port, PortKind};
+
+use super::Cosimulation;
+
+/// A port as hosts see it. A block fills all but the last three; a boundary displacement, velocity and stress; joints
+/// the last three.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PortState {
+    /// Displacement of the block's mass centroid, or the mean along the boundary (m).
+    pub displacement: Vector,
+    /// Velocity of the same (m/s).
+    pub velocity: Vector,
+    /// Rotation of the block (rad, counter-clockwise).
+    pub rotation: f64,
+    /// Angular velocity of the block (rad/s).
+    pub angular_velocity: f64,
+    /// Sum of the contact forces on the block (N/m).
+    pub contact_force: Vector,
+    /// Mean stress xx, yy, xy in the block (Pa, tension positive), or in the blocks along the boundary.
+    pub stress: [f64; 3],
+    /// Sum of the normal forces across the joints (N/m, compression positive).
+    pub normal_force: f64,
+    /// Sum of the magnitudes of the shear forces along the joints (N/m).
+    pub shear_force: f64,
+    /// Largest accumulated slip of a contact (m).
+    pub slip: f64,
+}
+
+/// Sums and extremes over the whole model.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Totals {
+    /// Energies and works (J/m).
+    pub ledger: Ledger,
+    /// Largest displacement of a cover (m).
+    pub displacement_max: f64,
+    /// Largest velocity of a cover (m/s).
+    pub velocity_max: f64,
+    /// Contacts without force.
+    pub open_contacts: u32,
+    /// Contacts at their shear limit.
+    pub slipping_contacts: u32,
+    /// Contacts below their shear limit.
+    pub locked_contacts: u32,
+    /// Largest penetration of the run so far (m).
+    pub penetration_max: f64,
+    /// Net over applied force.
+    pub unbalanced: f64,
+    /// Blocks that have detached.
+    pub detached_blocks: u32,
+    /// Joints that have slipped.
+    pub slipped_joints: u32,
+    /// Blocks that have failed.
+    pub failed_blocks: u32,
+}
+
+impl Cosimulation {
+    /// State of a port; see [`Cosimulation::ports`] for their number.
+    pub fn port_state(&self, port: usize) -> PortState {
+        let port = &self.ports()[port];
+        match port.kind {
+            PortKind::Block => self.block_port(port.block),
+            PortKind::Boundary => self.boundary_port(port),
+            PortKind::Joint => self.joint_port(port),
+        }
+    }
+
+    /// Sums and extremes now.
+    pub fn totals(&self) -> Totals {
+        let (simulation, state) = (&self.simulation, self.simulation.state());
+        let report = simulation.report();
+        let most = |field: &[Vector]| field.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let contacts = |which| state.contacts.iter().filter(|contact| contact.state == which).count() as u32;
+        let events = |which| state.events.list.iter().filter(|event| event.kind == which).count() as u32;
+        Totals {
+            ledger: report.ledger,
+            displacement_max: most(&state.displacement),
+            velocity_max: most(&state.velocity),
+            open_contacts: contacts(ContactState::Open),
+            slipping_contacts: contacts(ContactState::Slip),
+            locked_contacts: contacts(ContactState::Lock),
+            penetration_max: state.counters.penetration_max,
+            unbalanced: report.unbalanced,
+            detached_blocks: events(EventKind::Detached),
+            slipped_joints: events(EventKind::Slipped),
+            failed_blocks: events(EventKind::Failed),
+        }
+    }
+
+    fn block_port(&self, block: u32) -> PortState {
+        let state = self.simulation.motion_of(block as usize);
+        let boundary = &self.simulation.slope().boundary;
+        let places = self.simulation.places();
+        let mut contact_force = Vector::zeros();
+        for contact in &self.simulation.state().contacts {
+            let [of_node, of_edge] = contact_blocks(boundary, contact);
+            let sign = f64::from(i8::from(of_node == block) - i8::from(of_edge == block));
+            if sign != 0.0 {
+                contact_force += force_on_node(boundary, &places, contact) * sign;
+            }
+        }
+        PortState {
+            displacement: state.displacement,
+            velocity: state.velocity,
+            rotation: state.rotation,
+            angular_velocity: state.angular_velocity,
+            contact_force,
+            stress: state.mean_stress,
+            ..PortState::default()
+        }
+    }
+
+    fn boundary_port(&self, port: &Port) -> PortState {
+        let (slope, state) = (self.simulation.slope(), self.simulation.state());
+        let boundary = &slope.boundary;
+        let mut mean = PortState::default();
+        let mut total = 0.0;
+        for edge in port.edges.iter().map(|&e| e as usize) {
+            let ends = [edge, boundary.after(edge)];
+            let length = (boundary.reference[ends[1]] - boundary.reference[ends[0]]).norm();
+            let sample = |field: &[Vector]| ends.map(|k| boundary.sample(k, field)).iter().sum::<Vector>() * 0.5;
+            mean.displacement += sample(&state.displacement) * length;
+            mean.velocity += sample(&state.velocity) * length;
+            let (stress, _) = self.simulation.stress_of(boundary.block[edge] as usize);
+            (0..3).for_each(|k| mean.stress[k] += stress[k] * length);
+            total += length;
+        }
+        mean.displacement /= total;
+        mean.velocity /= total;
+        mean.stress = mean.stress.map(|s| s / total);
+        mean
+    }
+
+    fn joint_port(&self, port: &Port) -> PortState {
+        let of_port = |contact: &&ContactHistory| port.edges.binary_search(&contact.edge).is_ok();
+        let mut sum = PortState::default();
+        for contact in self.simulation.state().contacts.iter().filter(of_port) {
+            sum.normal_force += contact.normal_force;
+            sum.shear_force += contact.shear_force.abs();
+            sum.slip = sum.slip.max(contact.slip);
+        }
+        sum
+    }
+}
+
+/// Blocks of node and edge of a contact.
+fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [u32; 2] {
+    let node = boundary.node_point[contact.node as usize] as usize;
+    [boundary.block[node], boundary.block[contact.edge as usize]]
+}
+
+/// Force of a contact on its node (N/m); its edge feels the opposite.
+fn force_on_node(boundary: &Boundary, places: &[Point], contact: &ContactHistory) -> Vector {
+    let edge = contact.edge as usize;
+    let along = (places[boundary.after(edge)] - places[edge]).normalize();
+    let normal = Vector::new(along.y, -along.x);
+    normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force
+}

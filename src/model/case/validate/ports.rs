@@ -1,0 +1,53 @@
+//! Checks of water and ports.
+
+use super::checks::{COORDINATE_MAX, Check, Range, fail, number, point, segment, unique};
+use crate::model::case::key::{Key, list};
+use crate::model::case::{Port, Water};
+
+/// Checks the water of a case.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_water(key: &Key, water: &Water) -> Check {
+    number(key, "level", water.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
+    number(key, "density", water.density, Range::above(0.0).to(1e5), "kg/m³", "1000 is the default")?;
+    let Some(faces) = &water.faces else { return Ok(()) };
+    faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))
+}
+
+/// Checks the ports of a case.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_ports(key: &Key, ports: &[Port]) -> Check {
+    for (i, port) in ports.iter().enumerate() {
+        validate_port(&key.index(i), port)?;
+    }
+    unique(key, "port", ports.iter().map(|port| Some(port.name.as_str())))
+}
+
+fn validate_port(key: &Key, port: &Port) -> Check {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !port.name.starts_with(|c: char| c.is_ascii_alphabetic()) || !port.name.chars().all(is_word) {
+        let message = format!(
+            "is {:?}, must begin with a letter and go on with letters, digits and underscores: it becomes part of the \
+             names of variables; rename the port",
+            port.name
+        );
+        return fail(&key.field("name"), message);
+    }
+    let places =
+        [("block", port.block.is_some()), ("boundary", port.boundary.is_some()), ("joint", port.joint.is_some())];
+    let given: Vec<&str> = places.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
+    if given.len() != 1 {
+        let message = format!(
+            "has {} places ({}), must have exactly 1 of block, boundary, joint; keep or add one",
+            given.len(),
+            list(given.iter().copied())
+        );
+        return fail(key, message);
+    }
+    port.block.as_ref().map_or(Ok(()), |place| point(&key.field("block"), place))?;
+    port.boundary.as_ref().map_or(Ok(()), |edge| segment(&key.field("boundary"), edge))?;
+    port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))
+}

@@ -1,0 +1,164 @@
+//! What a host gives a model while it runs, and how the values go through a communication step.
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Vector;
+
+use super::Slope;
+
+/// Values that a host sets; each holds until it is set anew.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inputs {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: Vector,
+    /// Acceleration of the base (m/s²); the model lives in the frame of the base, so rock feels the opposite.
+    pub base_acceleration: Vector,
+    /// Height y of the free water surface (m).
+    pub water_level: f64,
+    /// Factor on cohesion, tan φ and tensile strength of all joints.
+    pub strength_factor: f64,
+    /// Force through the centroid of each block (N/m).
+    pub block_force: Vec<Vector>,
+    /// Moment about the centroid of each block (N·m/m, counter-clockwise).
+    pub block_moment: Vec<f64>,
+    /// Traction on the boundary of each port (Pa, global axes, per reference length).
+    pub port_traction: Vec<Vector>,
+    /// Fluid pressure on the faces of each port (Pa), pushing into the rock.
+    pub port_pressure: Vec<f64>,
+}
+
+impl Inputs {
+    /// The values that the case starts with.
+    pub fn of(slope: &Slope) -> Self {
+        let (blocks, ports) = (slope.covers.block_count(), slope.ports.len());
+        Self {
+            gravity: slope.gravity,
+            base_acceleration: Vector::zeros(),
+            water_level: slope.water.as_ref().map_or(0.0, |water| water.level),
+            strength_factor: 1.0,
+            block_force: vec![Vector::zeros(); blocks],
+            block_moment: vec![0.0; blocks],
+            port_traction: vec![Vector::zeros(); ports],
+            port_pressure: vec![0.0; ports],
+        }
+    }
+
+    /// Copies without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.gravity = other.gravity;
+        self.base_acceleration = other.base_acceleration;
+        self.water_level = other.water_level;
+        self.strength_factor = other.strength_factor;
+        self.block_force.clone_from(&other.block_force);
+        self.block_moment.clone_from(&other.block_moment);
+        self.port_traction.clone_from(&other.port_traction);
+        self.port_pressure.clone_from(&other.port_pressure);
+    }
+}
+
+/// Inputs over one communication step: from one set of values to the next, linear in between.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Drive {
+    /// Values at `since`.
+    pub from: Inputs,
+    /// Values at and after `until`.
+    pub to: Inputs,
+    /// Start of the change (s).
+    pub since: f64,
+    /// End of the change (s); at or before `since` for a jump.
+    pub until: f64,
+}
+
+impl Drive {
+    /// Inputs that hold for ever.
+    pub fn hold(inputs: Inputs) -> Self {
+        Self { from: inputs.clone(), to: inputs, since: 0.0, until: 0.0 }
+    }
+
+    /// Share of the way at time `t` (s).
+    pub fn share(&self, t: f64) -> f64 {
+        if t >= self.until { 1.0 } else { ((t - self.since) / (self.until - self.since)).max(0.0) }
+    }
+
+    /// Whether the values change in time.
+    pub fn is_moving(&self) -> bool {
+        self.until > self.since
+    }
+
+    /// Ends the change at once: the values are those of `to`.
+    pub fn arrive(&mut self) {
+        if self.is_moving() {
+            self.from.copy_from(&self.to);
+            self.until = self.since;
+        }
+    }
+
+    /// Makes the values at time `t` (s) the start of what is left of the way.
+    pub fn pass(&mut self, t: f64) {
+        let share = self.share(t);
+        let (from, to) = (&mut self.from, &self.to);
+        from.gravity = mix(from.gravity, to.gravity, share);
+        from.base_acceleration = mix(from.base_acceleration, to.base_acceleration, share);
+        from.water_level = mix(from.water_level, to.water_level, share);
+        from.strength_factor = mix(from.strength_factor, to.strength_factor, share);
+        mix_all(&mut from.block_force, &to.block_force, share);
+        mix_all(&mut from.block_moment, &to.block_moment, share);
+        mix_all(&mut from.port_traction, &to.port_traction, share);
+        mix_all(&mut from.port_pressure, &to.port_pressure, share);
+        self.since = t;
+    }
+
+    /// Copies without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.from.copy_from(&other.from);
+        self.to.copy_from(&other.to);
+        (self.since, self.until) = (other.since, other.until);
+    }
+
+    /// Gravity at a share of the way (m/s²).
+    pub fn gravity(&self, share: f64) -> Vector {
+        mix(self.from.gravity, self.to.gravity, share)
+    }
+
+    /// Acceleration of the base at a share of the way (m/s²).
+    pub fn base_acceleration(&self, share: f64) -> Vector {
+        mix(self.from.base_acceleration, self.to.base_acceleration, share)
+    }
+
+    /// Water level at a share of the way (m).
+    pub fn water_level(&self, share: f64) -> f64 {
+        mix(self.from.water_level, self.to.water_level, share)
+    }
+
+    /// Strength factor at a share of the way.
+    pub fn strength_factor(&self, share: f64) -> f64 {
+        mix(self.from.strength_factor, self.to.strength_factor, share)
+    }
+
+    /// Force (N/m) and moment (N·m/m) on a block at a share of the way.
+    pub fn block(&self, block: usize, share: f64) -> (Vector, f64) {
+        let force = mix(self.from.block_force[block], self.to.block_force[block], share);
+        (force, mix(self.from.block_moment[block], self.to.block_moment[block], share))
+    }
+
+    /// Traction and pressure (Pa) of a port at a share of the way.
+    pub fn port(&self, port: usize, share: f64) -> (Vector, f64) {
+        let traction = mix(self.from.port_traction[port], self.to.port_traction[port], share);
+        (traction, mix(self.from.port_pressure[port], self.to.port_pressure[port], share))
+    }
+}
+
+/// A number or a vector.
+trait Mix: Copy + std::ops::Add<Output = Self> + std::ops::Sub<Output = Self> + std::ops::Mul<f64, Output = Self> {}
+
+impl Mix for f64 {}
+impl Mix for Vector {}
+
+/// Linear between two values, exact at the end.
+fn mix<T: Mix>(from: T, to: T, share: f64) -> T {
+    if share >= 1.0 { to } else { from + (to - from) * share }
+}
+
+fn mix_all<T: Mix>(from: &mut [T], to: &[T], share: f64) {
+    from.iter_mut().zip(to).for_each(|(from, to)| *from = mix(*from, *to, share));
+}
