@@ -188,7 +188,7 @@ impl Step<'_> {
             acceleration: self.acceleration(),
             damping: self.damping,
             dt: kick_dt,
-            grain: blocks::grain(scratch.serial),
+            grain: blocks::grain(self.scratch.serial),
         };
         pass.run(self.scratch);
         for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
