@@ -3,8 +3,7 @@
 use std::path::Path;
 
 /// Rooms of `src/` in rank order; each imports only from those before it.
-const ROOMS: [&str; 9] =
-    ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "io", "cosimulation"];
+const ROOMS: [&str; 9] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "io", "cosimulation"];
 const COLUMNS_MAX: usize = 120;
 /// Folders of programs that may print.
 const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];

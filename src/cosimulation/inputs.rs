@@ -75,9 +75,7 @@ impl Cosimulation {
         vector(&format!("force on block {block}"), force, VALUE_MAX, "N/m")?;
         number(&format!("moment on block {block}"), moment, VALUE_MAX, "N·m/m")?;
         let k = block as usize;
-        self.set(|inputs| {
-            replace(&mut inputs.block_force[k], force) | replace(&mut inputs.block_moment[k], moment)
-        });
+        self.set(|inputs| replace(&mut inputs.block_force[k], force) | replace(&mut inputs.block_moment[k], moment));
         Ok(())
     }
 

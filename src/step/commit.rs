@@ -58,7 +58,8 @@ impl Step<'_> {
     /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
     fn works(&self, dt: f64) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let pass = blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt, grain: usize::MAX };
+        let pass =
+            blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt, grain: usize::MAX };
         let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
         for contact in &scratch.contacts {

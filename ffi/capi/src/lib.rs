@@ -1,0 +1,1 @@
+//! C ABI of the engine: twin files of safe Rust and pointers.

@@ -1,0 +1,544 @@
+//! The one table of variables: both model descriptions, every getter and every setter follow it.
+
+use enmm::cosimulation::{Parameter, PortKind, parameters};
+use enmm::model::Case;
+use uuid::Uuid;
+
+/// Version of the standard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Version {
+    /// FMI 2.0.
+    Two,
+    /// FMI 3.0, which also has arrays and binaries.
+    Three,
+}
+
+/// Type of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Type {
+    /// FMI 2 `Real`, FMI 3 `Float64`.
+    Real,
+    /// FMI 2 `Integer`, FMI 3 `Int32`.
+    Integer,
+    /// `Boolean`.
+    Boolean,
+    /// FMI 3 `Binary`.
+    Binary,
+}
+
+/// Role of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Causality {
+    /// Time itself.
+    Independent,
+    /// Set before initialization ends.
+    Parameter,
+    /// Set by the importer at any communication point.
+    Input,
+    /// Read by the importer.
+    Output,
+}
+
+/// Direction of a component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Horizontal.
+    X,
+    /// Vertical, up.
+    Y,
+}
+
+/// Component of a symmetric tensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// xx.
+    Xx,
+    /// yy.
+    Yy,
+    /// xy.
+    Xy,
+}
+
+/// Output of a port, and of a block in arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Displacement (m).
+    Displacement(Axis),
+    /// Velocity (m/s).
+    Velocity(Axis),
+    /// Rotation (rad).
+    Rotation,
+    /// Angular velocity (rad/s).
+    AngularVelocity,
+    /// Sum of the contact forces (N/m).
+    ContactForce(Axis),
+    /// Mean stress (Pa).
+    Stress(Component),
+    /// Normal force across joints (N/m).
+    NormalForce,
+    /// Shear force along joints (N/m).
+    ShearForce,
+    /// Largest slip (m).
+    Slip,
+    /// Centroid now (m).
+    Centroid(Axis),
+    /// Largest penetration (m).
+    Penetration,
+    /// Contacts that carry force.
+    ContactCount,
+}
+
+/// A sum or an extreme over the whole model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Total {
+    /// Kinetic energy (J/m).
+    KineticEnergy,
+    /// Strain energy (J/m).
+    StrainEnergy,
+    /// Potential energy (J/m).
+    PotentialEnergy,
+    /// Energy in contact springs (J/m).
+    StoredEnergy,
+    /// Heat of friction (J/m).
+    FrictionHeat,
+    /// Energy taken by damping (J/m).
+    DampingLoss,
+    /// Work of loads and inputs (J/m).
+    ExternalWork,
+    /// Energy that appeared from nowhere (J/m).
+    EnergyResidual,
+    /// Largest displacement (m).
+    DisplacementMax,
+    /// Largest velocity (m/s).
+    VelocityMax,
+    /// Largest penetration so far (m).
+    PenetrationMax,
+    /// Net over applied force.
+    UnbalancedRatio,
+    /// Stability limit of the internal step (s).
+    CriticalDt,
+    /// Internal step (s).
+    InternalDt,
+    /// Contacts without force.
+    OpenContacts,
+    /// Contacts at their shear limit.
+    SlidingContacts,
+    /// Contacts below it.
+    LockedContacts,
+    /// Blocks that have detached.
+    DetachedBlocks,
+    /// Joints that have slipped.
+    SlippedJoints,
+    /// Blocks that have failed.
+    FailedBlocks,
+    /// Events so far.
+    EventCount,
+    /// Time of the last event (s); 0 when there was none.
+    LastEventTime,
+    /// Last event: 0 none, 1 block detached, 2 joint slipped, 3 block failed.
+    LastEventKind,
+    /// Block or joint of the last event; −1 when there was none, or for a contact away from joints.
+    LastEventSubject,
+}
+
+/// What a variable stands for. Indices count ports, monitors and parameters in the order of the case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Time (s).
+    Time,
+    /// The whole state as bytes.
+    Snapshot,
+    /// Property of the case, see [`Table::parameters`].
+    Parameter(usize),
+    /// Threads of a step.
+    Threads,
+    /// Whether inputs are interpolated over a communication step.
+    InterpolateInputs,
+    /// Gravity (m/s²).
+    Gravity(Axis),
+    /// Acceleration of the base (m/s²).
+    BaseAcceleration(Axis),
+    /// Height of the water (m).
+    WaterLevel,
+    /// Factor on the strength of joints.
+    StrengthFactor,
+    /// Force on the block of a port (N/m), added to that of the arrays.
+    PortForce(usize, Axis),
+    /// Moment on the block of a port (N·m/m).
+    PortMoment(usize),
+    /// Traction on a boundary (Pa).
+    PortTraction(usize, Axis),
+    /// Pressure on a boundary or in joints (Pa).
+    PortPressure(usize),
+    /// Forces on all blocks (N/m).
+    BlockForce(Axis),
+    /// Moments on all blocks (N·m/m).
+    BlockMoment,
+    /// Output of a port.
+    Port(usize, Motion),
+    /// Displacement or velocity of a monitor.
+    Monitor(usize, Motion),
+    /// Output of the whole model.
+    Total(Total),
+    /// Output of all blocks.
+    Blocks(Motion),
+}
+
+/// One variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Value reference, unique across all types.
+    pub reference: u32,
+    /// Name.
+    pub name: String,
+    /// What it is, with sign and when it acts.
+    pub description: String,
+    /// Unit name of the model description; empty for none.
+    pub unit: &'static str,
+    /// Type.
+    pub kind: Type,
+    /// Role.
+    pub causality: Causality,
+    /// Start value of a parameter or an input; a Boolean is 0 or 1.
+    pub start: Option<f64>,
+    /// Least and greatest value of a parameter.
+    pub limits: Option<(f64, f64)>,
+    /// Number of elements of an array; `None` for a scalar.
+    pub length: Option<usize>,
+    /// Name of the port that it belongs to.
+    pub port: Option<String>,
+    /// What it stands for.
+    pub quantity: Quantity,
+}
+
+impl Variable {
+    /// Number of values: those of an array, or 1.
+    pub fn size(&self) -> usize {
+        self.length.unwrap_or(1)
+    }
+}
+
+/// All variables of one FMU, ordered by value reference; parameters first, then inputs, then outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Version of the standard.
+    pub version: Version,
+    /// The variables.
+    pub variables: Vec<Variable>,
+    /// Properties of the case that are parameters.
+    pub parameters: Vec<Parameter>,
+    /// Token that ties a model description to a library and a resource.
+    pub token: String,
+}
+
+impl Table {
+    /// The variables of a case with so many blocks; `hash` is the fingerprint of the case.
+    pub fn new(case: &Case, blocks: usize, hash: &str, version: Version) -> Self {
+        let parameters = parameters(case);
+        let mut rows = Rows { variables: Vec::new(), blocks };
+        if version == Version::Three {
+            rows.push("time", "Simulated time", "s", Type::Real, Causality::Independent, Quantity::Time);
+        }
+        rows.parameters(&parameters);
+        rows.inputs(case, version);
+        rows.outputs(case, version);
+        let token = token(&rows.variables, hash, version);
+        Self { version, variables: rows.variables, parameters, token }
+    }
+
+    /// The variable with a value reference.
+    pub fn get(&self, reference: u32) -> Option<&Variable> {
+        self.variables.get(reference as usize)
+    }
+
+    /// The quantity whose value is the time derivative of another, for FMI output derivatives.
+    pub fn derivative(quantity: Quantity) -> Option<Quantity> {
+        let of_motion = |motion| match motion {
+            Motion::Displacement(axis) => Some(Motion::Velocity(axis)),
+            Motion::Rotation => Some(Motion::AngularVelocity),
+            _ => None,
+        };
+        match quantity {
+            Quantity::Port(port, motion) => of_motion(motion).map(|motion| Quantity::Port(port, motion)),
+            Quantity::Monitor(k, motion) => of_motion(motion).map(|motion| Quantity::Monitor(k, motion)),
+            Quantity::Blocks(motion) => of_motion(motion).map(Quantity::Blocks),
+            _ => None,
+        }
+    }
+}
+
+/// UUID version 5 of the interface and the case behind it.
+fn token(variables: &[Variable], hash: &str, version: Version) -> String {
+    let mut text = format!("enmm {} {version:?} {hash}\n", enmm::io::checkpoint::engine_version());
+    for v in variables {
+        text += &format!(
+            "{} {} {:?} {:?} {:?} {:?} {}\n",
+            v.reference, v.name, v.kind, v.causality, v.start, v.length, v.unit
+        );
+    }
+    Uuid::new_v5(&Uuid::NAMESPACE_OID, text.as_bytes()).to_string()
+}
+
+/// The kind of a port of a case.
+pub fn port_kind(port: &enmm::model::case::Port) -> PortKind {
+    match (port.boundary, port.joint) {
+        (Some(_), _) => PortKind::Boundary,
+        (_, Some(_)) => PortKind::Joint,
+        _ => PortKind::Block,
+    }
+}
+
+/// Rows in the making.
+struct Rows {
+    variables: Vec<Variable>,
+    blocks: usize,
+}
+
+const ACTS: &str = "acts from the start of the next step on, or linearly over it with interpolate_inputs";
+
+impl Rows {
+    fn push(
+        &mut self,
+        name: &str,
+        what: &str,
+        unit: &'static str,
+        kind: Type,
+        causality: Causality,
+        quantity: Quantity,
+    ) {
+        self.variables.push(Variable {
+            reference: self.variables.len() as u32,
+            name: name.to_owned(),
+            description: what.to_owned(),
+            unit,
+            kind,
+            causality,
+            start: None,
+            limits: None,
+            length: None,
+            port: None,
+            quantity,
+        });
+    }
+
+    fn last(&mut self) -> &mut Variable {
+        let last = self.variables.len() - 1;
+        &mut self.variables[last]
+    }
+
+    fn parameter(
+        &mut self,
+        name: &str,
+        what: &str,
+        unit: &'static str,
+        kind: Type,
+        quantity: Quantity,
+    ) -> &mut Variable {
+        self.push(name, what, unit, kind, Causality::Parameter, quantity);
+        self.last()
+    }
+
+    fn input(&mut self, name: &str, what: &str, unit: &'static str, start: f64, quantity: Quantity) -> &mut Variable {
+        self.push(name, &format!("{what}; {ACTS}"), unit, Type::Real, Causality::Input, quantity);
+        self.last().start = Some(start);
+        self.last()
+    }
+
+    fn output(&mut self, name: &str, what: &str, unit: &'static str, quantity: Quantity) -> &mut Variable {
+        self.push(name, what, unit, Type::Real, Causality::Output, quantity);
+        self.last()
+    }
+
+    fn parameters(&mut self, parameters: &[Parameter]) {
+        for (k, p) in parameters.iter().enumerate() {
+            let row = self.parameter(&p.name, &p.description, p.unit, Type::Real, Quantity::Parameter(k));
+            (row.start, row.limits) = (Some(p.start), Some((p.low, p.high)));
+        }
+        let what = "Threads that a step uses; results do not depend on it";
+        let row = self.parameter("threads", what, "", Type::Integer, Quantity::Threads);
+        (row.start, row.limits) = (Some(1.0), Some((1.0, 1024.0)));
+        let what = "Whether a new input is reached linearly at the end of the next step instead of holding over it";
+        self.parameter("interpolate_inputs", what, "", Type::Boolean, Quantity::InterpolateInputs).start = Some(0.0);
+    }
+
+    fn inputs(&mut self, case: &Case, version: Version) {
+        let gravity = [case.gravity.x, case.gravity.y];
+        for (axis, letter, start) in [(Axis::X, "x", gravity[0]), (Axis::Y, "y", gravity[1])] {
+            let what = format!("Acceleration of gravity, {letter}, y up");
+            self.input(&format!("gravity_{letter}"), &what, "m/s2", start, Quantity::Gravity(axis));
+        }
+        for (axis, letter) in AXES {
+            let what = format!("Acceleration of the base, {letter}; rock feels the opposite");
+            let quantity = Quantity::BaseAcceleration(axis);
+            self.input(&format!("base_acceleration_{letter}"), &what, "m/s2", 0.0, quantity);
+        }
+        if let Some(water) = &case.water {
+            let what = "Height y of the free water surface";
+            self.input("water_level", what, "m", water.level, Quantity::WaterLevel);
+        }
+        let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
+        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
+        for (k, port) in case.ports.iter().enumerate() {
+            self.port_inputs(k, &port.name, port_kind(port));
+        }
+        if version == Version::Three {
+            self.block_inputs();
+        }
+    }
+
+    fn port_inputs(&mut self, k: usize, port: &str, kind: PortKind) {
+        let mut add = |word: &str, what: String, unit, quantity| {
+            self.input(&format!("{port}.{word}"), &what, unit, 0.0, quantity).port = Some(port.to_owned());
+        };
+        for (axis, letter) in AXES {
+            if kind == PortKind::Block {
+                let what = format!("Force per metre of depth through the centroid of the block, {letter}");
+                add(&format!("force_{letter}"), what, "N/m", Quantity::PortForce(k, axis));
+            }
+            if kind == PortKind::Boundary {
+                let what = format!("Traction on the boundary, {letter}, global axes, per reference length");
+                add(&format!("traction_{letter}"), what, "Pa", Quantity::PortTraction(k, axis));
+            }
+        }
+        match kind {
+            PortKind::Block => {
+                let what = "Moment per metre of depth about the centroid of the block, counter-clockwise";
+                add("moment", what.to_owned(), "N.m/m", Quantity::PortMoment(k));
+            }
+            PortKind::Boundary => {
+                let what = "Pressure on the boundary, pushing into the rock";
+                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+            }
+            PortKind::Joint => {
+                let what = "Fluid pressure in the joints, pushing on both faces";
+                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+            }
+        }
+    }
+
+    fn block_inputs(&mut self) {
+        let blocks = self.blocks;
+        for (axis, letter) in AXES {
+            let what = format!("Force per metre of depth through the centroid of every block, {letter}");
+            let name = format!("block_force_{letter}");
+            self.input(&name, &what, "N/m", 0.0, Quantity::BlockForce(axis)).length = Some(blocks);
+        }
+        let what = "Moment per metre of depth about the centroid of every block, counter-clockwise";
+        self.input("block_moment", what, "N.m/m", 0.0, Quantity::BlockMoment).length = Some(blocks);
+    }
+
+    fn outputs(&mut self, case: &Case, version: Version) {
+        for (k, port) in case.ports.iter().enumerate() {
+            let motions = port_motions(port_kind(port));
+            for &(motion, word, what, unit) in motions {
+                let name = format!("{}.{word}", port.name);
+                self.output(&name, what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
+            }
+        }
+        for (k, monitor) in case.monitors.iter().enumerate() {
+            for &(motion, word, what, unit) in &PORT_MOTIONS[..4] {
+                let name = format!("monitor.{}.{word}", monitor.name);
+                self.output(&name, what, unit, Quantity::Monitor(k, motion));
+            }
+        }
+        for &(total, name, what, unit, kind) in TOTALS {
+            self.output(name, what, unit, Quantity::Total(total)).kind = kind;
+        }
+        if version == Version::Three {
+            self.block_outputs();
+        }
+    }
+
+    fn block_outputs(&mut self) {
+        let blocks = self.blocks;
+        for &(motion, word, what, unit) in BLOCK_MOTIONS {
+            let row =
+                self.output(&format!("block_{word}"), &format!("{what}, every block"), unit, Quantity::Blocks(motion));
+            row.length = Some(blocks);
+            if motion == Motion::ContactCount {
+                row.kind = Type::Integer;
+            }
+        }
+        let what = "The whole state as bytes; enmm_state_deserialize reads it";
+        self.output("snapshot", what, "", Quantity::Snapshot).kind = Type::Binary;
+    }
+}
+
+const AXES: [(Axis, &str); 2] = [(Axis::X, "x"), (Axis::Y, "y")];
+
+type Row = (Motion, &'static str, &'static str, &'static str);
+
+/// Outputs of a block port; the first four also of monitors.
+const PORT_MOTIONS: [Row; 11] = [
+    (Motion::Displacement(Axis::X), "displacement_x", "Displacement, x", "m"),
+    (Motion::Displacement(Axis::Y), "displacement_y", "Displacement, y up", "m"),
+    (Motion::Velocity(Axis::X), "velocity_x", "Velocity, x", "m/s"),
+    (Motion::Velocity(Axis::Y), "velocity_y", "Velocity, y up", "m/s"),
+    (Motion::Stress(Component::Xx), "stress_xx", "Mean stress xx, tension positive", "Pa"),
+    (Motion::Stress(Component::Yy), "stress_yy", "Mean stress yy, tension positive", "Pa"),
+    (Motion::Stress(Component::Xy), "stress_xy", "Mean stress xy", "Pa"),
+    (Motion::Rotation, "rotation", "Rotation, counter-clockwise", "rad"),
+    (Motion::AngularVelocity, "angular_velocity", "Angular velocity, counter-clockwise", "rad/s"),
+    (Motion::ContactForce(Axis::X), "contact_force_x", "Sum of the contact forces on the block per metre, x", "N/m"),
+    (Motion::ContactForce(Axis::Y), "contact_force_y", "Sum of the contact forces on the block per metre, y", "N/m"),
+];
+
+const JOINT_MOTIONS: [Row; 3] = [
+    (Motion::NormalForce, "normal_force", "Sum of the normal forces across the joints, compression positive", "N/m"),
+    (Motion::ShearForce, "shear_force", "Sum of the magnitudes of the shear forces along the joints", "N/m"),
+    (Motion::Slip, "slip", "Largest accumulated slip along the joints", "m"),
+];
+
+const BLOCK_MOTIONS: &[Row] = &[
+    (Motion::Centroid(Axis::X), "x", "Centroid now, x", "m"),
+    (Motion::Centroid(Axis::Y), "y", "Centroid now, y up", "m"),
+    (Motion::Displacement(Axis::X), "displacement_x", "Displacement, x", "m"),
+    (Motion::Displacement(Axis::Y), "displacement_y", "Displacement, y up", "m"),
+    (Motion::Rotation, "rotation", "Rotation, counter-clockwise", "rad"),
+    (Motion::Velocity(Axis::X), "velocity_x", "Velocity, x", "m/s"),
+    (Motion::Velocity(Axis::Y), "velocity_y", "Velocity, y up", "m/s"),
+    (Motion::AngularVelocity, "angular_velocity", "Angular velocity, counter-clockwise", "rad/s"),
+    (Motion::Stress(Component::Xx), "stress_xx", "Mean stress xx, tension positive", "Pa"),
+    (Motion::Stress(Component::Yy), "stress_yy", "Mean stress yy, tension positive", "Pa"),
+    (Motion::Stress(Component::Xy), "stress_xy", "Mean stress xy", "Pa"),
+    (Motion::Penetration, "penetration", "Largest penetration", "m"),
+    (Motion::ContactCount, "contact_count", "Contacts that carry force", ""),
+];
+
+/// Outputs of a port of a kind.
+fn port_motions(kind: PortKind) -> &'static [Row] {
+    match kind {
+        PortKind::Block => &PORT_MOTIONS,
+        PortKind::Boundary => &PORT_MOTIONS[..7],
+        PortKind::Joint => &JOINT_MOTIONS,
+    }
+}
+
+type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
+
+const TOTALS: &[TotalRow] = &[
+    (Total::KineticEnergy, "kinetic_energy", "Kinetic energy per metre of depth", "J/m", Type::Real),
+    (Total::StrainEnergy, "strain_energy", "Strain energy per metre of depth", "J/m", Type::Real),
+    (Total::PotentialEnergy, "potential_energy", "Potential energy of gravity since the start", "J/m", Type::Real),
+    (Total::StoredEnergy, "stored_energy", "Energy in contact and support springs", "J/m", Type::Real),
+    (Total::FrictionHeat, "friction_heat", "Energy turned into heat by slip", "J/m", Type::Real),
+    (Total::DampingLoss, "damping_loss", "Energy taken by damping", "J/m", Type::Real),
+    (Total::ExternalWork, "external_work", "Work of loads and inputs", "J/m", Type::Real),
+    (Total::EnergyResidual, "energy_residual", "Energy that appeared from nowhere", "J/m", Type::Real),
+    (Total::DisplacementMax, "displacement_max", "Largest displacement", "m", Type::Real),
+    (Total::VelocityMax, "velocity_max", "Largest velocity", "m/s", Type::Real),
+    (Total::PenetrationMax, "penetration_max", "Largest penetration so far", "m", Type::Real),
+    (Total::UnbalancedRatio, "unbalanced_ratio", "Net over applied force", "", Type::Real),
+    (Total::CriticalDt, "critical_dt", "Stability limit of the internal step", "s", Type::Real),
+    (Total::InternalDt, "internal_dt", "Internal step", "s", Type::Real),
+    (Total::LastEventTime, "last_event_time", "Time of the last event, 0 if there was none", "s", Type::Real),
+    (Total::OpenContacts, "open_contacts", "Contacts without force", "", Type::Integer),
+    (Total::SlidingContacts, "sliding_contacts", "Contacts at their shear limit", "", Type::Integer),
+    (Total::LockedContacts, "locked_contacts", "Contacts below their shear limit", "", Type::Integer),
+    (Total::DetachedBlocks, "detached_blocks", "Blocks that have detached", "", Type::Integer),
+    (Total::SlippedJoints, "slipped_joints", "Joints that have slipped", "", Type::Integer),
+    (Total::FailedBlocks, "failed_blocks", "Blocks that have failed", "", Type::Integer),
+    (Total::EventCount, "event_count", "Events so far", "", Type::Integer),
+    (Total::LastEventKind, "last_event_kind", "Last event: 0 none, 1 detached, 2 slipped, 3 failed", "", Type::Integer),
+    (Total::LastEventSubject, "last_event_subject", "Block or joint of the last event, -1 if none", "", Type::Integer),
+];

@@ -1,0 +1,1 @@
+//! FMI 2 co-simulation entry points over `enmm_fmi`.
