@@ -184,12 +184,20 @@ pub enum Quantity {
     Blocks(Motion),
 }
 
+impl Quantity {
+    /// Whether the value is a function of the state of the model alone: an input that is set does not change it before
+    /// the next step. What blocks, boundaries, joints and monitors do is such.
+    pub fn is_of_state(self) -> bool {
+        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_))
+    }
+}
+
 /// One variable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
     /// Value reference, unique across all types.
     pub reference: u32,
-    /// Name.
+    /// Name, without control characters.
     pub name: String,
     /// What it is, with sign and when it acts.
     pub description: String,
@@ -201,7 +209,7 @@ pub struct Variable {
     pub causality: Causality,
     /// Start value of a parameter or an input; a Boolean is 0 or 1.
     pub start: Option<f64>,
-    /// Least and greatest value of a parameter.
+    /// Least and greatest value, for parameters and a few inputs.
     pub limits: Option<(f64, f64)>,
     /// Number of elements of an array; `None` for a scalar.
     pub length: Option<usize>,
@@ -288,6 +296,13 @@ pub fn port_kind(port: &enmm::model::case::Port) -> PortKind {
     }
 }
 
+/// The name with control characters, which no importer can take, and their escape sign written out: `\u{9}` for a tab.
+/// Different names stay different.
+fn plain(name: &str) -> String {
+    let bad = |c: char| c.is_control() || matches!(c, '\\' | '\u{fffe}' | '\u{ffff}');
+    name.chars().map(|c| if bad(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
+}
+
 /// Rows in the making.
 struct Rows {
     variables: Vec<Variable>,
@@ -308,7 +323,7 @@ impl Rows {
     ) {
         self.variables.push(Variable {
             reference: self.variables.len() as u32,
-            name: name.to_owned(),
+            name: plain(name),
             description: what.to_owned(),
             unit,
             kind,
@@ -352,7 +367,8 @@ impl Rows {
     fn parameters(&mut self, parameters: &[Parameter]) {
         for (k, p) in parameters.iter().enumerate() {
             let row = self.parameter(&p.name, &p.description, p.unit, Type::Real, Quantity::Parameter(k));
-            (row.start, row.limits) = (Some(p.start), Some((p.low, p.high)));
+            // The value of the case itself is always allowed.
+            (row.start, row.limits) = (Some(p.start), Some((p.low.min(p.start), p.high.max(p.start))));
         }
         let what = "Threads that a step uses; results do not depend on it";
         let row = self.parameter("threads", what, "", Type::Integer, Quantity::Threads);
@@ -377,7 +393,7 @@ impl Rows {
             self.input("water_level", what, "m", water.level, Quantity::WaterLevel);
         }
         let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
-        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
+        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor).limits = Some((0.0, 1e6));
         for (k, port) in case.ports.iter().enumerate() {
             self.port_inputs(k, &port.name, port_kind(port));
         }
