@@ -39,11 +39,17 @@ impl Facts {
             identifier: identifier.to_owned(),
             summary: format!("Jointed rock slope of {blocks} blocks, explicit numerical manifold method"),
             stop_time: model.stop_time(),
-            communication_step: model.communication_step(),
-            internal_step: model.internal_step(),
+            communication_step: short(model.communication_step()),
+            internal_step: short(model.internal_step()),
             blocks,
         }
     }
+}
+
+/// The value without the last digits of a rounding error: 0.012 for 0.011999999999999999.
+fn short(value: f64) -> f64 {
+    let rounded = format!("{value:.13e}").parse().unwrap_or(value);
+    if number(rounded).len() + 3 < number(value).len() { rounded } else { value }
 }
 
 /// Name and version of the tool that made the FMU.
@@ -101,9 +107,9 @@ pub fn causality(variable: &Variable) -> String {
 
 /// The word for a variability in both versions.
 pub fn variability(variable: &Variable) -> String {
-    match (variable.causality, variable.kind) {
-        (Causality::Parameter, _) => "fixed",
-        (_, Type::Real) => "continuous",
+    match variable.causality {
+        Causality::Parameter => "fixed",
+        _ if variable.is_continuous() => "continuous",
         _ => "discrete",
     }
     .to_owned()

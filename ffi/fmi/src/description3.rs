@@ -68,7 +68,7 @@ fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
         ("variability", variability(variable)),
     ];
     // Only continuous variables may be asked for in an intermediate update.
-    if variable.causality == Causality::Output && variable.kind == Type::Real {
+    if variable.causality == Causality::Output && variable.is_continuous() {
         attributes.push(("intermediateUpdate", "true".to_owned()));
     }
     attributes.extend(initial(variable));

@@ -27,7 +27,8 @@ pub fn page(model: &Cosimulation, table: &Table, facts: &Facts) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
          <style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
          <p>{}. FMI {number} co-simulation, packed by {}; no file outside this FMU is needed.</p>\n\
-         <p><img src=\"{PICTURE}\" alt=\"The slope before it moves\"></p>\n",
+         <p><img src=\"{PICTURE}\" alt=\"The slope before it moves\"><br>\n\
+         The slope before it moves; the rings are monitors and ports.</p>\n",
         text(&facts.summary),
         tool(),
     );
@@ -104,7 +105,7 @@ fn states(version: Version) -> String {
             "A step returns early, if the host allows it, at the moment a block detaches, a joint first slips or a block \
              fails."
                 .to_owned(),
-            "Intermediate updates come at internal steps; all outputs of type Float64 can then be read.".to_owned(),
+            "Intermediate updates come at internal steps; all continuous outputs can then be read.".to_owned(),
             "<code>snapshot</code> is the whole state as bytes. Index k of an array is block k of the table below."
                 .to_owned(),
         ]);

@@ -220,6 +220,12 @@ pub struct Variable {
 }
 
 impl Variable {
+    /// Whether the value may change at any time, and not only at events: a number with decimals that is no parameter.
+    pub fn is_continuous(&self) -> bool {
+        let jumps = matches!(self.quantity, Quantity::Total(Total::LastEventTime));
+        self.kind == Type::Real && self.causality != Causality::Parameter && !jumps
+    }
+
     /// Number of values: those of an array, or 1.
     pub fn size(&self) -> usize {
         self.length.unwrap_or(1)
@@ -378,11 +384,10 @@ impl Rows {
     }
 
     fn inputs(&mut self, case: &Case, version: Version) {
-        let gravity = [case.gravity.x, case.gravity.y];
-        for (axis, letter, start) in [(Axis::X, "x", gravity[0]), (Axis::Y, "y", gravity[1])] {
-            let what = format!("Acceleration of gravity, {letter}, y up");
-            self.input(&format!("gravity_{letter}"), &what, "m/s2", start, Quantity::Gravity(axis));
-        }
+        let what = "Acceleration of gravity, x";
+        self.input("gravity_x", what, "m/s2", case.gravity.x, Quantity::Gravity(Axis::X));
+        let what = "Acceleration of gravity, y up: -9.81 on earth";
+        self.input("gravity_y", what, "m/s2", case.gravity.y, Quantity::Gravity(Axis::Y));
         for (axis, letter) in AXES {
             let what = format!("Acceleration of the base, {letter}; rock feels the opposite");
             let quantity = Quantity::BaseAcceleration(axis);
@@ -404,6 +409,7 @@ impl Rows {
 
     fn port_inputs(&mut self, k: usize, port: &str, kind: PortKind) {
         let mut add = |word: &str, what: String, unit, quantity| {
+            let what = format!("{what}, port {port}");
             self.input(&format!("{port}.{word}"), &what, unit, 0.0, quantity).port = Some(port.to_owned());
         };
         for (axis, letter) in AXES {
@@ -448,13 +454,15 @@ impl Rows {
             let motions = port_motions(port_kind(port));
             for &(motion, word, what, unit) in motions {
                 let name = format!("{}.{word}", port.name);
-                self.output(&name, what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
+                let what = format!("{what}, port {}", port.name);
+                self.output(&name, &what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
             }
         }
         for (k, monitor) in case.monitors.iter().enumerate() {
             for &(motion, word, what, unit) in &PORT_MOTIONS[..4] {
                 let name = format!("monitor.{}.{word}", monitor.name);
-                self.output(&name, what, unit, Quantity::Monitor(k, motion));
+                let what = format!("{what}, monitor {}", monitor.name);
+                self.output(&name, &what, unit, Quantity::Monitor(k, motion));
             }
         }
         for &(total, name, what, unit, kind) in TOTALS {
