@@ -59,9 +59,9 @@ pub fn tool() -> String {
 
 /// Writes the units that the table uses.
 pub fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
-    let used = |name: &str| table.variables.iter().any(|variable| variable.unit == name);
+    let used = |unit| table.variables.iter().any(|variable| unit::of(variable) == Some(unit));
     xml.element("UnitDefinitions", &[], |xml| {
-        for unit in unit::UNITS.iter().filter(|unit| used(unit.name)) {
+        for unit in unit::UNITS.iter().filter(|unit| used(*unit)) {
             xml.element("Unit", &[("name", unit.name.to_owned())], |xml| {
                 let bases = ["kg", "m", "s", "rad"].into_iter().zip(unit.exponents);
                 let powers: Vec<_> =
@@ -127,7 +127,7 @@ pub fn initial(variable: &Variable) -> Option<(&'static str, String)> {
 /// Quantity, unit, display unit, least, greatest and start value, as far as the variable has them.
 pub fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
     let mut attributes = Vec::new();
-    if let Some(unit) = unit::of(variable.unit) {
+    if let Some(unit) = unit::of(variable) {
         attributes.push(("quantity", unit.quantity.to_owned()));
         attributes.push(("unit", unit.name.to_owned()));
     }

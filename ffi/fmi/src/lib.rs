@@ -1,4 +1,5 @@
-//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, and how an FMU is packed.
+//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU,
+//! and how an FMU is packed.
 #![forbid(unsafe_code)]
 
 mod description;

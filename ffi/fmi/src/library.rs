@@ -30,8 +30,8 @@ pub fn file_name(version: Version) -> String {
     format!("{DLL_PREFIX}{}{DLL_SUFFIX}", package(version).1)
 }
 
-/// Finds the library of a version for the program at `program`: beside it, in `deps` there, or in `../lib`. Of the first
-/// two, which one build makes, the newer: cargo does not always renew both.
+/// Finds the library of a version for the program at `program`: beside it, in `deps` there, or in `../lib`. Of the
+/// first two the newer is taken: cargo does not always renew both.
 ///
 /// # Errors
 /// When there is none, with the folders that were searched.

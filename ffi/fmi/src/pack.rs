@@ -110,16 +110,17 @@ fn license() -> String {
     format!(
         "The library in binaries/ was made by {} and may be used under either of the two licences below. It contains\n\
          Rust crates and the font DejaVu Sans under their own licences, all of which allow redistribution; Cargo.lock\n\
-         of the sources names them. The case in resources/ belongs to whoever wrote it.\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}",
+         of the sources names them. The case in resources/ belongs to whoever wrote it.\n\n{rule}\n\n\
+         {mit}\n{rule}\n\n{apache}",
         tool(),
         rule = "-".repeat(80),
     )
 }
 
 /// Words that C keeps for itself.
-const KEYWORDS: &str = " auto break case char const continue default do double else enum extern float for goto if inline \
-                        int long register restrict return short signed sizeof static struct switch typedef union \
-                        unsigned void volatile while ";
+const KEYWORDS: &str = " auto break case char const continue default do double else enum extern float for goto if \
+                        inline int long register restrict return short signed sizeof static struct switch \
+                        typedef union unsigned void volatile while ";
 
 /// The name of a case file, without folders and extension, as a C identifier.
 pub fn identifier(name: &str) -> String {

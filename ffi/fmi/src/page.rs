@@ -58,8 +58,8 @@ fn signs() -> String {
     let items = [
         "The model is a vertical section: x to the right, y up. Forces, moments, energies and masses are per metre of \
          depth.",
-        "Rotations and moments are counter-clockwise. Stress is positive in tension; pressure is positive when it pushes \
-         into the rock, and normal forces across joints are positive in compression.",
+        "Rotations and moments are counter-clockwise. Stress is positive in tension; pressure is positive when \
+         it pushes into the rock, and normal forces across joints are positive in compression.",
         "All values are in SI units, angles in radians.",
     ];
     section("Signs and units", &items.map(str::to_owned))
@@ -82,8 +82,9 @@ fn stepping(facts: &Facts) -> String {
          instance the suggested one, its half or its tenth. Other steps end with a part of an internal step; the next \
          one goes on from the grid."
             .to_owned(),
-        "An input acts from the start of the next step on and holds over it, or is reached linearly at its end when the \
-         parameter <code>interpolate_inputs</code> is true. Inputs of arrays and of ports on the same block add up."
+        "An input acts from the start of the next step on and holds over it, or is reached linearly at its end \
+         when the parameter <code>interpolate_inputs</code> is true. Inputs of arrays and of ports on the same \
+         block add up."
             .to_owned(),
         "Results have the same bits for every number of threads.".to_owned(),
     ];
@@ -92,8 +93,8 @@ fn stepping(facts: &Facts) -> String {
 
 fn states(version: Version) -> String {
     let mut items = vec![
-        "A step is done whole or not at all: one that fails leaves the instance as it was at its start, says why in the \
-         log, and can be tried again with another step or other inputs."
+        "A step is done whole or not at all: one that fails leaves the instance as it was at its start, says \
+         why in the log, and can be tried again with another step or other inputs."
             .to_owned(),
         "The state can be read, set, serialized and deserialized at any communication point, also in another process; \
          what follows has the same bits. A damaged state, or that of another case, is refused."
@@ -102,8 +103,8 @@ fn states(version: Version) -> String {
     ];
     if version == Version::Three {
         items.extend([
-            "A step returns early, if the host allows it, at the moment a block detaches, a joint first slips or a block \
-             fails."
+            "A step returns early, if the host allows it, at the moment a block detaches, a joint first slips \
+             or a block fails."
                 .to_owned(),
             "Intermediate updates come at internal steps; all continuous outputs can then be read.".to_owned(),
             "<code>snapshot</code> is the whole state as bytes. Index k of an array is block k of the table below."

@@ -1,5 +1,7 @@
 //! The units of the table in the terms of a model description.
 
+use crate::table::{Type, Variable};
+
 /// A unit: exponents of kg, m, s and rad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unit {
@@ -16,7 +18,8 @@ const fn unit(name: &'static str, quantity: &'static str, exponents: [i8; 4]) ->
 }
 
 /// All units of the table. Forces, moments and energies are per metre of depth.
-pub const UNITS: [Unit; 12] = [
+pub const UNITS: [Unit; 13] = [
+    unit("1", "Ratio", [0; 4]),
     unit("s", "Time", [0, 0, 1, 0]),
     unit("m", "Length", [0, 1, 0, 0]),
     unit("m/s", "Velocity", [0, 1, -1, 0]),
@@ -31,8 +34,9 @@ pub const UNITS: [Unit; 12] = [
     unit("Pa/m", "Stiffness", [1, -2, -2, 0]),
 ];
 
-/// The unit with a name; none for a number without unit.
-pub fn of(name: &str) -> Option<&'static Unit> {
+/// The unit of a variable; none for counts, marks and bytes.
+pub fn of(variable: &Variable) -> Option<&'static Unit> {
+    let name = if variable.unit.is_empty() && variable.kind == Type::Real { "1" } else { variable.unit };
     UNITS.iter().find(|unit| unit.name == name)
 }
 
