@@ -2,6 +2,7 @@
 
 use enmm::cosimulation::{Parameter, PortKind, parameters};
 use enmm::model::Case;
+use enmm::model::case::Port;
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -294,7 +295,7 @@ fn token(variables: &[Variable], hash: &str, version: Version) -> String {
 }
 
 /// The kind of a port of a case.
-pub fn port_kind(port: &enmm::model::case::Port) -> PortKind {
+pub fn port_kind(port: &Port) -> PortKind {
     match (port.boundary, port.joint) {
         (Some(_), _) => PortKind::Boundary,
         (_, Some(_)) => PortKind::Joint,
@@ -400,40 +401,44 @@ impl Rows {
         let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
         self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor).limits = Some((0.0, 1e6));
         for (k, port) in case.ports.iter().enumerate() {
-            self.port_inputs(k, &port.name, port_kind(port));
+            self.port_inputs(k, port);
         }
         if version == Version::Three {
             self.block_inputs();
         }
     }
 
-    fn port_inputs(&mut self, k: usize, port: &str, kind: PortKind) {
-        let mut add = |word: &str, what: String, unit, quantity| {
-            let what = format!("{what}, port {port}");
-            self.input(&format!("{port}.{word}"), &what, unit, 0.0, quantity).port = Some(port.to_owned());
+    fn port_inputs(&mut self, k: usize, port: &Port) {
+        let (name, kind) = (&port.name, port_kind(port));
+        let mut add = |word: &str, what: &str, unit, start: f64, quantity| {
+            let what = format!("{what}, port {name}");
+            self.input(&format!("{name}.{word}"), &what, unit, start, quantity).port = Some(name.clone());
         };
-        for (axis, letter) in AXES {
+        for ((axis, letter), component) in AXES.into_iter().zip([0, 1]) {
             if kind == PortKind::Block {
                 let what = format!("Force per metre of depth through the centroid of the block, {letter}");
-                add(&format!("force_{letter}"), what, "N/m", Quantity::PortForce(k, axis));
+                let start = port.force[component];
+                add(&format!("force_{letter}"), &what, "N/m", start, Quantity::PortForce(k, axis));
             }
             if kind == PortKind::Boundary {
                 let what = format!("Traction on the boundary, {letter}, global axes, per reference length");
-                add(&format!("traction_{letter}"), what, "Pa", Quantity::PortTraction(k, axis));
+                let start = port.traction[component];
+                add(&format!("traction_{letter}"), &what, "Pa", start, Quantity::PortTraction(k, axis));
             }
         }
+        let pressure = Quantity::PortPressure(k);
         match kind {
             PortKind::Block => {
                 let what = "Moment per metre of depth about the centroid of the block, counter-clockwise";
-                add("moment", what.to_owned(), "N.m/m", Quantity::PortMoment(k));
+                add("moment", what, "N.m/m", port.moment, Quantity::PortMoment(k));
             }
             PortKind::Boundary => {
                 let what = "Pressure on the boundary, pushing into the rock";
-                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+                add("pressure", what, "Pa", port.pressure, pressure);
             }
             PortKind::Joint => {
                 let what = "Fluid pressure in the joints, pushing on both faces";
-                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+                add("pressure", what, "Pa", port.pressure, pressure);
             }
         }
     }

@@ -8,7 +8,7 @@ use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm::io::{LoadedCase, load_case};
 use enmm_fmi::pack::{PackError, identifier, pack};
-use enmm_fmi::table::{Causality, Table, Type, Version};
+use enmm_fmi::table::{Axis, Causality, Quantity, Table, Type, Version};
 use enmm_fmi::{library, log_category, resource};
 use quick_xml::Reader;
 use quick_xml::XmlVersion;
@@ -16,8 +16,12 @@ use quick_xml::events::Event;
 
 const VERSIONS: [Version; 2] = [Version::Two, Version::Three];
 const LIBRARY: &[u8] = b"not a library";
-const CASES: [&str; 3] =
-    ["ffi/fmi/tests/cases/ports.toml", "examples/cases/block_on_incline.toml", "examples/cases/goodman_bray.toml"];
+const CASES: [&str; 4] = [
+    "ffi/fmi/tests/cases/ports.toml",
+    "examples/cases/block_on_incline.toml",
+    "examples/cases/goodman_bray.toml",
+    "examples/cases/coupled_slope.toml",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -191,7 +195,7 @@ fn every_port_is_a_terminal_with_all_its_variables() {
     let of_ports: BTreeSet<_> = table.variables.iter().filter(|v| v.port.is_some()).map(|v| v.name.as_str()).collect();
     assert_eq!(members, of_ports);
     assert_eq!(elements.iter().filter(|e| e.get("memberName") == Some("pressure")).count(), 2);
-    let (_, files) = packed(CASES[1], Version::Three);
+    let (_, files) = packed(CASES[2], Version::Three);
     let without = self::elements(part(&files, "terminalsAndIcons/terminalsAndIcons.xml"));
     assert!(without.iter().all(|e| !e.name.starts_with("Terminal")));
 }
@@ -275,7 +279,7 @@ fn packing_twice_gives_the_same_bytes_that_every_reader_of_archives_knows() {
 fn the_token_follows_the_case_and_the_version() {
     let tokens: BTreeSet<String> =
         CASES.iter().flat_map(|path| VERSIONS.map(|version| packed(path, version).0.token)).collect();
-    assert_eq!(tokens.len(), 6);
+    assert_eq!(tokens.len(), 2 * CASES.len());
 }
 
 #[test]
@@ -342,6 +346,33 @@ fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
     let of_state = table.variables.iter().filter(|v| v.quantity.is_of_state());
     assert!(of_state.clone().count() > 30);
     assert!(of_state.into_iter().all(|v| v.causality == Causality::Output && v.kind != Type::Binary));
+}
+
+#[test]
+fn start_values_are_those_that_the_model_starts_with() {
+    for path in CASES {
+        let loaded = case(path);
+        let model = Cosimulation::new(&loaded).unwrap();
+        let (inputs, blocks) = (model.inputs(), model.block_states().len());
+        let of = |axis: Axis, vector: Vector| if axis == Axis::X { vector.x } else { vector.y };
+        let block = |port: usize| model.ports()[port].block as usize;
+        for variable in Table::new(&loaded.case, blocks, &loaded.hash, Version::Three).variables {
+            let own = match variable.quantity {
+                Quantity::Gravity(axis) => of(axis, inputs.gravity),
+                Quantity::BaseAcceleration(axis) => of(axis, inputs.base_acceleration),
+                Quantity::WaterLevel => inputs.water_level,
+                Quantity::StrengthFactor => inputs.strength_factor,
+                Quantity::PortForce(port, axis) => of(axis, inputs.block_force[block(port)]),
+                Quantity::PortMoment(port) => inputs.block_moment[block(port)],
+                Quantity::PortTraction(port, axis) => of(axis, inputs.port_traction[port]),
+                Quantity::PortPressure(port) => inputs.port_pressure[port],
+                // They come on top of the forces of ports.
+                Quantity::BlockForce(_) | Quantity::BlockMoment => 0.0,
+                _ => continue,
+            };
+            assert_eq!(variable.start, Some(own), "{path} {}", variable.name);
+        }
+    }
 }
 
 #[test]
