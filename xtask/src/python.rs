@@ -9,6 +9,15 @@ use crate::house::{self, House};
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
 const REQUIREMENTS: &str = "python_tests/requirements.txt";
+const LIBRARY: &str = if cfg!(windows) {
+    "enmm.dll"
+} else if cfg!(target_os = "macos") {
+    "libenmm.dylib"
+} else {
+    "libenmm.so"
+};
+/// Cases that the Python tests have as FMUs of both versions.
+const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
 /// Runs the short case, then pytest over its results.
@@ -22,15 +31,31 @@ pub fn test(house: &House) -> Result<Counts, String> {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
+    let fmus = pack(house)?;
     let mut pytest = house.command(python);
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
     pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
+    pytest.env("ENMM_FMUS", &fmus).env("ENMM_LIBRARY", house.target.join("release").join(LIBRARY));
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
         return Err("pytest failed without a failed test".to_owned());
     }
     Ok(counts)
+}
+
+/// Packs the FMUs of the tests; returns their folder.
+fn pack(house: &House) -> Result<PathBuf, String> {
+    let folder = house.target.join("fmus");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for case in FMUS {
+        for version in ["2", "3"] {
+            let mut enmm = house.command(house.enmm());
+            enmm.arg("fmu").arg(format!("examples/cases/{case}.toml")).args(["--fmi", version, "-o"]);
+            house::run(enmm.arg(folder.join(format!("{case}_fmi{version}.fmu"))))?;
+        }
+    }
+    Ok(folder)
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.
