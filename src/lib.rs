@@ -1,7 +1,8 @@
 //! Explicit numerical manifold method (ENMM) for jointed rock.
 //!
 //! Rooms, each importing only from those above it: [`geometry`], `cover`, `mechanics`, `contact`, `state`, `step`,
-//! [`model`], [`io`], [`cosimulation`]. `ARCHITECTURE.md` draws the graph; `docs/theory.md` numbers the equations that the code cites.
+//! [`model`], [`io`], [`cosimulation`]. `ARCHITECTURE.md` draws the graph; `docs/theory.md` numbers the equations that
+//! the code cites.
 #![forbid(unsafe_code)]
 
 pub mod contact;

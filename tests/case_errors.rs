@@ -23,9 +23,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mesh]",
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: domain, fix, gravity, in_situ, \
-         initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, output, rock, solver, stage, title; \
-         rename \
-         or remove it",
+         initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, output, port, rock, solver, stage, \
+         title, water; rename or remove it",
     );
 }
 
@@ -214,12 +213,12 @@ fn solver_value_out_of_range_says_value_and_limit() {
         (
             "sweeps_max = 12",
             "sweeps_max = 0",
-            "solver.sweeps_max: is 0, must be at least 1 and at most 1000; 8 is the default",
+            "solver.sweeps_max: is 0, must be at least 1 and at most 1000; 100 is the default",
         ),
         (
             "sweeps_max = 12",
             "sweeps_max = 1001",
-            "solver.sweeps_max: is 1001, must be at least 1 and at most 1000; 8 is the default",
+            "solver.sweeps_max: is 1001, must be at least 1 and at most 1000; 100 is the default",
         ),
         (
             "sweeps_max = 12",
@@ -492,7 +491,7 @@ fn error_of_the_builder_is_located_at_the_longest_known_key() {
         ("fix[0].point", "[[fix]]"),
         ("rock.granite.unknown", "[rock.granite]"),
         ("solver.integrator", "[solver]"),
-        ("water.level", "title"),
+        ("bolt.force", "title"),
     ] {
         let expected = format!("slope.toml:{}: {key}: crosses itself", line(part));
         assert_eq!(source.locate(key, "crosses itself").to_string(), expected);

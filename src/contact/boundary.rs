@@ -119,6 +119,11 @@ impl Boundary {
         if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.point_before(node)] }
     }
 
+    /// Edges before and after a node on its loop.
+    pub fn edges_of_node(&self, node: usize) -> [u32; 2] {
+        [self.point_before(node) as u32, self.node_point[node]]
+    }
+
     /// Whether the node lies on a partial cut.
     pub fn node_partial(&self, node: usize) -> bool {
         self.partial[self.node_point[node] as usize] || self.partial[self.point_before(node)]

@@ -49,6 +49,8 @@ pub struct Narrow<'a> {
     pub laws: &'a [JointLaw],
     /// Law of each joint trace, after switches.
     pub trace_law: &'a [u32],
+    /// Factor on the strength of all joints.
+    pub strength: f64,
     /// Law of contacts between faces that were no joints.
     pub default_law: u32,
     /// Velocities (m/s) of the covers during the last step.
@@ -445,7 +447,7 @@ impl Narrow<'_> {
         let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, stiffness, normal));
         let history = ContactHistory { edge: pick.edge, ..history };
         let mut contact = VertexEdge {
-            limits: self.laws[law as usize].limits(length, history.intact),
+            limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
             gap: pick.gap + history.offset - history.rest,
             penetration: -pick.gap,
             history,

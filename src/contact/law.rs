@@ -38,6 +38,13 @@ pub struct Limits {
     pub tension: f64,
 }
 
+impl Limits {
+    /// Limits of joints whose strength is multiplied by `factor`.
+    pub fn times(self, factor: f64) -> Self {
+        Self { friction: self.friction * factor, cohesion: self.cohesion * factor, tension: self.tension * factor }
+    }
+}
+
 impl JointLaw {
     /// Limits of a contact of tributary length `length` (m), peak while `intact`.
     pub fn limits(&self, length: f64, intact: bool) -> Limits {

@@ -135,7 +135,11 @@ impl Cosimulation {
     }
 
     fn joint_port(&self, port: &Port) -> PortState {
-        let of_port = |contact: &&ContactHistory| port.edges.binary_search(&contact.edge).is_ok();
+        let boundary = &self.simulation.slope().boundary;
+        let of_port = |contact: &&ContactHistory| {
+            let [before, after] = boundary.edges_of_node(contact.node as usize);
+            [contact.edge, before, after].iter().any(|edge| port.edges.binary_search(edge).is_ok())
+        };
         let mut sum = PortState::default();
         for contact in self.simulation.state().contacts.iter().filter(of_port) {
             sum.normal_force += contact.normal_force;

@@ -95,7 +95,7 @@ fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector])
 }
 
 /// Spreads a force and a moment over a block so that it moves as a rigid body: μ·f/M and m·(x − x_D)^⊥·τ/J_D.
-fn push_block(
+pub fn push_block(
     covers: std::ops::Range<usize>,
     place: &impl Fn(usize) -> Point,
     metric: &Metric,

@@ -426,6 +426,18 @@ pub struct Port {
     /// The joint faces on this segment (m): fluid pressure in, contact forces and slip out.
     #[serde(default)]
     pub joint: Option<[[f64; 2]; 2]>,
+    /// Force (N per metre of depth) on the block from the start until a host sets another.
+    #[serde(default)]
+    pub force: [f64; 2],
+    /// Moment (N·m per metre of depth, counter-clockwise) on the block from the start.
+    #[serde(default)]
+    pub moment: f64,
+    /// Traction (Pa, global axes) on the boundary from the start.
+    #[serde(default)]
+    pub traction: [f64; 2],
+    /// Pressure (Pa) on the boundary, or in the joints, from the start.
+    #[serde(default)]
+    pub pressure: f64,
 }
 
 /// How a stage treats time.

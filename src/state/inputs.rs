@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Vector;
 
-use super::Slope;
+use super::{PortKind, Slope};
 
 /// Values that a host sets; each holds until it is set anew.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ impl Inputs {
     /// The values that the case starts with.
     pub fn of(slope: &Slope) -> Self {
         let (blocks, ports) = (slope.covers.block_count(), slope.ports.len());
-        Self {
+        let mut inputs = Self {
             gravity: slope.gravity,
             base_acceleration: Vector::zeros(),
             water_level: slope.water.as_ref().map_or(0.0, |water| water.level),
@@ -40,7 +40,16 @@ impl Inputs {
             block_moment: vec![0.0; blocks],
             port_traction: vec![Vector::zeros(); ports],
             port_pressure: vec![0.0; ports],
+        };
+        for (k, port) in slope.ports.iter().enumerate() {
+            if port.kind == PortKind::Block {
+                inputs.block_force[port.block as usize] += port.force;
+                inputs.block_moment[port.block as usize] += port.scalar;
+            } else {
+                (inputs.port_traction[k], inputs.port_pressure[k]) = (port.force, port.scalar);
+            }
         }
+        inputs
     }
 
     /// Copies without allocating.

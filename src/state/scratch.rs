@@ -33,6 +33,8 @@ pub struct Scratch {
     pub push: Vec<BlockPush>,
     /// Law of each joint trace after switches.
     pub trace_law: Vec<u32>,
+    /// Whether each block touches another.
+    pub touching: Vec<bool>,
     /// Largest speed of a cover (m/s).
     pub speed_max: f64,
     /// Whether the step keeps to the calling thread; the bits are the same.

@@ -38,6 +38,10 @@ pub struct Port {
     pub block: u32,
     /// Boundary edges; none for a block.
     pub edges: Vec<u32>,
+    /// Force on the block (N/m) or traction on the boundary (Pa) at the start.
+    pub force: Vector,
+    /// Moment on the block (N·m/m) or pressure on the faces (Pa) at the start.
+    pub scalar: f64,
 }
 
 /// Water with a level surface.

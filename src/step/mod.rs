@@ -1,7 +1,9 @@
 //! One internal step: order of the stages, open–close iteration, damping, checks, report. Knows nothing of files.
 
+mod applied;
 mod blocks;
 mod commit;
+mod events;
 mod guard;
 mod prepare;
 mod report;
@@ -65,6 +67,8 @@ pub fn advance(
     state.stage_step += 1;
     state.step += 1;
     state.part = 0.0;
+    let time = state.stage_start + state.stage_step as f64 * slope.dt;
+    events::note(slope, regime, state, scratch, time);
     Ok(outcome)
 }
 
@@ -104,6 +108,17 @@ pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch)
     step.predict(dt);
     step.entrance(dt);
     scratch.contacts
+}
+
+/// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
+fn ramp(regime: Regime, stage_time: f64) -> f64 {
+    match regime {
+        Regime::Static { ramp } if ramp > 0.0 => {
+            let x = (stage_time / ramp).clamp(0.0, 1.0);
+            x * x * (3.0 - 2.0 * x)
+        }
+        _ => 1.0,
+    }
 }
 
 /// One step in progress.
@@ -174,13 +189,9 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
-        let stars = &slope.covers.star_position;
+        let ramp = ramp(self.regime, self.time - state.stage_start);
         scratch.load_force.fill(Vector::zeros());
-        for load in &slope.loads {
-            let place = |i: usize| stars[i] + state.displacement[i];
-            let covers = |b: u32| slope.covers.covers_of(b as usize);
-            load.push(self.time, place, covers, &slope.metric, &mut scratch.load_force);
-        }
+        applied::push_forces(slope, state, self.time, ramp, &mut scratch.load_force);
         self.damping = self.damping_of(dt);
         let pass = blocks::Pass {
             slope,
@@ -197,21 +208,14 @@ impl Step<'_> {
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
-    /// Gravity and body loads (m/s²) at this time.
+    /// Acceleration of all rock (m/s²) at this time.
     fn acceleration(&self) -> Vector {
-        let body: Vector = self.slope.loads.iter().map(|load| load.body(self.time)).sum();
-        (self.slope.gravity + body) * self.ramp()
+        applied::acceleration(self.slope, self.state, self.time) * self.ramp()
     }
 
-    /// Share of gravity that acts: a smooth rise over the ramp of a static stage.
+    /// Share of gravity that acts at this time.
     fn ramp(&self) -> f64 {
-        match self.regime {
-            Regime::Static { ramp } if ramp > 0.0 => {
-                let x = ((self.time - self.state.stage_start) / ramp).clamp(0.0, 1.0);
-                x * x * (3.0 - 2.0 * x)
-            }
-            _ => 1.0,
-        }
+        ramp(self.regime, self.time - self.state.stage_start)
     }
 
     /// Damping of a step of `dt` (s) (Eqs. 11, 12).
@@ -246,6 +250,7 @@ impl Step<'_> {
             motion: &scratch.motion,
             laws: &state.laws,
             trace_law: &scratch.trace_law,
+            strength: state.drive.strength_factor(state.drive.share(self.time)),
             default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
             velocity: &state.velocity,
             dt_last: state.dt_last,

@@ -4,7 +4,7 @@ use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
 use crate::state::{Scratch, Slope, State};
 
-use super::Regime;
+use super::{Regime, applied};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
@@ -72,13 +72,10 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {
         state.stage_displacement.clone_from(&state.displacement);
-        let body: Vector = slope.loads.iter().map(|load| load.body(start)).sum();
-        state.stage_force.extend(slope.metric.row_sum.iter().map(|m| (slope.gravity + body) * *m));
-        for load in &slope.loads {
-            let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
-            let covers = |b: u32| slope.covers.covers_of(b as usize);
-            load.push(start, place, covers, &slope.metric, &mut state.stage_force);
-        }
+        let acceleration = applied::acceleration(slope, state, start);
+        let mut force: Vec<Vector> = slope.metric.row_sum.iter().map(|m| acceleration * *m).collect();
+        applied::push_forces(slope, state, start, 1.0, &mut force);
+        state.stage_force = force;
     }
     for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
         state.velocity[slope.covers.covers_of(block)].fill(Vector::zeros());

@@ -137,10 +137,14 @@ faces = [[[10.0, 0.0], [10.0, 5.0]]]
 [[port]]
 name = "keystone"
 block = [3.0, 3.0]
+force = [1e3, 0.0]
+moment = 10.0
 
 [[port]]
 name = "wall"
 boundary = [[10.0, 0.0], [10.0, 5.0]]
+traction = [0.0, 1e3]
+pressure = 1e3
 
 [[port]]
 name = "seam"

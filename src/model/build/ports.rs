@@ -1,7 +1,7 @@
 //! Ports and water of a case, found on the boundary of the blocks.
 
 use crate::contact::Boundary;
-use crate::geometry::{NONE, Point, segment};
+use crate::geometry::{NONE, Point, Vector, segment};
 use crate::model::case::{Case, Invalid};
 use crate::state::{Port, PortKind, Water};
 
@@ -43,18 +43,18 @@ pub(super) fn ports(case: &Case, places: &Places, faces: &Faces) -> Result<Vec<P
     let mut ports = Vec::new();
     for (k, port) in case.ports.iter().enumerate() {
         let key = |name: &str| format!("port[{k}].{name}");
-        let (kind, edges) = if let Some(segment) = port.boundary {
-            (PortKind::Boundary, faces.on(&key("boundary"), segment, false)?)
+        let (kind, edges, force, scalar) = if let Some(segment) = port.boundary {
+            (PortKind::Boundary, faces.on(&key("boundary"), segment, false)?, port.traction, port.pressure)
         } else if let Some(segment) = port.joint {
-            (PortKind::Joint, faces.on(&key("joint"), segment, true)?)
+            (PortKind::Joint, faces.on(&key("joint"), segment, true)?, [0.0; 2], port.pressure)
         } else {
-            (PortKind::Block, Vec::new())
+            (PortKind::Block, Vec::new(), port.force, port.moment)
         };
         let block = match edges.first() {
             Some(&edge) => faces.boundary.block[edge as usize],
             None => places.block(&key("block"), port.block.unwrap_or_default())? as u32,
         };
-        ports.push(Port { name: port.name.clone(), kind, block, edges });
+        ports.push(Port { name: port.name.clone(), kind, block, edges, force: Vector::from(force), scalar });
     }
     Ok(ports)
 }

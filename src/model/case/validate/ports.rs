@@ -49,5 +49,25 @@ fn validate_port(key: &Key, port: &Port) -> Check {
     }
     port.block.as_ref().map_or(Ok(()), |place| point(&key.field("block"), place))?;
     port.boundary.as_ref().map_or(Ok(()), |edge| segment(&key.field("boundary"), edge))?;
-    port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))
+    port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))?;
+    validate_start(key, port, given[0])
+}
+
+/// Checks the values at the start: in range, and none but those of the kind of port.
+fn validate_start(key: &Key, port: &Port, kind: &str) -> Check {
+    let hint = "what acts from the start";
+    let values = [
+        ("force", port.force, "N/m", ["block", "block"]),
+        ("moment", [port.moment, 0.0], "N·m/m", ["block", "block"]),
+        ("traction", port.traction, "Pa", ["boundary", "boundary"]),
+        ("pressure", [port.pressure, 0.0], "Pa", ["boundary", "joint"]),
+    ];
+    for (name, value, unit, kinds) in values {
+        value.iter().try_for_each(|v| number(key, name, *v, Range::within(1e15), unit, hint))?;
+        if value != [0.0; 2] && !kinds.contains(&kind) {
+            let message = format!("a port of kind `{kind}` takes no {name}; remove it, or use `{}`", kinds[0]);
+            return fail(&key.field(name), message);
+        }
+    }
+    Ok(())
 }

@@ -1,0 +1,86 @@
+//! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
+
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{self, pressure};
+use crate::state::{Port, Slope, State};
+
+/// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, base (Eq. 31).
+pub fn acceleration(slope: &Slope, state: &State, t: f64) -> Vector {
+    let body: Vector = slope.loads.iter().map(|load| load.body(t)).sum();
+    let share = state.drive.share(t);
+    state.drive.gravity(share) + body - state.drive.base_acceleration(share)
+}
+
+/// Adds to `force` (N/m per cover) what loads and inputs push with at time `t` (s); inputs and water act by their share
+/// `ramp`, as gravity does.
+pub fn push_forces(slope: &Slope, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
+    for load in &slope.loads {
+        let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
+        let covers = |b: u32| slope.covers.covers_of(b as usize);
+        load.push(t, place, covers, &slope.metric, force);
+    }
+    let faces = Faces { slope, state };
+    let share = state.drive.share(t);
+    faces.push_water(share, ramp, force);
+    for (k, port) in slope.ports.iter().enumerate() {
+        let (traction, pressure) = state.drive.port(k, share);
+        faces.push_port(port, traction * ramp, pressure * ramp, force);
+    }
+    push_blocks(slope, state, share, ramp, force);
+}
+
+fn push_blocks(slope: &Slope, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
+    for block in (0..slope.covers.block_count()).filter(|&b| !state.removed[b]) {
+        let (f, moment) = state.drive.block(block, share);
+        if f != Vector::zeros() || moment != 0.0 {
+            let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
+            let covers = slope.covers.covers_of(block);
+            mechanics::push_block(covers, &place, &slope.metric, f * ramp, moment * ramp, force);
+        }
+    }
+}
+
+/// Boundary edges at their current places.
+struct Faces<'a> {
+    slope: &'a Slope,
+    state: &'a State,
+}
+
+impl Faces<'_> {
+    fn push_water(&self, share: f64, ramp: f64, force: &mut [Vector]) {
+        let Some(water) = &self.slope.water else { return };
+        let level = self.state.drive.water_level(share);
+        let weight = water.density * self.state.drive.gravity(share).norm() * ramp;
+        for &edge in &water.edges {
+            self.push(edge, |a, b| pressure::hydrostatic(a, b, level, weight), force);
+        }
+    }
+
+    fn push_port(&self, port: &Port, traction: Vector, pressure: f64, force: &mut [Vector]) {
+        if traction == Vector::zeros() && pressure == 0.0 {
+            return;
+        }
+        let reference = &self.slope.boundary.reference;
+        for &edge in &port.edges {
+            let length = (reference[self.slope.boundary.after(edge as usize)] - reference[edge as usize]).norm();
+            let dead = traction * (0.5 * length);
+            self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
+        }
+    }
+
+    /// Spreads the forces at both ends of an edge over their covers.
+    fn push(&self, edge: u32, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
+        let boundary = &self.slope.boundary;
+        if self.state.removed[boundary.block[edge as usize] as usize] {
+            return;
+        }
+        let ends = [edge as usize, boundary.after(edge as usize)];
+        let stars = &self.slope.covers.star_position;
+        let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
+        for (k, f) in ends.into_iter().zip(forces(a, b)) {
+            for (&i, w) in boundary.covers[k].iter().zip(boundary.weights[k]) {
+                force[i as usize] += f * w;
+            }
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! Co-simulation: steps cover exactly what is asked, on a grid that no host can shift, all or nothing; saved states,
+//! events, inputs and parameters.
+
+mod common;
+
+use std::path::Path;
+
+use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
+use enmm::geometry::Vector;
+use enmm::io::{LoadedCase, load_case, parse_case};
+use enmm::model::BlockState;
+
+fn example(name: &str) -> LoadedCase {
+    load_case(Path::new(&format!("examples/cases/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn model(name: &str) -> Cosimulation {
+    Cosimulation::new(&example(name)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Steps of `h` until `end`, with times summed as a careless master does.
+fn run(model: &mut Cosimulation, h: f64, end: f64) {
+    let mut t = model.time();
+    while t < end - 0.5 * h {
+        model.do_step(t, h).unwrap_or_else(|e| panic!("{e}"));
+        t += h;
+    }
+}
+
+fn states(model: &Cosimulation) -> Vec<BlockState> {
+    model.block_states()
+}
+
+#[test]
+fn the_initial_equilibrium_ends_at_time_zero_and_equals_that_of_a_run() {
+    let mut model = model("block_on_incline");
+    assert_eq!((model.time(), model.is_started()), (0.0, false));
+    model.start().unwrap();
+    assert_eq!(model.time(), 0.0);
+    assert_eq!(model.stop_time(), 1.0);
+    let mut simulation = enmm::model::Simulation::new(example("block_on_incline").case).unwrap();
+    let settled = model.simulation().state().step;
+    assert!(settled > 100);
+    (0..settled).for_each(|step| {
+        simulation.advance(step % 10 == 0).unwrap();
+    });
+    simulation.next_stage().unwrap();
+    assert_eq!(simulation.block_states(), states(&model));
+}
+
+#[test]
+fn any_division_into_steps_gives_the_same_bits() {
+    for name in ["block_on_incline", "coupled_slope"] {
+        let mut whole = model(name);
+        whole.do_step(0.0, 0.2).unwrap();
+        for h in [0.1, 0.01, 0.05 / 7.0, 0.2 / 3.0, 0.00123] {
+            let mut parts = model(name);
+            run(&mut parts, h, 0.2 - h);
+            let t = parts.time();
+            parts.do_step(t, 0.2 - t).unwrap();
+            assert!((parts.time() - 0.2).abs() < 1e-12, "{}", parts.time());
+            assert_eq!(states(&parts), states(&whole), "{name} by steps of {h}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_ends_between_grid_points_ends_exactly_there() {
+    let mut model = model("block_on_incline");
+    let dt = model.internal_step();
+    let info = model.do_step(0.0, 10.4 * dt).unwrap();
+    assert_eq!((info.steps, info.time), (11, 10.4 * dt));
+    let there = states(&model)[1].displacement;
+    model.set_block_force(1, Vector::new(1e3, 0.0), 0.0).unwrap();
+    assert_eq!(states(&model)[1].displacement, there, "an input moves nothing by itself");
+    let info = model.do_step(10.4 * dt, 0.2 * dt).unwrap();
+    assert_eq!(info.steps, 1);
+    assert!((model.time() - 10.6 * dt).abs() < 1e-15);
+}
+
+#[test]
+fn times_that_do_not_fit_are_refused_and_change_nothing() {
+    let mut model = model("block_on_incline");
+    model.do_step(0.0, 0.01).unwrap();
+    let before = states(&model);
+    for (t, h) in [(0.0, 0.01), (0.02, 0.01), (f64::NAN, 0.01)] {
+        assert!(matches!(model.do_step(t, h), Err(CosimulationError::Time { .. })), "{t} {h}");
+    }
+    for h in [0.0, -0.01, f64::NAN, f64::INFINITY, 1e300] {
+        assert!(matches!(model.do_step(0.01, h), Err(CosimulationError::Value { .. })), "{h}");
+    }
+    assert_eq!(states(&model), before);
+    model.do_step(0.01, 0.01).unwrap();
+}
+
+#[test]
+fn a_failed_step_leaves_the_model_where_it_was() {
+    let mut plain = model("block_on_incline");
+    let mut model = model("block_on_incline");
+    run(&mut model, 0.01, 0.05);
+    run(&mut plain, 0.01, 0.05);
+    let saved = model.save();
+    model.set_block_force(1, Vector::new(1e15, 1e15), 0.0).unwrap();
+    let error = model.do_step(0.05, 0.05).unwrap_err();
+    assert!(matches!(error, CosimulationError::Step(_)), "{error}");
+    assert!((model.time() - 0.05).abs() < 1e-15);
+    assert_eq!(states(&model), states(&plain));
+    model.restore(&saved).unwrap();
+    run(&mut model, 0.01, 0.1);
+    run(&mut plain, 0.01, 0.1);
+    assert_eq!(states(&model), states(&plain));
+}
+
+#[test]
+fn saved_states_bring_back_everything_even_in_another_model_of_the_case() {
+    let mut first = model("coupled_slope");
+    first.set_water_level(12.0).unwrap();
+    first.do_step(0.0, 0.0503).unwrap();
+    let saved = first.save();
+    let bytes = first.serialize(&saved).unwrap();
+    first.set_water_level(18.0).unwrap();
+    first.do_step(0.0503, 0.05).unwrap();
+    let after = states(&first);
+
+    first.restore(&saved).unwrap();
+    assert_eq!(first.inputs().water_level, 12.0);
+    first.set_water_level(18.0).unwrap();
+    first.do_step(0.0503, 0.05).unwrap();
+    assert_eq!(states(&first), after);
+
+    let mut fresh = model("coupled_slope");
+    let again = fresh.deserialize(&bytes).unwrap();
+    assert_eq!(again, saved);
+    fresh.restore(&again).unwrap();
+    fresh.set_water_level(18.0).unwrap();
+    fresh.do_step(0.0503, 0.05).unwrap();
+    assert_eq!(states(&fresh), after);
+    assert_eq!(fresh.events().collect::<Vec<_>>(), first.events().collect::<Vec<_>>());
+}
+
+#[test]
+fn damaged_and_foreign_states_are_refused() {
+    let slope = model("coupled_slope");
+    let bytes = slope.serialize(&slope.save()).unwrap();
+    assert!(model("block_on_incline").deserialize(&bytes).is_err());
+    for at in [0, 9, 14, 40, 60, bytes.len() / 2, bytes.len() - 1] {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x10;
+        assert!(slope.deserialize(&damaged).is_err(), "byte {at}");
+    }
+    assert!(slope.deserialize(&bytes[..bytes.len() - 1]).is_err());
+    assert!(slope.deserialize(&[]).is_err());
+    let other = model("block_on_incline").save();
+    assert!(model("coupled_slope").restore(&other).is_err());
+}
+
+#[test]
+fn an_interval_may_be_left_early() {
+    let mut model = model("block_on_incline");
+    let mut interval = model.begin(0.0, 0.1).unwrap();
+    for _ in 0..7 {
+        assert!(model.advance(&mut interval).unwrap());
+    }
+    let info = model.leave(interval);
+    assert_eq!(info.steps, 7);
+    assert!((info.time - 7.0 * model.internal_step()).abs() < 1e-15 && info.time == model.time());
+    model.do_step(info.time, 0.1 - info.time).unwrap();
+    let mut whole = self::model("block_on_incline");
+    whole.do_step(0.0, 0.1).unwrap();
+    assert_eq!(states(&model), states(&whole));
+}
+
+#[test]
+fn the_incline_slips_once_and_fails_once_and_says_when() {
+    let mut model = model("block_on_incline");
+    let info = model.do_step(0.0, 1.0).unwrap();
+    let kinds: Vec<EventKind> = info.events.iter().map(|e| e.kind).collect();
+    assert_eq!(kinds, [EventKind::Slipped, EventKind::Slipped, EventKind::Failed]);
+    assert!(info.events[0].time < 0.01 && info.events[0].subject == 0);
+    assert_eq!(info.events[1].subject, u32::MAX, "beyond the joint the block slides on the outline");
+    // s = ½·g'·t² passes the mesh size of 0.6 m at t = sqrt(2·0.6/1.812813).
+    assert!((info.events[2].time - 0.8136).abs() < 1e-3, "{}", info.events[2].time);
+    assert_eq!(model.totals().failed_blocks, 1);
+}
+
+#[test]
+fn a_block_that_is_pulled_off_detaches() {
+    let mut model = model("block_on_incline");
+    model.start().unwrap();
+    let normal = Vector::new(0.5, 3f64.sqrt() / 2.0);
+    model.set_block_force(1, normal * 1e5, 0.0).unwrap();
+    let info = model.do_step(0.0, 0.2).unwrap();
+    assert!(info.events.iter().any(|e| e.kind == EventKind::Detached && e.subject == 1), "{:?}", info.events);
+    assert!(states(&model)[1].detached);
+}
+
+#[test]
+fn a_linear_input_arrives_at_the_end_of_the_step_and_a_held_one_jumps() {
+    // A free block under a force: linear from 0 gives v = F·h/(2m), held gives v = F·h/m.
+    let text = r#"
+title = "Free block"
+domain.outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
+mesh.size = 0.5
+gravity.y = 0.0
+rock.r = { density = 1000, young = 1e8, poisson = 0.2 }
+solver.communication_step = 0.01
+[[stage]]
+name = "fly"
+kind = "dynamic"
+duration = 1.0
+damping = 0.0
+"#;
+    let loaded = parse_case(text, "free.toml", Path::new("")).unwrap();
+    let h = 0.5;
+    for (interpolation, share) in [(Interpolation::Hold, 1.0), (Interpolation::Linear, 0.5)] {
+        let mut model = Cosimulation::new(&loaded).unwrap();
+        model.set_interpolation(interpolation);
+        model.start().unwrap();
+        model.set_block_force(0, Vector::new(1000.0, 0.0), 0.0).unwrap();
+        model.do_step(0.0, h).unwrap();
+        let v = states(&model)[0].velocity.x;
+        assert!((v - share * h).abs() < 2.0 * model.internal_step(), "{interpolation:?}: {v}");
+        model.do_step(h, h).unwrap();
+        let gained = states(&model)[0].velocity.x - v;
+        assert!((gained - h).abs() < 2.0 * model.internal_step(), "the value holds: {gained}");
+    }
+}
+
+#[test]
+fn inputs_are_checked() {
+    let mut slope = model("coupled_slope");
+    for bad in [f64::NAN, f64::INFINITY, 1e30] {
+        let v = Vector::new(0.0, bad);
+        assert!(slope.set_gravity(v).is_err() && slope.set_base_acceleration(v).is_err());
+        assert!(slope.set_water_level(bad).is_err() && slope.set_strength_factor(bad).is_err());
+        assert!(slope.set_block_force(0, v, 0.0).is_err() && slope.set_block_force(0, Vector::zeros(), bad).is_err());
+        assert!(slope.set_boundary_traction(1, v).is_err() && slope.set_pressure(2, bad).is_err());
+    }
+    assert!(slope.set_block_force(99, Vector::zeros(), 0.0).is_err());
+    assert!(slope.set_boundary_traction(0, Vector::zeros()).is_err(), "the toe is a block");
+    assert!(slope.set_pressure(0, 1.0).is_err() && slope.set_pressure(9, 1.0).is_err());
+    assert!(slope.set_strength_factor(-1.0).is_err());
+    assert!(model("block_on_incline").set_water_level(1.0).is_err(), "a case without water");
+    assert_eq!(slope.inputs(), model("coupled_slope").inputs());
+}
+
+#[test]
+fn parameters_change_what_counts_at_time_zero() {
+    let mut loaded = example("block_on_incline");
+    let original = loaded.case.clone();
+    let list = enmm::cosimulation::parameters(&loaded.case);
+    let friction = list.iter().find(|p| p.name == "joint_law.joint.friction").unwrap();
+    assert_eq!(friction.start, 20f64.to_radians(), "the friction of the stage in which time begins");
+    apply(&mut loaded.case, friction, friction.start).unwrap();
+    assert_eq!(loaded.case, original);
+    assert!(apply(&mut loaded.case, friction, f64::NAN).is_err() && apply(&mut loaded.case, friction, -0.1).is_err());
+    apply(&mut loaded.case, friction, 10f64.to_radians()).unwrap();
+    let mut model = Cosimulation::new(&LoadedCase::of(loaded.case, "changed").unwrap()).unwrap();
+    model.start().unwrap();
+    let start = states(&model)[1].displacement;
+    model.do_step(0.0, 1.0).unwrap();
+    let slid = (states(&model)[1].displacement - start).norm();
+    assert!((slid - 1.703489).abs() < 2e-4, "{slid}");
+    for p in &list {
+        let mut case = original.clone();
+        apply(&mut case, p, if p.start > 0.0 { 0.9 * p.start } else { 0.1 * p.high.min(10.0) }).unwrap();
+        assert_ne!(case, original, "{} does nothing", p.name);
+    }
+}
+
+#[test]
+fn threads_do_not_change_the_bits() {
+    let mut serial = model("fractured_slope");
+    let mut parallel = model("fractured_slope");
+    assert!(parallel.set_threads(0).is_err() && parallel.set_threads(100_000).is_err());
+    parallel.set_threads(3).unwrap();
+    for model in [&mut serial, &mut parallel] {
+        model.set_interpolation(Interpolation::Linear);
+        let state = model.save();
+        model.restore(&state).unwrap();
+    }
+    let steps = |model: &mut Cosimulation| {
+        let mut interval = model.simulation().clone();
+        (0..30).for_each(|_| {
+            interval.advance(false).unwrap();
+        });
+        interval.block_states()
+    };
+    assert_eq!(steps(&mut serial), steps(&mut parallel));
+}
