@@ -128,7 +128,9 @@ impl Cosimulation {
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
         let was_moving = drive.is_moving();
-        drive.arrive();
+        if was_moving {
+            drive.arrive();
+        }
         self.standing.changed |= change(&mut drive.to) || was_moving;
     }
 }

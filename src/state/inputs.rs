@@ -96,10 +96,8 @@ impl Drive {
 
     /// Ends the change at once: the values are those of `to`.
     pub fn arrive(&mut self) {
-        if self.is_moving() {
-            self.from.copy_from(&self.to);
-            self.until = self.since;
-        }
+        self.from.copy_from(&self.to);
+        self.until = self.since;
     }
 
     /// Makes the values at time `t` (s) the start of what is left of the way.
