@@ -42,6 +42,31 @@ fn a_state_in_bytes_goes_on_in_another_instance_with_the_same_bits() {
     assert_eq!(other.bytes(unpacked), bytes, "and is written as it was read");
 }
 
+/// The test runs itself in a child process, which finds the bytes by a variable of its environment.
+#[test]
+fn a_state_in_bytes_goes_on_in_a_fresh_process_with_the_same_bits() {
+    const FILE: &str = "ENMM_FMI3_STATE";
+    let fmu = Fmu::boxed();
+    let instance = fmu.instance();
+    if let Some(file) = std::env::var_os(FILE) {
+        let (status, state) = instance.unpack(&std::fs::read(&file).unwrap());
+        assert_eq!((status, instance.restore(state)), (OK, OK), "{}", instance.last_line());
+        instance.run_from(0.03, 0.01, 0.05);
+        std::fs::write(file, instance.snapshot()).unwrap();
+        return;
+    }
+    instance.start();
+    assert_eq!(instance.set("box.force_x", &[2e3]), OK);
+    instance.run(0.01, 0.03);
+    let file = fmu.folder.path().join("state");
+    std::fs::write(&file, instance.bytes(instance.save())).unwrap();
+    let mut child = std::process::Command::new(std::env::current_exe().unwrap());
+    let name = "a_state_in_bytes_goes_on_in_a_fresh_process_with_the_same_bits";
+    assert!(child.args(["--exact", name]).env(FILE, &file).output().unwrap().status.success());
+    instance.run_from(0.03, 0.01, 0.05);
+    assert_eq!(std::fs::read(&file).unwrap(), instance.snapshot());
+}
+
 #[test]
 fn states_of_every_mode_can_be_restored() {
     let fmu = Fmu::boxed();

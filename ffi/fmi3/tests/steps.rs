@@ -294,3 +294,19 @@ fn an_illegal_call_within_an_update_is_an_error_and_frees_nothing() {
     assert_eq!(instance.restore(state), OK);
     assert_eq!(instance.snapshot(), before);
 }
+
+#[test]
+fn a_discarded_step_changes_nothing() {
+    let fmu = Fmu::boxed();
+    let (instance, plain) = (fmu.started(), fmu.started());
+    instance.run(0.01, 0.01);
+    plain.run(0.01, 0.01);
+    let before = instance.get("block_y");
+    assert_eq!(instance.set("box.force_x", &[1e15]), OK);
+    assert_eq!(instance.step(0.01, 0.05), (Status::Discard, false, 0.01));
+    assert_eq!((instance.get("block_y"), instance.get("time")), (before, vec![0.01]));
+    assert_eq!(instance.set("box.force_x", &[0.0]), OK);
+    instance.run_from(0.01, 0.01, 0.03);
+    plain.run_from(0.01, 0.01, 0.03);
+    assert_eq!(instance.get("block_y"), plain.get("block_y"));
+}
