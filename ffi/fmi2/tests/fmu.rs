@@ -1,4 +1,5 @@
-//! FMI 2: the bits of the façade, legal calls, refused values, discarded steps, saved states, all spellings of resources.
+//! FMI 2: the bits of the façade, legal calls, refused values, discarded steps, saved states, all spellings of
+//! resources.
 
 mod common;
 

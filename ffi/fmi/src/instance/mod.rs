@@ -1,7 +1,7 @@
 //! One instance of an FMU: its life cycle. Both sets of C entry points are thin over it.
 //!
-//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is then
-//! [`Phase::Error`], except for calls that only handle saved states or logging.
+//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is
+//! then [`Phase::Error`], except for calls that only handle saved states or logging.
 
 mod read;
 mod saved;
