@@ -1,0 +1,44 @@
+//! Inputs that the façade does not know in the form that hosts give them.
+
+use engine::cosimulation::PortKind;
+use engine::geometry::Vector;
+
+use super::failure::{Failure, Outcome};
+use super::model::Model;
+
+/// Largest magnitude that the façade takes.
+const VALUE_MAX: f64 = 1e15;
+
+impl Model {
+    /// Sets force and moment of several blocks, or of none; `loads` holds Fx, Fy and M of each block of `ids`.
+    ///
+    /// # Errors
+    /// The first value that the façade refuses.
+    pub fn set_block_forces(&mut self, ids: &[u32], loads: [&[f64]; 3]) -> Outcome {
+        let count = self.inner.simulation().slope().covers.block_count();
+        let usable = |k: &usize| {
+            (ids[*k] as usize) < count && loads.iter().all(|load| load[*k].is_finite() && load[*k].abs() <= VALUE_MAX)
+        };
+        let refused = (0..ids.len()).find(|k| !usable(k));
+        // One that is refused is handed over alone: the façade changes nothing and says why.
+        let chosen = refused.map_or(0..ids.len(), |k| k..k + 1);
+        for k in chosen {
+            self.inner.set_block_force(ids[k], Vector::new(loads[0][k], loads[1][k]), loads[2][k])?;
+        }
+        Ok(())
+    }
+
+    /// Sets fluid pressure on a port of one kind.
+    ///
+    /// # Errors
+    /// A port of another kind, or a value that the façade refuses.
+    pub fn set_pressure(&mut self, port: u32, kind: PortKind, pressure: f64) -> Outcome {
+        if let Some(found) = self.inner.ports().get(port as usize)
+            && found.kind != kind
+        {
+            let must = if kind == PortKind::Joint { "a port of joints" } else { "a port of a boundary" };
+            return Err(Failure::invalid(format!("port: is {:?}, must be {must}; use its own input", found.name)));
+        }
+        Ok(self.inner.set_pressure(port as usize, pressure)?)
+    }
+}
