@@ -1,5 +1,5 @@
-//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed, and
-//! the safe instance behind the C entry points.
+//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed,
+//! and the safe instance behind the C entry points.
 #![forbid(unsafe_code)]
 
 mod description;

@@ -1,7 +1,7 @@
 //! One instance of an FMU: its life cycle. Both sets of C entry points are thin over it.
 //!
-//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is then
-//! [`Phase::Error`], except for calls that only handle saved states or logging.
+//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is
+//! then [`Phase::Error`], except for calls that only handle saved states or logging.
 
 mod read;
 mod saved;
@@ -64,6 +64,8 @@ pub struct Instance {
     threads: usize,
     values: Values,
     phase: Phase,
+    /// Whether a call within intermediate update mode has failed; the error shows when the mode is left.
+    spoiled: bool,
     experiment: Experiment,
     time: f64,
     early_return: bool,
@@ -97,6 +99,7 @@ impl Instance {
             threads: 1,
             values,
             phase: Phase::Instantiated,
+            spoiled: false,
             experiment: Experiment { start: 0.0, stop: None },
             time: 0.0,
             early_return: plan.early_return,
@@ -145,7 +148,11 @@ impl Instance {
 
     /// Ends a call that failed.
     fn fail(&mut self, failure: Failure) -> Status {
-        self.phase = Phase::Error;
+        if self.phase == Phase::Intermediate {
+            self.spoiled = true;
+        } else {
+            self.phase = Phase::Error;
+        }
         self.complain(failure)
     }
 
