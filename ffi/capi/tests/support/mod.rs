@@ -16,8 +16,8 @@ pub fn root() -> PathBuf {
 pub fn libraries() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
-        // The test runs as target/PROFILE/deps/NAME. Cargo does not build cdylibs for tests, so it is asked to; all of the
-        // workspace is built so that it is what `cargo build --workspace` has left behind.
+        // The test runs as target/PROFILE/deps/NAME. Cargo does not build cdylibs for tests, so it is asked to; all of
+        // the workspace is built so that it is what `cargo build --workspace` has left behind.
         let test = std::env::current_exe().expect("a test that knows where it is");
         let directory = test.ancestors().nth(2).expect("target/PROFILE").to_owned();
         let profile = directory.file_name().expect("PROFILE").to_string_lossy().replace("debug", "dev");
