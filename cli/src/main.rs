@@ -1,7 +1,8 @@
-//! `enmm`: runs and checks case files. Exit status: 0 done, 2 bad input, 3 numerical failure, 130 interrupted.
+//! `enmm`: runs, checks and packs case files. Exit status: 0 done, 2 bad input, 3 numerical failure, 130 interrupted.
 
 mod bench;
 mod check;
+mod fmu;
 mod progress;
 mod run;
 
@@ -37,6 +38,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Packs a case as a co-simulation FMU that needs no other file.
+    Fmu(fmu::Arguments),
     /// Times standard models: element updates and contacts per second, share of each part of the step.
     Bench {
         /// Print one JSON object.
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
+        Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Bench { json } => bench::run(json),
         Command::Schema => schema(),
     }

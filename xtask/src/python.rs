@@ -9,6 +9,8 @@ use crate::house::{self, House};
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
 const REQUIREMENTS: &str = "python_tests/requirements.txt";
+/// Folder of the package `enmm`.
+const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
 /// Runs the short case, then pytest over its results.
@@ -25,12 +27,19 @@ pub fn test(house: &House) -> Result<Counts, String> {
     let mut pytest = house.command(python);
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
     pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
+    pytest.env("ENMM_LIBRARY", library(house)).env("PYTHONPATH", house.root.join(PACKAGES));
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
         return Err("pytest failed without a failed test".to_owned());
     }
     Ok(counts)
+}
+
+/// The C library as `cargo build --release` leaves it.
+fn library(house: &House) -> PathBuf {
+    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    house.target.join("release").join(name)
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.

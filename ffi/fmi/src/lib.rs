@@ -1,5 +1,25 @@
-//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU.
+//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed, and
+//! the safe instance behind the C entry points.
 #![forbid(unsafe_code)]
 
+mod description;
+pub mod description2;
+pub mod description3;
+pub mod handle;
+pub mod instance;
+pub mod library;
+pub mod location;
+pub mod log;
+pub mod log_category;
+pub mod pack;
+mod page;
+pub mod phase;
+mod picture;
 pub mod resource;
 pub mod table;
+mod terminals;
+mod unit;
+pub mod values;
+mod xml;
+
+pub use description::Facts;

@@ -2,6 +2,7 @@
 
 use enmm::cosimulation::{Parameter, PortKind, parameters};
 use enmm::model::Case;
+use enmm::model::case::Port;
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -184,12 +185,20 @@ pub enum Quantity {
     Blocks(Motion),
 }
 
+impl Quantity {
+    /// Whether the value is a function of the state of the model alone: an input that is set does not change it before
+    /// the next step. What blocks, boundaries, joints and monitors do is such.
+    pub fn is_of_state(self) -> bool {
+        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_))
+    }
+}
+
 /// One variable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
     /// Value reference, unique across all types.
     pub reference: u32,
-    /// Name.
+    /// Name, without control characters.
     pub name: String,
     /// What it is, with sign and when it acts.
     pub description: String,
@@ -201,7 +210,7 @@ pub struct Variable {
     pub causality: Causality,
     /// Start value of a parameter or an input; a Boolean is 0 or 1.
     pub start: Option<f64>,
-    /// Least and greatest value of a parameter.
+    /// Least and greatest value, for parameters and a few inputs.
     pub limits: Option<(f64, f64)>,
     /// Number of elements of an array; `None` for a scalar.
     pub length: Option<usize>,
@@ -212,6 +221,12 @@ pub struct Variable {
 }
 
 impl Variable {
+    /// Whether the value may change at any time, and not only at events: a number with decimals that is no parameter.
+    pub fn is_continuous(&self) -> bool {
+        let jumps = matches!(self.quantity, Quantity::Total(Total::LastEventTime));
+        self.kind == Type::Real && self.causality != Causality::Parameter && !jumps
+    }
+
     /// Number of values: those of an array, or 1.
     pub fn size(&self) -> usize {
         self.length.unwrap_or(1)
@@ -280,12 +295,19 @@ fn token(variables: &[Variable], hash: &str, version: Version) -> String {
 }
 
 /// The kind of a port of a case.
-pub fn port_kind(port: &enmm::model::case::Port) -> PortKind {
+pub fn port_kind(port: &Port) -> PortKind {
     match (port.boundary, port.joint) {
         (Some(_), _) => PortKind::Boundary,
         (_, Some(_)) => PortKind::Joint,
         _ => PortKind::Block,
     }
+}
+
+/// The name with control characters, which no importer can take, and their escape sign written out: `\u{9}` for a tab.
+/// Different names stay different.
+fn plain(name: &str) -> String {
+    let bad = |c: char| c.is_control() || matches!(c, '\\' | '\u{fffe}' | '\u{ffff}');
+    name.chars().map(|c| if bad(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }
 
 /// Rows in the making.
@@ -308,7 +330,7 @@ impl Rows {
     ) {
         self.variables.push(Variable {
             reference: self.variables.len() as u32,
-            name: name.to_owned(),
+            name: plain(name),
             description: what.to_owned(),
             unit,
             kind,
@@ -352,7 +374,8 @@ impl Rows {
     fn parameters(&mut self, parameters: &[Parameter]) {
         for (k, p) in parameters.iter().enumerate() {
             let row = self.parameter(&p.name, &p.description, p.unit, Type::Real, Quantity::Parameter(k));
-            (row.start, row.limits) = (Some(p.start), Some((p.low, p.high)));
+            // The value of the case itself is always allowed.
+            (row.start, row.limits) = (Some(p.start), Some((p.low.min(p.start), p.high.max(p.start))));
         }
         let what = "Threads that a step uses; results do not depend on it";
         let row = self.parameter("threads", what, "", Type::Integer, Quantity::Threads);
@@ -362,11 +385,10 @@ impl Rows {
     }
 
     fn inputs(&mut self, case: &Case, version: Version) {
-        let gravity = [case.gravity.x, case.gravity.y];
-        for (axis, letter, start) in [(Axis::X, "x", gravity[0]), (Axis::Y, "y", gravity[1])] {
-            let what = format!("Acceleration of gravity, {letter}, y up");
-            self.input(&format!("gravity_{letter}"), &what, "m/s2", start, Quantity::Gravity(axis));
-        }
+        let what = "Acceleration of gravity, x";
+        self.input("gravity_x", what, "m/s2", case.gravity.x, Quantity::Gravity(Axis::X));
+        let what = "Acceleration of gravity, y up: -9.81 on earth";
+        self.input("gravity_y", what, "m/s2", case.gravity.y, Quantity::Gravity(Axis::Y));
         for (axis, letter) in AXES {
             let what = format!("Acceleration of the base, {letter}; rock feels the opposite");
             let quantity = Quantity::BaseAcceleration(axis);
@@ -377,41 +399,46 @@ impl Rows {
             self.input("water_level", what, "m", water.level, Quantity::WaterLevel);
         }
         let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
-        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
+        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor).limits = Some((0.0, 1e6));
         for (k, port) in case.ports.iter().enumerate() {
-            self.port_inputs(k, &port.name, port_kind(port));
+            self.port_inputs(k, port);
         }
         if version == Version::Three {
             self.block_inputs();
         }
     }
 
-    fn port_inputs(&mut self, k: usize, port: &str, kind: PortKind) {
-        let mut add = |word: &str, what: String, unit, quantity| {
-            self.input(&format!("{port}.{word}"), &what, unit, 0.0, quantity).port = Some(port.to_owned());
+    fn port_inputs(&mut self, k: usize, port: &Port) {
+        let (name, kind) = (&port.name, port_kind(port));
+        let mut add = |word: &str, what: &str, unit, start: f64, quantity| {
+            let what = format!("{what}, port {name}");
+            self.input(&format!("{name}.{word}"), &what, unit, start, quantity).port = Some(name.clone());
         };
-        for (axis, letter) in AXES {
+        for ((axis, letter), component) in AXES.into_iter().zip([0, 1]) {
             if kind == PortKind::Block {
                 let what = format!("Force per metre of depth through the centroid of the block, {letter}");
-                add(&format!("force_{letter}"), what, "N/m", Quantity::PortForce(k, axis));
+                let start = port.force[component];
+                add(&format!("force_{letter}"), &what, "N/m", start, Quantity::PortForce(k, axis));
             }
             if kind == PortKind::Boundary {
                 let what = format!("Traction on the boundary, {letter}, global axes, per reference length");
-                add(&format!("traction_{letter}"), what, "Pa", Quantity::PortTraction(k, axis));
+                let start = port.traction[component];
+                add(&format!("traction_{letter}"), &what, "Pa", start, Quantity::PortTraction(k, axis));
             }
         }
+        let pressure = Quantity::PortPressure(k);
         match kind {
             PortKind::Block => {
                 let what = "Moment per metre of depth about the centroid of the block, counter-clockwise";
-                add("moment", what.to_owned(), "N.m/m", Quantity::PortMoment(k));
+                add("moment", what, "N.m/m", port.moment, Quantity::PortMoment(k));
             }
             PortKind::Boundary => {
                 let what = "Pressure on the boundary, pushing into the rock";
-                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+                add("pressure", what, "Pa", port.pressure, pressure);
             }
             PortKind::Joint => {
                 let what = "Fluid pressure in the joints, pushing on both faces";
-                add("pressure", what.to_owned(), "Pa", Quantity::PortPressure(k));
+                add("pressure", what, "Pa", port.pressure, pressure);
             }
         }
     }
@@ -432,13 +459,15 @@ impl Rows {
             let motions = port_motions(port_kind(port));
             for &(motion, word, what, unit) in motions {
                 let name = format!("{}.{word}", port.name);
-                self.output(&name, what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
+                let what = format!("{what}, port {}", port.name);
+                self.output(&name, &what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
             }
         }
         for (k, monitor) in case.monitors.iter().enumerate() {
             for &(motion, word, what, unit) in &PORT_MOTIONS[..4] {
                 let name = format!("monitor.{}.{word}", monitor.name);
-                self.output(&name, what, unit, Quantity::Monitor(k, motion));
+                let what = format!("{what}, monitor {}", monitor.name);
+                self.output(&name, &what, unit, Quantity::Monitor(k, motion));
             }
         }
         for &(total, name, what, unit, kind) in TOTALS {

@@ -1,1 +1,22 @@
-//! FMI 3 co-simulation entry points over `enmm_fmi`.
+//! FMI 3 co-simulation entry points over `enmm_fmi`. The functions are those of `fmi3Functions.h`.
+//!
+//! An instance is the number of a live one in the form of a pointer, and so is a saved state: one that was freed, or
+//! never made, is refused. Whatever goes wrong inside is a status and a log line; nothing unwinds into the importer.
+#![allow(non_snake_case, reason = "names of the standard")]
+#![allow(missing_docs, clippy::missing_safety_doc, reason = "the standard documents its functions and their contracts")]
+
+mod common;
+mod cosimulation;
+#[path = "../../fmi2/src/raw.rs"]
+mod raw;
+mod refused;
+mod saved;
+mod types;
+mod variables;
+
+pub use common::*;
+pub use cosimulation::*;
+pub use refused::*;
+pub use saved::*;
+pub use types::*;
+pub use variables::*;

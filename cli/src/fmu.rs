@@ -1,0 +1,83 @@
+//! `enmm fmu`: packs a case as a co-simulation FMU.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use enmm_fmi::pack::{PackError, Packed, pack};
+use enmm_fmi::{library, table};
+
+use crate::{BAD_INPUT, FAILED, fail, print_line};
+
+/// Arguments of `enmm fmu`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Case file (TOML).
+    case: PathBuf,
+    /// File to write; default: the name of the case file with `.fmu`, here.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Version of the standard.
+    #[arg(long, value_enum, default_value = "3")]
+    fmi: Version,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Version {
+    #[value(name = "2")]
+    Two,
+    #[value(name = "3")]
+    Three,
+}
+
+/// Packs a case and tells what was written. Nothing is written unless all of it is.
+pub fn fmu(arguments: &Arguments) -> ExitCode {
+    let version = match arguments.fmi {
+        Version::Two => table::Version::Two,
+        Version::Three => table::Version::Three,
+    };
+    let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.case));
+    let packed = match packed(&arguments.case, version, &output) {
+        Ok(packed) => packed,
+        Err((message, status)) => return fail(&message, status),
+    };
+    if let Err(error) = enmm::io::files::write_atomic(&output, &packed.bytes) {
+        return fail(&format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
+    }
+    print_line(&line(&packed, version, &output));
+    ExitCode::SUCCESS
+}
+
+/// The name of the case file with another extension, in the current directory.
+fn default_output(case: &Path) -> PathBuf {
+    let mut name = case.file_stem().unwrap_or_default().to_owned();
+    name.push(".fmu");
+    PathBuf::from(name)
+}
+
+fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
+    let loaded = enmm::io::load_case(case).map_err(|error| (error.to_string(), BAD_INPUT))?;
+    if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
+        return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
+    }
+    for warning in &loaded.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
+    let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;
+    let unreadable = |error| (format!("{}: cannot read the library ({error})", path.display()), BAD_INPUT);
+    let library = std::fs::read(&path).map_err(unreadable)?;
+    let name = case.file_name().unwrap_or_default().to_string_lossy();
+    pack(&loaded, &name, version, &library).map_err(|error| {
+        let status = if matches!(error, PackError::Model(_)) { BAD_INPUT } else { FAILED };
+        (error.to_string(), status)
+    })
+}
+
+fn line(packed: &Packed, version: table::Version, output: &Path) -> String {
+    let Packed { bytes, variables, blocks } = packed;
+    let number = if version == table::Version::Two { "2.0" } else { "3.0" };
+    let many = if *blocks == 1 { "" } else { "s" };
+    let size = bytes.len() as f64 / 1e6;
+    format!("{}: FMI {number}, {size:.1} MB, {variables} variables, {blocks} block{many}", output.display())
+}

@@ -1,0 +1,151 @@
+//! What the model descriptions of both versions have in common.
+
+use std::io;
+
+use enmm::cosimulation::Cosimulation;
+
+use crate::log_category::CATEGORIES;
+use crate::table::{Causality, Table, Type, Variable};
+use crate::unit;
+use crate::xml::{Xml, number};
+
+/// What a model description says beside its variables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facts {
+    /// Title of the case.
+    pub title: String,
+    /// Name of the library, a C identifier.
+    pub identifier: String,
+    /// What the model is.
+    pub summary: String,
+    /// Time (s) that the stages of the case cover.
+    pub stop_time: f64,
+    /// Communication step (s) that the case suggests.
+    pub communication_step: f64,
+    /// Internal step (s).
+    pub internal_step: f64,
+    /// Number of blocks.
+    pub blocks: usize,
+}
+
+impl Facts {
+    /// The facts of a model.
+    pub fn of(model: &Cosimulation, identifier: &str) -> Self {
+        let blocks = model.simulation().slope().covers.block_count();
+        let title = model.case().title.trim();
+        let title = if title.is_empty() { identifier } else { title };
+        Self {
+            title: title.to_owned(),
+            identifier: identifier.to_owned(),
+            summary: format!("Jointed rock slope of {blocks} blocks, explicit numerical manifold method"),
+            stop_time: model.stop_time(),
+            communication_step: short(model.communication_step()),
+            internal_step: short(model.internal_step()),
+            blocks,
+        }
+    }
+}
+
+/// The value without the last digits of a rounding error: 0.012 for 0.011999999999999999.
+fn short(value: f64) -> f64 {
+    let rounded = format!("{value:.13e}").parse().unwrap_or(value);
+    if number(rounded).len() + 3 < number(value).len() { rounded } else { value }
+}
+
+/// Name and version of the tool that made the FMU.
+pub fn tool() -> String {
+    format!("enmm {}", enmm::io::checkpoint::engine_version())
+}
+
+/// Writes the units that the table uses.
+pub fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
+    let used = |unit| table.variables.iter().any(|variable| unit::of(variable) == Some(unit));
+    xml.element("UnitDefinitions", &[], |xml| {
+        for unit in unit::UNITS.iter().filter(|unit| used(*unit)) {
+            xml.element("Unit", &[("name", unit.name.to_owned())], |xml| {
+                let bases = ["kg", "m", "s", "rad"].into_iter().zip(unit.exponents);
+                let powers: Vec<_> =
+                    bases.filter(|(_, power)| *power != 0).map(|(base, power)| (base, power.to_string())).collect();
+                xml.leaf("BaseUnit", &powers)?;
+                let Some((name, factor)) = unit::display(unit.name) else { return Ok(()) };
+                xml.leaf("DisplayUnit", &[("name", name.to_owned()), ("factor", number(factor))])
+            })?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes the log categories.
+pub fn log_categories(xml: &mut Xml) -> io::Result<()> {
+    xml.element("LogCategories", &[], |xml| {
+        CATEGORIES.iter().try_for_each(|(name, description)| {
+            xml.leaf("Category", &[("name", (*name).to_owned()), ("description", (*description).to_owned())])
+        })
+    })
+}
+
+/// Writes the default experiment.
+pub fn experiment(xml: &mut Xml, facts: &Facts) -> io::Result<()> {
+    let attributes = [
+        ("startTime", number(0.0)),
+        ("stopTime", number(facts.stop_time)),
+        ("stepSize", number(facts.communication_step)),
+    ];
+    xml.leaf("DefaultExperiment", &attributes)
+}
+
+/// The word for a causality in both versions.
+pub fn causality(variable: &Variable) -> String {
+    match variable.causality {
+        Causality::Independent => "independent",
+        Causality::Parameter => "parameter",
+        Causality::Input => "input",
+        Causality::Output => "output",
+    }
+    .to_owned()
+}
+
+/// The word for a variability in both versions.
+pub fn variability(variable: &Variable) -> String {
+    match variable.causality {
+        Causality::Parameter => "fixed",
+        _ if variable.is_continuous() => "continuous",
+        _ => "discrete",
+    }
+    .to_owned()
+}
+
+/// How the first value comes about: given for parameters, calculated for outputs, not to be said for all others.
+pub fn initial(variable: &Variable) -> Option<(&'static str, String)> {
+    match variable.causality {
+        Causality::Parameter => Some(("initial", "exact".to_owned())),
+        Causality::Output => Some(("initial", "calculated".to_owned())),
+        Causality::Independent | Causality::Input => None,
+    }
+}
+
+/// Quantity, unit, display unit, least, greatest and start value, as far as the variable has them.
+pub fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
+    let mut attributes = Vec::new();
+    if let Some(unit) = unit::of(variable) {
+        attributes.push(("quantity", unit.quantity.to_owned()));
+        attributes.push(("unit", unit.name.to_owned()));
+    }
+    if let Some((name, _)) = unit::display(variable.unit) {
+        attributes.push(("displayUnit", name.to_owned()));
+    }
+    if let Some((low, high)) = variable.limits {
+        attributes.extend([("min", number(low)), ("max", number(high))]);
+    }
+    if let Some(start) = variable.start {
+        let one = if variable.kind == Type::Boolean { (start != 0.0).to_string() } else { number(start) };
+        attributes.push(("start", vec![one; variable.size()].join(" ")));
+    }
+    attributes
+}
+
+/// What the unknown of an output depends on: nothing that a host can set, where its value is a function of the state
+/// alone; unsaid, and so everything, elsewhere. Importers may then close loops over such outputs.
+pub fn dependencies(variable: &Variable) -> Option<(&'static str, String)> {
+    variable.quantity.is_of_state().then(|| ("dependencies", String::new()))
+}

@@ -1,0 +1,100 @@
+//! `modelDescription.xml` of FMI 3.0.
+
+use std::io;
+
+use crate::description::{
+    Facts, causality, dependencies, experiment, initial, log_categories, tool, units, value_attributes, variability,
+};
+use crate::table::{Causality, Table, Type, Variable};
+use crate::xml::Xml;
+
+/// Media type of the output that holds the whole state.
+pub const SNAPSHOT_TYPE: &str = "application/x-enmm-state";
+
+/// The model description; `table` is that of FMI 3.
+///
+/// # Errors
+/// None in practice: it is written to memory.
+pub fn model_description(table: &Table, facts: &Facts) -> io::Result<Vec<u8>> {
+    let mut xml = Xml::new()?;
+    let attributes = [
+        ("fmiVersion", "3.0".to_owned()),
+        ("modelName", facts.title.clone()),
+        ("instantiationToken", table.token.clone()),
+        ("description", facts.summary.clone()),
+        ("generationTool", tool()),
+        ("variableNamingConvention", "flat".to_owned()),
+    ];
+    xml.element("fmiModelDescription", &attributes, |xml| {
+        xml.leaf("CoSimulation", &capabilities(facts))?;
+        units(xml, table)?;
+        log_categories(xml)?;
+        experiment(xml, facts)?;
+        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| variable(xml, v)))?;
+        structure(xml, table)
+    })?;
+    Ok(xml.finish())
+}
+
+/// `fixedInternalStepSize` is left out: internal steps are redone in halves where a step does not settle, and parts of
+/// them end communication steps between two points of the grid.
+fn capabilities(facts: &Facts) -> Vec<(&'static str, String)> {
+    let flags = [
+        ("needsExecutionTool", "false"),
+        ("canBeInstantiatedOnlyOncePerProcess", "false"),
+        ("canGetAndSetFMUState", "true"),
+        ("canSerializeFMUState", "true"),
+        ("providesDirectionalDerivatives", "false"),
+        ("providesAdjointDerivatives", "false"),
+        ("canHandleVariableCommunicationStepSize", "true"),
+        ("maxOutputDerivativeOrder", "1"),
+        ("providesIntermediateUpdate", "true"),
+        ("mightReturnEarlyFromDoStep", "true"),
+        ("canReturnEarlyAfterIntermediateUpdate", "true"),
+        ("hasEventMode", "false"),
+        ("providesEvaluateDiscreteStates", "false"),
+    ];
+    let mut attributes = vec![("modelIdentifier", facts.identifier.clone())];
+    attributes.extend(flags.map(|(name, value)| (name, value.to_owned())));
+    attributes
+}
+
+fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+    let mut attributes = vec![
+        ("name", variable.name.clone()),
+        ("valueReference", variable.reference.to_string()),
+        ("description", variable.description.clone()),
+        ("causality", causality(variable)),
+        ("variability", variability(variable)),
+    ];
+    // Only continuous variables may be asked for in an intermediate update.
+    if variable.causality == Causality::Output && variable.is_continuous() {
+        attributes.push(("intermediateUpdate", "true".to_owned()));
+    }
+    attributes.extend(initial(variable));
+    if variable.kind == Type::Binary {
+        attributes.push(("mimeType", SNAPSHOT_TYPE.to_owned()));
+    }
+    attributes.extend(value_attributes(variable));
+    let kind = match variable.kind {
+        Type::Real => "Float64",
+        Type::Integer => "Int32",
+        Type::Boolean => "Boolean",
+        Type::Binary => "Binary",
+    };
+    let Some(length) = variable.length else { return xml.leaf(kind, &attributes) };
+    xml.element(kind, &attributes, |xml| xml.leaf("Dimension", &[("start", length.to_string())]))
+}
+
+fn structure(xml: &mut Xml, table: &Table) -> io::Result<()> {
+    let outputs = || table.variables.iter().filter(|variable| variable.causality == Causality::Output);
+    let reference = |variable: &Variable| ("valueReference", variable.reference.to_string());
+    xml.element("ModelStructure", &[], |xml| {
+        outputs().try_for_each(|variable| {
+            let mut attributes = vec![reference(variable)];
+            attributes.extend(dependencies(variable));
+            xml.leaf("Output", &attributes)
+        })?;
+        outputs().try_for_each(|variable| xml.leaf("InitialUnknown", &[reference(variable)]))
+    })
+}

@@ -1,0 +1,202 @@
+//! Instances as importers hold them: numbers for live instances, calls that cannot unwind, messages delivered when the
+//! instance is free again, so that a callback may call back.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, RwLock, TryLockError};
+
+use crate::instance::{Instance, Step, Update};
+use crate::log::{Message, Status};
+
+/// The importer's side of an instance.
+pub trait Host {
+    /// Takes a message.
+    fn log(&self, message: &Message);
+}
+
+/// A live instance with its importer.
+#[derive(Debug)]
+pub struct Handle<H> {
+    instance: Mutex<Instance>,
+    host: H,
+}
+
+/// How a step ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ended {
+    /// Status of the call.
+    pub status: Status,
+    /// Time at which the instance stands (s).
+    pub time: f64,
+    /// Whether it ended before its end.
+    pub early: bool,
+}
+
+impl<H: Host> Handle<H> {
+    /// Does `work` on the instance; `function` stands before its messages. A panic is [`Status::Fatal`], and so is every
+    /// later call.
+    pub fn call(&self, function: &str, work: impl FnOnce(&mut Instance) -> Status) -> Status {
+        let done = catch_unwind(AssertUnwindSafe(|| match self.instance.try_lock() {
+            Ok(mut instance) => {
+                let status = work(&mut instance);
+                (status, instance.take_messages())
+            }
+            Err(TryLockError::WouldBlock) => {
+                (Status::Error, vec![Message::error("the instance is busy with a call of another thread")])
+            }
+            Err(TryLockError::Poisoned(_)) => {
+                (Status::Fatal, vec![Message::fatal("the instance is lost since an earlier panic: free it")])
+            }
+        }));
+        let (status, messages) = done.unwrap_or_else(|panic| {
+            (Status::Fatal, vec![Message::fatal(format!("panic: {}", panic_text(panic.as_ref())))])
+        });
+        for mut message in messages {
+            message.text.insert_str(0, ": ");
+            message.text.insert_str(0, function);
+            self.host.log(&message);
+        }
+        status
+    }
+
+    /// A whole step. The instance is free while `update` runs, which may return the time of an early return.
+    pub fn do_step(
+        &self,
+        function: &str,
+        (t, h): (f64, f64),
+        mut update: Option<&mut dyn FnMut(Update) -> Option<f64>>,
+    ) -> Ended {
+        let mut step: Option<Step> = None;
+        let mut time = t;
+        let mut status = self.call(function, |instance| {
+            let begun = instance.begin_step(t, h);
+            time = instance.time();
+            begun.map_or_else(
+                |status| status,
+                |begun| {
+                    step = Some(begun);
+                    Status::Ok
+                },
+            )
+        });
+        let Some(mut step) = step else { return Ended { status, time, early: false } };
+        let mut last_told = t;
+        while status == Status::Ok && !step.is_done() {
+            let mut told = None;
+            status = self.call(function, |instance| {
+                let status = instance.advance_step(&mut step);
+                time = instance.time_of_model();
+                let news = status == Status::Ok && update.is_some() && time > last_told;
+                told = news.then(|| instance.enter_update());
+                status
+            });
+            if let (Some(mut told), Some(update)) = (told, update.as_mut()) {
+                last_told = told.time;
+                told.can_return_early &= !step.is_done();
+                let wanted = update(told).filter(|_| told.can_return_early);
+                status = self.call(function, |instance| instance.leave_update(&mut step, wanted));
+            }
+        }
+        if let Ok(instance) = self.instance.try_lock() {
+            time = instance.time();
+        }
+        Ended { status, time, early: status == Status::Ok && step.is_early() }
+    }
+
+    /// The importer's side.
+    pub fn host(&self) -> &H {
+        &self.host
+    }
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a message")
+}
+
+/// All live instances of a library by number. A number that is freed or was never given is not found.
+#[derive(Debug)]
+pub struct Live<H> {
+    handles: RwLock<BTreeMap<usize, Arc<Handle<H>>>>,
+    next: AtomicUsize,
+}
+
+impl<H> Live<H> {
+    /// None yet.
+    #[expect(clippy::new_without_default, reason = "made once, in a static")]
+    pub const fn new() -> Self {
+        Self { handles: RwLock::new(BTreeMap::new()), next: AtomicUsize::new(1) }
+    }
+
+    /// Adds an instance and returns its number, never 0.
+    pub fn insert(&self, instance: Instance, host: H) -> usize {
+        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        let handle = Arc::new(Handle { instance: Mutex::new(instance), host });
+        self.handles.write().unwrap_or_else(PoisonError::into_inner).insert(number, handle);
+        number
+    }
+
+    /// The instance with a number.
+    pub fn get(&self, number: usize) -> Option<Arc<Handle<H>>> {
+        self.handles.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned()
+    }
+
+    /// Ends the instance with a number.
+    pub fn remove(&self, number: usize) {
+        let removed = self.handles.write().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        drop(removed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::instance::Plan;
+    use crate::table::{Table, Version};
+
+    #[derive(Default)]
+    struct Listener(Mutex<Vec<Message>>);
+
+    impl Host for Listener {
+        fn log(&self, message: &Message) {
+            self.0.lock().unwrap().push(message.clone());
+        }
+    }
+
+    fn instance(folder: &std::path::Path) -> Instance {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let loaded = enmm::io::load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap();
+        std::fs::write(folder.join(crate::resource::FILE), crate::resource::encode(&loaded, "incline").unwrap())
+            .unwrap();
+        let model = enmm::cosimulation::Cosimulation::new(&loaded).unwrap();
+        let token = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, Version::Three).token;
+        let plan = Plan {
+            version: Version::Three,
+            name: "a",
+            token: &token,
+            resources: folder,
+            logging: false,
+            early_return: true,
+        };
+        Instance::new(plan).unwrap()
+    }
+
+    #[test]
+    fn a_panic_is_fatal_and_logged_and_other_instances_go_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let live = Live::new();
+        let numbers = [0, 1].map(|_| live.insert(instance(folder.path()), Listener::default()));
+        let handle = live.get(numbers[0]).unwrap();
+        assert_eq!(handle.call("f", |_| panic!("broken")), Status::Fatal);
+        assert_eq!(handle.call("g", |instance| instance.terminate()), Status::Fatal);
+        let texts: Vec<String> = handle.host().0.lock().unwrap().iter().map(|m| m.text.clone()).collect();
+        assert_eq!(texts[0], "f: panic: broken");
+        assert!(texts[1].starts_with("g: the instance is lost"));
+        live.remove(numbers[0]);
+        assert!(live.get(numbers[0]).is_none() && live.get(0).is_none());
+        let other = live.get(numbers[1]).unwrap();
+        assert_eq!(other.call("f", |instance| instance.enter_initialization(None)), Status::Ok);
+        assert_eq!(other.call("f", |_| other.call("g", |_| Status::Ok)), Status::Error, "an instance within a call");
+    }
+}

@@ -1,0 +1,335 @@
+//! One instance of an FMU: its life cycle. Both sets of C entry points are thin over it.
+//!
+//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is then
+//! [`Phase::Error`], except for calls that only handle saved states or logging.
+
+mod read;
+mod saved;
+mod step;
+mod write;
+
+pub use step::{Step, Update};
+
+use std::path::Path;
+
+use enmm::cosimulation::{Cosimulation, Interpolation, Saved, apply};
+use enmm::io::LoadedCase;
+
+use crate::log::{Category, Filter, Message, Status};
+use crate::phase::{Call, Phase, is_legal};
+use crate::resource;
+use crate::table::{Table, Version};
+use crate::values::Values;
+
+/// Relative difference below which a time is not behind the stop time.
+const STOP_TOLERANCE: f64 = 1e-9;
+
+/// Why a call failed; the text goes to the log.
+pub type Failure = String;
+
+/// What an importer gives to make an instance.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan<'a> {
+    /// Version of the standard.
+    pub version: Version,
+    /// Name of the instance.
+    pub name: &'a str,
+    /// Token of the model description.
+    pub token: &'a str,
+    /// Folder of resources.
+    pub resources: &'a Path,
+    /// Whether all categories of messages are on.
+    pub logging: bool,
+    /// Whether steps may end early (FMI 3).
+    pub early_return: bool,
+}
+
+/// Times of an experiment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Experiment {
+    start: f64,
+    stop: Option<f64>,
+}
+
+/// One instance.
+#[derive(Debug)]
+pub struct Instance {
+    table: Table,
+    loaded: LoadedCase,
+    model: Cosimulation,
+    /// State of the model of the case itself, as it was built.
+    initial: Saved,
+    /// Parameters that the model was built with.
+    built: Vec<f64>,
+    threads: usize,
+    values: Values,
+    phase: Phase,
+    experiment: Experiment,
+    time: f64,
+    early_return: bool,
+    filter: Filter,
+    messages: Vec<Message>,
+    cache: read::Cache,
+    states: saved::Shelf,
+}
+
+impl Instance {
+    /// Builds the model and checks the token.
+    ///
+    /// # Errors
+    /// What is missing, damaged or does not fit.
+    pub fn new(plan: Plan) -> Result<Self, Failure> {
+        if plan.name.trim().is_empty() {
+            return Err("the name of the instance is empty: give one".to_owned());
+        }
+        let loaded = resource::load(plan.resources).map_err(|error| error.to_string())?;
+        let model = Cosimulation::new(&loaded).map_err(|error| error.to_string())?;
+        let blocks = model.simulation().slope().covers.block_count();
+        let table = Table::new(&loaded.case, blocks, &loaded.hash, plan.version);
+        if plan.token != table.token {
+            let (given, own) = (plan.token, &table.token);
+            return Err(format!("the token is {given}, must be {own}: give that of the model description of this FMU"));
+        }
+        let values = Values::of(&table);
+        let mut instance = Self {
+            initial: model.save(),
+            built: values.parameters(&table),
+            threads: 1,
+            values,
+            phase: Phase::Instantiated,
+            experiment: Experiment { start: 0.0, stop: None },
+            time: 0.0,
+            early_return: plan.early_return,
+            filter: Filter::new(plan.logging),
+            messages: Vec::new(),
+            cache: read::Cache::default(),
+            states: saved::Shelf::default(),
+            table,
+            loaded,
+            model,
+        };
+        instance.log(Status::Ok, Category::All, format!("built a model of {blocks} blocks"));
+        Ok(instance)
+    }
+
+    /// The variables.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Cosimulation {
+        &self.model
+    }
+
+    /// State of the instance.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Time of the importer at which the model stands (s).
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Messages since the last call of this function, those left out that the importer did not ask for.
+    pub fn take_messages(&mut self) -> Vec<Message> {
+        std::mem::take(&mut self.messages)
+    }
+
+    fn log(&mut self, status: Status, category: Category, text: String) {
+        if self.filter.passes(category) {
+            self.messages.push(Message { status, category, text });
+        }
+    }
+
+    /// Ends a call that failed.
+    fn fail(&mut self, failure: Failure) -> Status {
+        self.phase = Phase::Error;
+        self.complain(failure)
+    }
+
+    /// Ends a call that failed but touches nothing that the rest depends on.
+    fn complain(&mut self, failure: Failure) -> Status {
+        self.log(Status::Error, Category::Error, failure);
+        Status::Error
+    }
+
+    fn end(&mut self, outcome: Result<(), Failure>) -> Status {
+        match outcome {
+            Ok(()) => Status::Ok,
+            Err(failure) => self.fail(failure),
+        }
+    }
+
+    fn allow(&self, call: Call) -> Result<(), Failure> {
+        if is_legal(self.table.version, call, self.phase) {
+            return Ok(());
+        }
+        let state = self.phase.name();
+        Err(format!("this call is illegal in the state `{state}`; see the calling sequence of the standard"))
+    }
+
+    /// Whether a call is legal now; if not, the call has failed.
+    pub fn permits(&mut self, call: Call) -> Status {
+        let outcome = self.allow(call);
+        self.end(outcome)
+    }
+
+    /// Fails a call for a reason that the entry point has found, such as a missing pointer.
+    pub fn refuse(&mut self, reason: &str) -> Status {
+        self.fail(reason.to_owned())
+    }
+
+    /// setDebugLogging.
+    pub fn set_logging(&mut self, on: bool, categories: &[&str]) -> Status {
+        let legal = self.allow(Call::Logging);
+        match legal.and_then(|()| Filter::of(on, categories).map_err(unknown_category)) {
+            Ok(filter) => {
+                self.filter = filter;
+                Status::Ok
+            }
+            Err(failure) => self.complain(failure),
+        }
+    }
+
+    /// setupExperiment of FMI 2.
+    pub fn set_up(&mut self, start: f64, stop: Option<f64>) -> Status {
+        let outcome = self.allow(Call::Setup).and_then(|()| self.take_times(start, stop));
+        self.end(outcome)
+    }
+
+    /// enterInitializationMode; FMI 3 gives the times here.
+    pub fn enter_initialization(&mut self, times: Option<(f64, Option<f64>)>) -> Status {
+        let legal = self.allow(Call::EnterInitialization);
+        let outcome = legal.and_then(|()| times.map_or(Ok(()), |(start, stop)| self.take_times(start, stop)));
+        if outcome.is_ok() {
+            self.phase = Phase::Initialization;
+        }
+        self.end(outcome)
+    }
+
+    fn take_times(&mut self, start: f64, stop: Option<f64>) -> Result<(), Failure> {
+        if !start.is_finite() {
+            return Err(format!("the start time is {start} s, must be finite"));
+        }
+        if let Some(stop) = stop
+            && !(stop.is_finite() && stop >= start)
+        {
+            return Err(format!("the stop time is {stop} s, must be finite and not before the start, {start} s"));
+        }
+        self.experiment = Experiment { start, stop };
+        self.time = start;
+        Ok(())
+    }
+
+    /// exitInitializationMode: builds the model anew if parameters have changed, and seeks the initial equilibrium.
+    pub fn exit_initialization(&mut self) -> Status {
+        let legal = self.allow(Call::ExitInitialization);
+        let outcome = legal.and_then(|()| self.start_model());
+        if outcome.is_ok() {
+            self.phase = Phase::Step;
+        }
+        self.end(outcome)
+    }
+
+    fn start_model(&mut self) -> Result<(), Failure> {
+        self.rebuild_if_changed()?;
+        self.use_threads(self.values.threads(&self.table))?;
+        let linear = self.values.interpolates(&self.table);
+        self.model.set_interpolation(if linear { Interpolation::Linear } else { Interpolation::Hold });
+        self.cache.clear();
+        let started = self.model.start();
+        started.map_err(|error| format!("the initial equilibrium was not found: {error}"))?;
+        let steps = self.model.simulation().state().step;
+        self.log(Status::Ok, Category::All, format!("the initial equilibrium took {steps} internal steps"));
+        Ok(())
+    }
+
+    fn use_threads(&mut self, threads: usize) -> Result<(), Failure> {
+        if threads != self.threads {
+            self.model.set_threads(threads).map_err(|error| error.to_string())?;
+            self.threads = threads;
+        }
+        Ok(())
+    }
+
+    /// Builds the model of the parameters that hold, with the inputs that hold.
+    fn rebuild_if_changed(&mut self) -> Result<(), Failure> {
+        let wanted = self.values.parameters(&self.table);
+        if same_bits(&wanted, &self.built) {
+            return Ok(());
+        }
+        let mut model = self.model_of(&wanted)?;
+        self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
+        self.take_model(model, wanted);
+        Ok(())
+    }
+
+    /// A new model of the case with these parameters.
+    fn model_of(&self, parameters: &[f64]) -> Result<Cosimulation, Failure> {
+        let mut case = self.loaded.case.clone();
+        let mut changed = Vec::new();
+        for (parameter, &value) in self.table.parameters.iter().zip(parameters) {
+            apply(&mut case, parameter, value).map_err(|error| error.to_string())?;
+            if value.to_bits() != parameter.start.to_bits() {
+                changed.push(format!("{} = {value}", parameter.name));
+            }
+        }
+        if changed.is_empty() {
+            return Cosimulation::new(&self.loaded).map_err(|error| error.to_string());
+        }
+        let located = |problem: String| format!("no model can be built with {}: {problem}", changed.join(", "));
+        let loaded = LoadedCase::of(case, self.loaded.source.file()).map_err(|error| located(error.to_string()))?;
+        Cosimulation::new(&loaded).map_err(|error| located(error.to_string()))
+    }
+
+    fn take_model(&mut self, model: Cosimulation, built: Vec<f64>) {
+        self.model = model;
+        self.built = built;
+        self.threads = 1;
+        self.cache.clear();
+    }
+
+    /// terminate.
+    pub fn terminate(&mut self) -> Status {
+        let outcome = self.allow(Call::Terminate);
+        if outcome.is_ok() {
+            self.phase = Phase::Terminated;
+        }
+        self.end(outcome)
+    }
+
+    /// reset: everything is as after instantiate, but for saved states and logging.
+    pub fn reset(&mut self) -> Status {
+        let outcome = self.allow(Call::Reset).and_then(|()| self.renew());
+        self.end(outcome)
+    }
+
+    fn renew(&mut self) -> Result<(), Failure> {
+        let values = Values::of(&self.table);
+        let start = values.parameters(&self.table);
+        if same_bits(&start, &self.built) {
+            self.model.restore(&self.initial).map_err(|error| error.to_string())?;
+        } else {
+            let model = self.model_of(&start)?;
+            self.take_model(model, start);
+        }
+        self.use_threads(1)?;
+        self.cache.clear();
+        self.values = values;
+        self.experiment = Experiment { start: 0.0, stop: None };
+        self.time = 0.0;
+        self.phase = Phase::Instantiated;
+        Ok(())
+    }
+}
+
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+fn unknown_category(name: &str) -> Failure {
+    let known = crate::log::LOG_CATEGORIES.join(", ");
+    format!("the log category is `{name}`, must be one of {known}")
+}

@@ -1,0 +1,218 @@
+//! Getters. What the model computes for all outputs at once is kept until it moves.
+
+use enmm::cosimulation::{EventKind, PortState, Totals};
+use enmm::geometry::Vector;
+use enmm::model::BlockState;
+
+use crate::log::Status;
+use crate::phase::{Call, Phase};
+use crate::table::{Axis, Causality, Component, Motion, Quantity, Table, Total, Type};
+
+use super::{Failure, Instance};
+
+/// What has been computed since the model last moved.
+#[derive(Debug, Default)]
+pub(super) struct Cache {
+    blocks: Option<Vec<BlockState>>,
+    totals: Option<Totals>,
+    ports: Vec<Option<PortState>>,
+    snapshot: Vec<u8>,
+}
+
+impl Cache {
+    /// Forgets everything but the bytes that the importer may still read.
+    pub(super) fn clear(&mut self) {
+        self.blocks = None;
+        self.totals = None;
+        self.ports.clear();
+    }
+}
+
+impl Instance {
+    /// Reads variables of one type into `values`, which has room for exactly their elements.
+    pub fn get(&mut self, references: &[u32], kind: Type, values: &mut [f64]) -> Status {
+        let legal = self.allow(Call::Get);
+        let outcome =
+            legal.and_then(|()| self.check_count(references, kind, values.len())).and_then(|()| self.prepare());
+        let outcome = outcome.and_then(|()| {
+            let mut rest = values;
+            for &reference in references {
+                let v = self.variable(reference, kind)?;
+                let (quantity, causality) = (v.quantity, v.causality);
+                let (own, others) = rest.split_at_mut(v.size());
+                rest = others;
+                match causality {
+                    Causality::Parameter | Causality::Input => own.copy_from_slice(self.values.get(reference)),
+                    Causality::Independent | Causality::Output => self.read(quantity, own),
+                }
+            }
+            Ok(())
+        });
+        self.end(outcome)
+    }
+
+    /// Reads first time derivatives of outputs.
+    pub fn get_derivatives(&mut self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Status {
+        let legal = self.allow(Call::GetDerivative);
+        let outcome = legal.and_then(|()| self.check_count(references, Type::Real, values.len()));
+        let outcome = outcome.and_then(|()| {
+            let mut rest = values;
+            for (&reference, &order) in references.iter().zip(orders) {
+                let v = self.variable(reference, Type::Real)?;
+                let derivative = Table::derivative(v.quantity).filter(|_| order == 1);
+                let none =
+                    || format!("{}: has no derivative of order {order}; only motions have one, of order 1", v.name);
+                let derivative = derivative.ok_or_else(none)?;
+                let (own, others) = rest.split_at_mut(v.size());
+                rest = others;
+                self.read(derivative, own);
+            }
+            Ok(())
+        });
+        self.end(outcome)
+    }
+
+    /// Reads the snapshot, once for each reference; the bytes stay until the next call of this function.
+    pub fn get_binary(&mut self, references: &[u32]) -> Result<&[u8], Status> {
+        let legal = self.allow(Call::Get).and_then(|()| self.check_count(references, Type::Binary, references.len()));
+        let outcome = legal.and_then(|()| self.prepare()).and_then(|()| {
+            let bytes = self.model.serialize(&self.model.save());
+            self.cache.snapshot = bytes.map_err(|error| format!("snapshot: {error}"))?;
+            Ok(())
+        });
+        match self.end(outcome) {
+            Status::Ok => Ok(&self.cache.snapshot),
+            status => Err(status),
+        }
+    }
+
+    /// While parameters may change, outputs are those of the parameters that hold.
+    fn prepare(&mut self) -> Result<(), Failure> {
+        match self.phase {
+            Phase::Instantiated | Phase::Initialization => self.rebuild_if_changed(),
+            _ => Ok(()),
+        }
+    }
+
+    fn read(&mut self, quantity: Quantity, values: &mut [f64]) {
+        match quantity {
+            Quantity::Time => values[0] = self.time,
+            Quantity::Port(k, motion) => values[0] = of_port(self.port(k), motion),
+            Quantity::Monitor(k, motion) => {
+                let (displacement, velocity) = self.model.simulation().monitor(k);
+                values[0] = match motion {
+                    Motion::Displacement(axis) => along(displacement, axis),
+                    Motion::Velocity(axis) => along(velocity, axis),
+                    _ => 0.0,
+                };
+            }
+            Quantity::Total(total) => values[0] = self.total(total),
+            Quantity::Blocks(motion) => {
+                let states = self.cache.blocks.get_or_insert_with(|| self.model.block_states());
+                values.iter_mut().zip(states).for_each(|(value, state)| *value = of_block(state, motion));
+            }
+            _ => {}
+        }
+    }
+
+    fn port(&mut self, k: usize) -> &PortState {
+        let ports = &mut self.cache.ports;
+        ports.resize(self.model.ports().len(), None);
+        ports[k].get_or_insert_with(|| self.model.port_state(k))
+    }
+
+    fn total(&mut self, total: Total) -> f64 {
+        let model = &self.model;
+        let last = model.simulation().state().events.list.len().checked_sub(1).and_then(|k| model.events().nth(k));
+        let slope = model.simulation().slope();
+        match total {
+            Total::CriticalDt => slope.critical_dt,
+            Total::InternalDt => model.internal_step(),
+            Total::EventCount => model.events().len() as f64,
+            Total::LastEventTime => last.map_or(0.0, |event| self.experiment.start + event.time),
+            Total::LastEventKind => last.map_or(0.0, |event| kind_number(event.kind)),
+            Total::LastEventSubject => {
+                last.filter(|event| event.subject != u32::MAX).map_or(-1.0, |event| f64::from(event.subject))
+            }
+            _ => of_totals(self.cache.totals.get_or_insert_with(|| model.totals()), total),
+        }
+    }
+}
+
+fn kind_number(kind: EventKind) -> f64 {
+    match kind {
+        EventKind::Detached => 1.0,
+        EventKind::Slipped => 2.0,
+        EventKind::Failed => 3.0,
+    }
+}
+
+fn along(vector: Vector, axis: Axis) -> f64 {
+    match axis {
+        Axis::X => vector.x,
+        Axis::Y => vector.y,
+    }
+}
+
+fn component(stress: [f64; 3], component: Component) -> f64 {
+    match component {
+        Component::Xx => stress[0],
+        Component::Yy => stress[1],
+        Component::Xy => stress[2],
+    }
+}
+
+fn of_port(port: &PortState, motion: Motion) -> f64 {
+    match motion {
+        Motion::Displacement(axis) => along(port.displacement, axis),
+        Motion::Velocity(axis) => along(port.velocity, axis),
+        Motion::Rotation => port.rotation,
+        Motion::AngularVelocity => port.angular_velocity,
+        Motion::ContactForce(axis) => along(port.contact_force, axis),
+        Motion::Stress(which) => component(port.stress, which),
+        Motion::NormalForce => port.normal_force,
+        Motion::ShearForce => port.shear_force,
+        Motion::Slip => port.slip,
+        Motion::Centroid(_) | Motion::Penetration | Motion::ContactCount => 0.0,
+    }
+}
+
+fn of_block(block: &BlockState, motion: Motion) -> f64 {
+    match motion {
+        Motion::Centroid(Axis::X) => block.centroid.x,
+        Motion::Centroid(Axis::Y) => block.centroid.y,
+        Motion::Displacement(axis) => along(block.displacement, axis),
+        Motion::Velocity(axis) => along(block.velocity, axis),
+        Motion::Rotation => block.rotation,
+        Motion::AngularVelocity => block.angular_velocity,
+        Motion::Stress(which) => component(block.mean_stress, which),
+        Motion::Penetration => block.penetration_max,
+        Motion::ContactCount => f64::from(block.contact_count),
+        Motion::ContactForce(_) | Motion::NormalForce | Motion::ShearForce | Motion::Slip => 0.0,
+    }
+}
+
+fn of_totals(totals: &Totals, total: Total) -> f64 {
+    let ledger = &totals.ledger;
+    match total {
+        Total::KineticEnergy => ledger.kinetic,
+        Total::StrainEnergy => ledger.strain,
+        Total::PotentialEnergy => ledger.potential,
+        Total::StoredEnergy => ledger.stored,
+        Total::FrictionHeat => ledger.friction,
+        Total::DampingLoss => ledger.damping,
+        Total::ExternalWork => ledger.external_work,
+        Total::EnergyResidual => ledger.residual(),
+        Total::DisplacementMax => totals.displacement_max,
+        Total::VelocityMax => totals.velocity_max,
+        Total::PenetrationMax => totals.penetration_max,
+        Total::UnbalancedRatio => totals.unbalanced,
+        Total::OpenContacts => f64::from(totals.open_contacts),
+        Total::SlidingContacts => f64::from(totals.slipping_contacts),
+        Total::LockedContacts => f64::from(totals.locked_contacts),
+        Total::DetachedBlocks => f64::from(totals.detached_blocks),
+        Total::SlippedJoints => f64::from(totals.slipped_joints),
+        Total::FailedBlocks => f64::from(totals.failed_blocks),
+        _ => 0.0,
+    }
+}

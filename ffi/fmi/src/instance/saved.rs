@@ -1,0 +1,182 @@
+//! Saved states of an instance. The importer holds numbers, so that one that is freed or foreign is recognised.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use enmm::cosimulation::Saved;
+use enmm::io::checkpoint;
+use serde::{Deserialize, Serialize};
+
+use crate::log::Status;
+use crate::phase::{Call, Phase};
+
+use super::{Experiment, Failure, Instance, same_bits};
+
+/// All that an instance needs to go on with the same bits, in this process or another.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Whole {
+    phase: u16,
+    start: f64,
+    stop: Option<f64>,
+    time: f64,
+    values: Vec<f64>,
+    /// Parameters of the model that `model` is a state of.
+    built: Vec<f64>,
+    model: Saved,
+}
+
+#[derive(Debug)]
+struct Entry {
+    state: Whole,
+    /// Its bytes, from the question for their number on.
+    bytes: Option<Vec<u8>>,
+}
+
+/// Saved states by number.
+#[derive(Debug, Default)]
+pub(super) struct Shelf {
+    entries: BTreeMap<usize, Entry>,
+}
+
+/// Numbers are unique in the process, so that a state of one instance is foreign to all others.
+static NEXT: AtomicUsize = AtomicUsize::new(1);
+
+impl Shelf {
+    fn put(&mut self, number: Option<usize>, state: Whole) -> Result<usize, Failure> {
+        let number = match number {
+            Some(number) => self.entry(number).map(|_| number)?,
+            None => NEXT.fetch_add(1, Ordering::Relaxed),
+        };
+        self.entries.insert(number, Entry { state, bytes: None });
+        Ok(number)
+    }
+
+    fn entry(&mut self, number: usize) -> Result<&mut Entry, Failure> {
+        self.entries.get_mut(&number).ok_or_else(|| {
+            "the saved state is no state of this instance, or has been freed: get or deserialize one".to_owned()
+        })
+    }
+}
+
+impl Instance {
+    /// getFMUState: saves the state under a new number, or over the state that has the `number`.
+    ///
+    /// # Errors
+    /// The status of the call; the instance is as before.
+    pub fn save_state(&mut self, number: Option<usize>) -> Result<usize, Status> {
+        let legal = self.allow(Call::State);
+        let outcome = legal.and_then(|()| {
+            let state = self.whole();
+            self.states.put(number, state)
+        });
+        outcome.map_err(|failure| self.complain(failure))
+    }
+
+    fn whole(&self) -> Whole {
+        Whole {
+            phase: self.phase as u16,
+            start: self.experiment.start,
+            stop: self.experiment.stop,
+            time: self.time,
+            values: self.values.all.clone(),
+            built: self.built.clone(),
+            model: self.model.save(),
+        }
+    }
+
+    /// setFMUState.
+    pub fn restore_state(&mut self, number: usize) -> Status {
+        let legal = self.allow(Call::State);
+        let outcome = legal.and_then(|()| {
+            let entries = std::mem::take(&mut self.states.entries);
+            let mut shelf = Shelf { entries };
+            let taken = shelf.entry(number).and_then(|entry| self.take_whole(&entry.state));
+            self.states = shelf;
+            taken
+        });
+        match outcome {
+            Ok(()) => Status::Ok,
+            Err(failure) => self.complain(failure),
+        }
+    }
+
+    /// Everything that can fail comes before the first change.
+    fn take_whole(&mut self, state: &Whole) -> Result<(), Failure> {
+        let phase = self.check_whole(state)?;
+        if same_bits(&state.built, &self.built) {
+            self.model.restore(&state.model).map_err(|error| error.to_string())?;
+        } else {
+            let mut model = self.model_of(&state.built)?;
+            model.restore(&state.model).map_err(|error| error.to_string())?;
+            self.take_model(model, state.built.clone());
+        }
+        self.cache.clear();
+        self.values.all.clone_from(&state.values);
+        self.phase = phase;
+        self.time = state.time;
+        self.experiment = Experiment { start: state.start, stop: state.stop };
+        if !matches!(phase, Phase::Instantiated | Phase::Initialization) {
+            self.use_threads(self.values.threads(&self.table))?;
+        }
+        Ok(())
+    }
+
+    fn check_whole(&self, state: &Whole) -> Result<Phase, Failure> {
+        let fits = state.values.len() == self.values.all.len() && state.built.len() == self.built.len();
+        let phase = Phase::of(state.phase).filter(|&phase| fits && phase != Phase::Intermediate);
+        phase.ok_or_else(|| "the saved state is of another FMU: use one of this".to_owned())
+    }
+
+    /// freeFMUState.
+    pub fn free_state(&mut self, number: usize) -> Status {
+        let legal = self.allow(Call::State);
+        match legal.and_then(|()| self.states.entry(number).map(|_| ())) {
+            Ok(()) => {
+                self.states.entries.remove(&number);
+                Status::Ok
+            }
+            Err(failure) => self.complain(failure),
+        }
+    }
+
+    /// Bytes of a saved state: the container of [`checkpoint`] with the token of the FMU for a fingerprint.
+    ///
+    /// # Errors
+    /// The status of the call; the instance is as before.
+    pub fn serialize_state(&mut self, number: usize) -> Result<&[u8], Status> {
+        if let Err(failure) = self.allow(Call::State).and_then(|()| self.encode(number)) {
+            return Err(self.complain(failure));
+        }
+        let bytes = self.states.entries.get(&number).and_then(|entry| entry.bytes.as_deref());
+        Ok(bytes.unwrap_or_default())
+    }
+
+    fn encode(&mut self, number: usize) -> Result<(), Failure> {
+        let token = &self.table.token;
+        let entry = self.states.entry(number)?;
+        if entry.bytes.is_none() {
+            entry.bytes = Some(checkpoint::encode(&entry.state, token).map_err(|error| error.to_string())?);
+        }
+        Ok(())
+    }
+
+    /// Makes a saved state of bytes, under a new number or over the state that has the `number`.
+    ///
+    /// # Errors
+    /// The status of the call; the instance is as before.
+    pub fn deserialize_state(&mut self, bytes: &[u8], number: Option<usize>) -> Result<usize, Status> {
+        let legal = self.allow(Call::State);
+        let outcome = legal.and_then(|()| {
+            let decoded = checkpoint::decode(bytes, &self.table.token);
+            let state: Whole = decoded.map_err(|error| format!("these bytes are no state of this FMU: {error}"))?;
+            self.check_whole(&state)?;
+            self.states.put(number, state)
+        });
+        outcome.map_err(|failure| self.complain(failure))
+    }
+
+    /// Fails a call about saved states for a reason that the entry point has found; the instance is as before.
+    pub fn refuse_state(&mut self, reason: &str) -> Status {
+        self.complain(reason.to_owned())
+    }
+}

@@ -1,0 +1,212 @@
+//! Communication steps, one internal step at a time, so that the importer can be told and asked in between.
+
+use enmm::cosimulation::{CosimulationError, Event, EventKind, Interval};
+
+use crate::log::{Category, Status};
+use crate::phase::{Call, Phase};
+
+use super::{Failure, Instance, STOP_TOLERANCE};
+
+/// Part of an internal step below which a time has been reached.
+const SAME_TIME: f64 = 1e-6;
+
+/// A communication step in progress.
+#[derive(Debug)]
+pub struct Step {
+    interval: Interval,
+    /// Begin and end as the importer counts (s).
+    begin: f64,
+    end: f64,
+    events_seen: usize,
+    /// Time of the model (s) at which the importer wants to return.
+    wanted: Option<f64>,
+    /// Whether the interval ends at that time.
+    shortened: bool,
+    early: bool,
+    done: bool,
+}
+
+impl Step {
+    /// Whether there is nothing left to do.
+    pub fn is_done(&self) -> bool {
+        self.done
+    }
+
+    /// Whether it ended before its end.
+    pub fn is_early(&self) -> bool {
+        self.early
+    }
+}
+
+/// What the importer is told in between.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Update {
+    /// Time that the model has reached (s).
+    pub time: f64,
+    /// Whether the importer may ask for an early return.
+    pub can_return_early: bool,
+}
+
+impl Instance {
+    /// Begins a step from `t` over `h`.
+    ///
+    /// # Errors
+    /// The status of the call.
+    pub fn begin_step(&mut self, t: f64, h: f64) -> Result<Step, Status> {
+        let begun = self.allow(Call::DoStep).and_then(|()| self.begin(t, h));
+        begun.map_err(|failure| self.fail(failure))
+    }
+
+    fn begin(&mut self, t: f64, h: f64) -> Result<Step, Failure> {
+        let end = t + h;
+        if let Some(stop) = self.experiment.stop
+            && end > stop + STOP_TOLERANCE * stop.abs().max(h.abs())
+        {
+            return Err(format!("the step ends at {end} s, must not end after the stop time, {stop} s"));
+        }
+        let interval = self.model.begin(t - self.experiment.start, h).map_err(|error| error.to_string())?;
+        self.cache.clear();
+        Ok(Step {
+            interval,
+            begin: self.time,
+            end,
+            events_seen: 0,
+            wanted: None,
+            shortened: false,
+            early: false,
+            done: false,
+        })
+    }
+
+    /// Takes one internal step.
+    pub fn advance_step(&mut self, step: &mut Step) -> Status {
+        if self.must_return(step) {
+            return self.leave(step);
+        }
+        let advanced = self.model.advance(&mut step.interval);
+        self.cache.clear();
+        match advanced {
+            Ok(more) => {
+                self.log_events(step);
+                let event = step.events_seen < step.interval.info().events.len();
+                step.events_seen = step.interval.info().events.len();
+                match (more, event && self.early_return) {
+                    (true, true) => self.leave(step),
+                    (true, false) => Status::Ok,
+                    (false, _) => self.finish(step),
+                }
+            }
+            Err(error) if step.shortened => {
+                self.log(Status::Warning, Category::Warning, format!("returned before the wanted time: {error}"));
+                self.leave(step)
+            }
+            Err(error) => self.discard(step, &error),
+        }
+    }
+
+    /// Whether the wanted time has come; shortens the interval when the next internal step would pass it.
+    fn must_return(&mut self, step: &mut Step) -> bool {
+        let Some(wanted) = step.wanted.filter(|_| !step.shortened) else { return false };
+        let dt = self.model.internal_step();
+        let left = wanted - self.model.time();
+        if left <= SAME_TIME * dt {
+            return true;
+        }
+        if left < dt {
+            let now = self.model.time();
+            self.model.leave(step.interval.clone());
+            match self.model.begin(now, left) {
+                Ok(interval) => {
+                    (step.interval, step.shortened, step.events_seen) = (interval, true, 0);
+                }
+                Err(_) => return true,
+            }
+        }
+        false
+    }
+
+    fn finish(&mut self, step: &mut Step) -> Status {
+        step.done = true;
+        step.early = step.shortened;
+        self.phase = Phase::Step;
+        self.time = if step.early { self.time_of_model() } else { step.end };
+        let unsettled = step.interval.info().unsettled;
+        if unsettled > 0 {
+            let text = format!("the contacts of {unsettled} sub-steps did not settle; they went on unsettled");
+            self.log(Status::Warning, Category::Warning, text);
+        }
+        Status::Ok
+    }
+
+    /// Ends the step where the model stands.
+    fn leave(&mut self, step: &mut Step) -> Status {
+        self.model.leave(step.interval.clone());
+        (step.done, step.early) = (true, true);
+        self.phase = Phase::Step;
+        self.time = self.time_of_model();
+        Status::Ok
+    }
+
+    /// The model has gone back to where the step began. Only a numerical failure can go better with a shorter step.
+    fn discard(&mut self, step: &mut Step, error: &CosimulationError) -> Status {
+        step.done = true;
+        (self.phase, self.time) = (Phase::Step, step.begin);
+        if !matches!(error, CosimulationError::Step(_)) {
+            return self.fail(error.to_string());
+        }
+        if self.table.version == crate::table::Version::Two {
+            self.phase = Phase::StepFailed;
+        }
+        self.log(Status::Discard, Category::Discard, format!("the step was discarded: {error}"));
+        Status::Discard
+    }
+
+    fn log_events(&mut self, step: &Step) {
+        let start = self.experiment.start;
+        for event in &step.interval.info().events[step.events_seen..] {
+            self.log(Status::Ok, Category::Events, event_text(event, start));
+        }
+    }
+
+    /// Time that the model itself has reached (s).
+    pub fn time_of_model(&self) -> f64 {
+        self.experiment.start + self.model.time()
+    }
+
+    /// Enters intermediate update mode.
+    pub fn enter_update(&mut self) -> Update {
+        self.phase = Phase::Intermediate;
+        let time = self.time_of_model();
+        self.time = time;
+        Update { time, can_return_early: self.early_return }
+    }
+
+    /// Leaves intermediate update mode; `wanted` is the time (s) of an early return.
+    pub fn leave_update(&mut self, step: &mut Step, wanted: Option<f64>) -> Status {
+        if self.phase != Phase::Intermediate {
+            self.model.leave(step.interval.clone());
+            step.done = true;
+            return self.fail("an illegal call within intermediate update mode has ended the step".to_owned());
+        }
+        self.phase = Phase::Step;
+        if step.done && !step.early {
+            self.time = step.end;
+        }
+        if let Some(wanted) = wanted.filter(|_| self.early_return && !step.shortened) {
+            let now = self.model.time();
+            step.wanted = Some((wanted - self.experiment.start).max(now));
+        }
+        Status::Ok
+    }
+}
+
+fn event_text(event: &Event, start: f64) -> String {
+    let time = start + event.time;
+    let what = match event.kind {
+        EventKind::Detached => format!("block {} detached", event.subject),
+        EventKind::Slipped if event.subject == u32::MAX => "a contact away from joints slipped".to_owned(),
+        EventKind::Slipped => format!("joint {} slipped", event.subject),
+        EventKind::Failed => format!("block {} failed", event.subject),
+    };
+    format!("{what} at t = {time} s")
+}

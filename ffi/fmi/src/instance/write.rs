@@ -1,0 +1,104 @@
+//! Setters: all values of a call are checked before the first of them holds.
+
+use crate::log::Status;
+use crate::phase::Call;
+use crate::table::{Causality, Type, Variable};
+use crate::values::Group;
+
+use super::{Failure, Instance};
+
+impl Instance {
+    /// Sets variables of one type; a Boolean is 0 or 1.
+    pub fn set(&mut self, references: &[u32], kind: Type, values: &[f64]) -> Status {
+        let legal = self.allow(Call::Set);
+        let outcome = legal.and_then(|()| self.check(references, kind, values)).and_then(|()| {
+            let before = self.values.clone();
+            let set = self.store(references, values);
+            if set.is_err() {
+                self.values = before;
+            }
+            set
+        });
+        self.cache.clear();
+        self.end(outcome)
+    }
+
+    fn check(&self, references: &[u32], kind: Type, values: &[f64]) -> Result<(), Failure> {
+        self.check_count(references, kind, values.len())?;
+        let mut rest = values;
+        for &reference in references {
+            let v = self.variable(reference, kind)?;
+            let (own, others) = rest.split_at(v.size());
+            rest = others;
+            match v.causality {
+                Causality::Input => {}
+                Causality::Parameter => self.allow(Call::SetParameter).map_err(|failure| {
+                    format!("{}: {failure}; parameters hold from the end of initialization on", v.name)
+                })?,
+                Causality::Output | Causality::Independent => {
+                    return Err(format!("{}: cannot be set, only read", v.name));
+                }
+            }
+            own.iter().try_for_each(|&value| check_value(v, value))?;
+        }
+        Ok(())
+    }
+
+    fn store(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let mut rest = values;
+        let mut groups: Vec<(Group, u32)> = Vec::new();
+        for &reference in references {
+            let Some(v) = self.table.get(reference) else { continue };
+            let (own, others) = rest.split_at(v.size());
+            rest = others;
+            self.values.set(reference, own);
+            groups.extend(Group::of(v.quantity).map(|group| (group, reference)));
+        }
+        groups.sort_unstable();
+        groups.dedup_by_key(|(group, _)| *group);
+        for (group, reference) in groups {
+            let pushed = self.values.push(&self.table, group, &mut self.model);
+            let name = |reference| self.table.get(reference).map_or("", |v| v.name.as_str());
+            pushed.map_err(|error| format!("{}: {error}", name(reference)))?;
+        }
+        Ok(())
+    }
+
+    /// The variable with a value reference and a type.
+    pub(super) fn variable(&self, reference: u32, kind: Type) -> Result<&Variable, Failure> {
+        let count = self.table.variables.len();
+        let found = self.table.get(reference);
+        let v = found.ok_or_else(|| format!("value reference {reference}: must be less than {count}"))?;
+        if v.kind != kind {
+            return Err(format!("{}: is of type {:?}, not {kind:?}; use the function of its type", v.name, v.kind));
+        }
+        Ok(v)
+    }
+
+    /// Checks that variables exist, are of a type and have so many values together.
+    pub(super) fn check_count(&self, references: &[u32], kind: Type, given: usize) -> Result<(), Failure> {
+        let mut count = 0;
+        for &reference in references {
+            count += self.variable(reference, kind)?.size();
+        }
+        if count == given {
+            return Ok(());
+        }
+        Err(format!("the number of values is {given}, must be {count}, that of all elements of the variables"))
+    }
+}
+
+fn check_value(v: &Variable, value: f64) -> Result<(), Failure> {
+    if !value.is_finite() {
+        return Err(format!("{}: is {value}, must be a finite number; the old value still holds", v.name));
+    }
+    match v.limits {
+        Some((low, high)) if !(low..=high).contains(&value) => {
+            let (name, unit) = (&v.name, v.unit);
+            Err(format!(
+                "{name}: is {value}, must be at least {low} and at most {high} {unit}; the old value still holds"
+            ))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,240 @@
+//! Life cycle, logging and saved states.
+
+use std::ffi::{c_int, c_void};
+use std::path::PathBuf;
+
+use enmm_fmi::handle::Host;
+use enmm_fmi::instance::{Instance, Plan};
+use enmm_fmi::location;
+use enmm_fmi::log::Message;
+use enmm_fmi::phase::Call;
+use enmm_fmi::table::Version;
+
+use crate::raw::{self, MISSING};
+use crate::types::{
+    Boolean, Byte, CO_SIMULATION, CallbackFunctions, Component, FmuState, Importer, LIVE, Real, Status, Text, call,
+    guarded,
+};
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> Text {
+    c"default".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> Text {
+    c"2.0".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(c: Component, on: Boolean, n: usize, categories: *const Text) -> Status {
+    call(c, "fmi2SetDebugLogging", |instance| {
+        // SAFETY: the importer gives `n` texts.
+        match unsafe { raw::texts(categories, n) } {
+            Some(names) => instance.set_logging(on != 0, &names),
+            None => instance.refuse_state(MISSING),
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    name: Text,
+    kind: c_int,
+    guid: Text,
+    location: Text,
+    functions: *const CallbackFunctions,
+    _visible: Boolean,
+    logging: Boolean,
+) -> Component {
+    guarded(std::ptr::null_mut(), || {
+        // SAFETY: the importer gives its functions, which are read once, and texts.
+        let (functions, name, guid, location) = unsafe {
+            let functions = raw::slice(functions, 1).and_then(|one| one.first().copied());
+            (functions, raw::text(name), raw::text(guid), raw::text(location))
+        };
+        let Some(functions) = functions else { return std::ptr::null_mut() };
+        let importer = Importer::new(&functions, name.unwrap_or_default());
+        match instance(name, kind, guid, location, logging != 0) {
+            Ok(mut instance) => {
+                instance.take_messages().iter().for_each(|message| importer.log(message));
+                std::ptr::without_provenance_mut(LIVE.insert(instance, importer))
+            }
+            Err(reason) => {
+                importer.log(&Message::error(format!("fmi2Instantiate: {reason}")));
+                std::ptr::null_mut()
+            }
+        }
+    })
+}
+
+fn instance(
+    name: Option<&str>,
+    kind: c_int,
+    guid: Option<&str>,
+    location: Option<&str>,
+    logging: bool,
+) -> Result<Instance, String> {
+    if kind != CO_SIMULATION {
+        return Err("only co-simulation is possible: give fmi2CoSimulation".to_owned());
+    }
+    let (Some(name), Some(token)) = (name, guid) else {
+        return Err("the name of the instance or its GUID is missing or no UTF-8: give both".to_owned());
+    };
+    let location = location.ok_or("the resource location is missing: give the URI of the folder `resources`")?;
+    let resources: PathBuf = location::resolve(location)?;
+    let guarded = std::panic::catch_unwind(|| {
+        Instance::new(Plan { version: Version::Two, name, token, resources: &resources, logging, early_return: false })
+    });
+    guarded.unwrap_or_else(|_| Err("the model cannot be built: panic".to_owned()))
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2FreeInstance(c: Component) {
+    let free = call(c, "fmi2FreeInstance", |instance| instance.permits(Call::Free));
+    if free != Status::Error {
+        guarded((), || LIVE.remove(c.addr()));
+    }
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2SetupExperiment(
+    c: Component,
+    _tolerance_defined: Boolean,
+    _tolerance: Real,
+    start: Real,
+    stop_defined: Boolean,
+    stop: Real,
+) -> Status {
+    call(c, "fmi2SetupExperiment", |instance| instance.set_up(start, (stop_defined != 0).then_some(stop)))
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2EnterInitializationMode(c: Component) -> Status {
+    call(c, "fmi2EnterInitializationMode", |instance| instance.enter_initialization(None))
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2ExitInitializationMode(c: Component) -> Status {
+    call(c, "fmi2ExitInitializationMode", Instance::exit_initialization)
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2Terminate(c: Component) -> Status {
+    call(c, "fmi2Terminate", Instance::terminate)
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2Reset(c: Component) -> Status {
+    call(c, "fmi2Reset", Instance::reset)
+}
+
+/// The number of a saved state at a pointer to it; a NULL state has none.
+///
+/// # Safety
+/// A pointer that is neither NULL nor misaligned may be read.
+unsafe fn number(state: *const FmuState) -> Option<Option<usize>> {
+    // SAFETY: by the contract of this function.
+    let state = unsafe { raw::slice(state, 1) }?.first()?;
+    Some((!state.is_null()).then(|| state.addr()))
+}
+
+/// Ends a call that makes a saved state.
+///
+/// # Safety
+/// The pointer may be written to.
+unsafe fn give(state: *mut FmuState, made: Result<usize, Status>) -> Status {
+    match made {
+        Ok(number) => {
+            let pointer: *mut c_void = std::ptr::without_provenance_mut(number);
+            // SAFETY: by the contract of this function.
+            if unsafe { raw::put(state, pointer) } { Status::Ok } else { Status::Error }
+        }
+        Err(status) => status,
+    }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(c: Component, state: *mut FmuState) -> Status {
+    call(c, "fmi2GetFMUstate", |instance| {
+        // SAFETY: the importer gives a pointer that can be read and written.
+        unsafe {
+            match number(state) {
+                Some(old) => give(state, instance.save_state(old)),
+                None => instance.refuse_state(MISSING),
+            }
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2SetFMUstate(c: Component, state: FmuState) -> Status {
+    call(c, "fmi2SetFMUstate", |instance| instance.restore_state(state.addr()))
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeFMUstate(c: Component, state: *mut FmuState) -> Status {
+    call(c, "fmi2FreeFMUstate", |instance| {
+        // SAFETY: the importer gives a pointer that can be read and written.
+        unsafe {
+            let Some(Some(old)) = number(state) else { return Status::Ok };
+            let status = instance.free_state(old);
+            if status == Status::Ok {
+                raw::put(state, std::ptr::null_mut());
+            }
+            status
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Component, state: FmuState, size: *mut usize) -> Status {
+    call(c, "fmi2SerializedFMUstateSize", |instance| {
+        let length = match instance.serialize_state(state.addr()) {
+            Ok(bytes) => bytes.len(),
+            Err(status) => return status,
+        };
+        // SAFETY: the importer gives a pointer that can be written.
+        if unsafe { raw::put(size, length) } { Status::Ok } else { instance.refuse_state(MISSING) }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, state: FmuState, out: *mut Byte, size: usize) -> Status {
+    call(c, "fmi2SerializeFMUstate", |instance| {
+        let bytes = match instance.serialize_state(state.addr()) {
+            Ok(bytes) => bytes,
+            Err(status) => return status,
+        };
+        if bytes.len() != size {
+            let reason = format!("the size is {size}, must be {}, that of the serialized state", bytes.len());
+            return instance.refuse_state(&reason);
+        }
+        // SAFETY: the importer gives room for `size` bytes.
+        match unsafe { raw::slice_mut(out.cast::<u8>(), size) } {
+            Some(out) => {
+                out.copy_from_slice(bytes);
+                Status::Ok
+            }
+            None => instance.refuse_state(MISSING),
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+    c: Component,
+    bytes: *const Byte,
+    size: usize,
+    state: *mut FmuState,
+) -> Status {
+    call(c, "fmi2DeSerializeFMUstate", |instance| {
+        // SAFETY: the importer gives `size` bytes and a pointer that can be read and written.
+        unsafe {
+            match (raw::slice(bytes.cast::<u8>(), size), number(state)) {
+                (Some(bytes), Some(old)) => give(state, instance.deserialize_state(bytes, old)),
+                _ => instance.refuse_state(MISSING),
+            }
+        }
+    })
+}

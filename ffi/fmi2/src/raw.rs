@@ -1,0 +1,71 @@
+//! What the C side gives: pointers that may be missing.
+
+use std::ffi::{CStr, CString, c_char};
+
+/// Reason of a call that lacks an argument.
+pub const MISSING: &str = "a pointer is NULL or misaligned; give one for every array that is not empty";
+
+/// The array of `n` values at a pointer; empty for `n` = 0, whatever the pointer is.
+///
+/// # Safety
+/// A pointer that is neither NULL nor misaligned points to `n` values that live as long as the slice.
+pub unsafe fn slice<'a, T>(pointer: *const T, n: usize) -> Option<&'a [T]> {
+    match n {
+        0 => Some(&[]),
+        _ if pointer.is_null() || !pointer.is_aligned() => None,
+        // SAFETY: by the contract of this function.
+        _ => Some(unsafe { std::slice::from_raw_parts(pointer, n) }),
+    }
+}
+
+/// The array of `n` values to be written at a pointer; empty for `n` = 0, whatever the pointer is.
+///
+/// # Safety
+/// As for [`slice`], and nothing else points there.
+pub unsafe fn slice_mut<'a, T>(pointer: *mut T, n: usize) -> Option<&'a mut [T]> {
+    match n {
+        0 => Some(&mut []),
+        _ if pointer.is_null() || !pointer.is_aligned() => None,
+        // SAFETY: by the contract of this function.
+        _ => Some(unsafe { std::slice::from_raw_parts_mut(pointer, n) }),
+    }
+}
+
+/// Writes a value to a pointer; false when it is missing.
+///
+/// # Safety
+/// A pointer that is neither NULL nor misaligned may be written to.
+pub unsafe fn put<T>(pointer: *mut T, value: T) -> bool {
+    let there = !pointer.is_null() && pointer.is_aligned();
+    if there {
+        // SAFETY: by the contract of this function.
+        unsafe { pointer.write(value) };
+    }
+    there
+}
+
+/// The text at a pointer, if there is one and it is UTF-8.
+///
+/// # Safety
+/// A pointer that is not NULL points to a text that a zero byte ends and that lives as long as the slice.
+pub unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
+    if pointer.is_null() {
+        return None;
+    }
+    // SAFETY: by the contract of this function.
+    unsafe { CStr::from_ptr(pointer) }.to_str().ok()
+}
+
+/// `n` texts; none when one is missing.
+///
+/// # Safety
+/// As for [`slice`] and [`text`].
+pub unsafe fn texts<'a>(pointer: *const *const c_char, n: usize) -> Option<Vec<&'a str>> {
+    // SAFETY: by the contract of this function.
+    unsafe { slice(pointer, n)?.iter().map(|&each| text(each)).collect() }
+}
+
+/// A text for the C side; a zero byte within it becomes a blank.
+pub fn c_text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}

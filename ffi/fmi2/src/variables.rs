@@ -1,0 +1,210 @@
+//! Getters and setters.
+
+use enmm_fmi::phase::Call;
+use enmm_fmi::table::Type;
+
+use crate::raw::{self, MISSING};
+use crate::types::{Boolean, Component, Integer, Real, Status, Text, ValueReference, call};
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetReal(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut Real,
+) -> Status {
+    call(c, "fmi2GetReal", |instance| {
+        // SAFETY: the importer gives `n` references and room for `n` values.
+        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n)) } {
+            (Some(references), Some(values)) => instance.get(references, Type::Real, values),
+            _ => instance.refuse(MISSING),
+        }
+    })
+}
+
+/// Reads variables whose values are whole numbers.
+///
+/// # Safety
+/// The importer gives `n` references and room for `n` values.
+unsafe fn get_whole(
+    c: Component,
+    name: &str,
+    (references, n): (*const ValueReference, usize),
+    values: *mut Integer,
+    kind: Type,
+) -> Status {
+    call(c, name, |instance| {
+        // SAFETY: by the contract of this function.
+        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n)) } {
+            (Some(references), Some(values)) => {
+                let mut numbers = vec![0.0; n];
+                let status = instance.get(references, kind, &mut numbers);
+                if status == Status::Ok {
+                    values.iter_mut().zip(numbers).for_each(|(value, number)| *value = number as Integer);
+                }
+                status
+            }
+            _ => instance.refuse(MISSING),
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetInteger(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut Integer,
+) -> Status {
+    // SAFETY: the importer gives `n` references and room for `n` values.
+    unsafe { get_whole(c, "fmi2GetInteger", (references, n), values, Type::Integer) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBoolean(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut Boolean,
+) -> Status {
+    // SAFETY: the importer gives `n` references and room for `n` values.
+    unsafe { get_whole(c, "fmi2GetBoolean", (references, n), values, Type::Boolean) }
+}
+
+/// There are no variables of type String.
+fn no_strings(c: Component, name: &str, call_kind: Call, n: usize) -> Status {
+    call(c, name, |instance| match n {
+        0 => instance.permits(call_kind),
+        _ => instance.refuse("no variable of this FMU is a String; use the function of its type"),
+    })
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetString(
+    c: Component,
+    _references: *const ValueReference,
+    n: usize,
+    _values: *mut Text,
+) -> Status {
+    no_strings(c, "fmi2GetString", Call::Get, n)
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetReal(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *const Real,
+) -> Status {
+    call(c, "fmi2SetReal", |instance| {
+        // SAFETY: the importer gives `n` references and `n` values.
+        match unsafe { (raw::slice(references, n), raw::slice(values, n)) } {
+            (Some(references), Some(values)) => instance.set(references, Type::Real, values),
+            _ => instance.refuse(MISSING),
+        }
+    })
+}
+
+/// Sets variables whose values are whole numbers.
+///
+/// # Safety
+/// The importer gives `n` references and `n` values.
+unsafe fn set_whole(
+    c: Component,
+    name: &str,
+    (references, n): (*const ValueReference, usize),
+    values: *const Integer,
+    kind: Type,
+) -> Status {
+    let number = |value: &Integer| match kind {
+        Type::Boolean => f64::from(u8::from(*value != 0)),
+        _ => f64::from(*value),
+    };
+    call(c, name, |instance| {
+        // SAFETY: by the contract of this function.
+        match unsafe { (raw::slice(references, n), raw::slice(values, n)) } {
+            (Some(references), Some(values)) => {
+                instance.set(references, kind, &values.iter().map(number).collect::<Vec<_>>())
+            }
+            _ => instance.refuse(MISSING),
+        }
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetInteger(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *const Integer,
+) -> Status {
+    // SAFETY: the importer gives `n` references and `n` values.
+    unsafe { set_whole(c, "fmi2SetInteger", (references, n), values, Type::Integer) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetBoolean(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *const Boolean,
+) -> Status {
+    // SAFETY: the importer gives `n` references and `n` values.
+    unsafe { set_whole(c, "fmi2SetBoolean", (references, n), values, Type::Boolean) }
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2SetString(
+    c: Component,
+    _references: *const ValueReference,
+    n: usize,
+    _values: *const Text,
+) -> Status {
+    no_strings(c, "fmi2SetString", Call::Set, n)
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetDirectionalDerivative(
+    c: Component,
+    _unknowns: *const ValueReference,
+    _n_unknowns: usize,
+    _knowns: *const ValueReference,
+    _n_knowns: usize,
+    _seeds: *const Real,
+    _values: *mut Real,
+) -> Status {
+    call(c, "fmi2GetDirectionalDerivative", |instance| {
+        instance.refuse("this FMU has none (providesDirectionalDerivative=false)")
+    })
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2SetRealInputDerivatives(
+    c: Component,
+    _references: *const ValueReference,
+    n: usize,
+    _orders: *const Integer,
+    _values: *const Real,
+) -> Status {
+    call(c, "fmi2SetRealInputDerivatives", |instance| match n {
+        0 => instance.permits(Call::Set),
+        _ => instance.refuse("this FMU takes none (canInterpolateInputs=false); set interpolate_inputs instead"),
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    orders: *const Integer,
+    values: *mut Real,
+) -> Status {
+    call(c, "fmi2GetRealOutputDerivatives", |instance| {
+        // SAFETY: the importer gives `n` references, `n` orders and room for `n` values.
+        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::slice_mut(values, n)) } {
+            (Some(references), Some(orders), Some(values)) => instance.get_derivatives(references, orders, values),
+            _ => instance.refuse(MISSING),
+        }
+    })
+}
