@@ -1,4 +1,4 @@
-//! Prints what a communication step of one internal step costs above the engine's own step; asserts no time.
+//! Tells what a communication step of one internal step costs above the engine's own step; asserts no time.
 
 mod support;
 
@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use engine::cosimulation::Cosimulation;
-use support::{host, root, succeed};
+use support::{host, root, say, succeed};
 
 const CASE: &str = "examples/cases/block_on_incline.toml";
 const STEPS: u32 = 5000;
@@ -31,7 +31,7 @@ fn overhead_of_a_step() {
         facade - own,
         told[0] - own
     );
-    println!("a call that only reads the time: {:.0} ns", told[1]);
+    say(&format!("a call that only reads the time: {:.0} ns", told[1]));
 }
 
 /// Least mean of several rounds (ns).
