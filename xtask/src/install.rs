@@ -52,7 +52,7 @@ fn pkg_config(version: &str) -> String {
     .join("\n")
 }
 
-const CMAKE: &str = r#"# find_package(enmm) gives the targets enmm::enmm (shared) and enmm::static, with their headers for C and C++.
+const CMAKE: &str = r#"# find_package(enmm) gives the targets enmm::enmm (shared) and enmm::static, with their headers.
 get_filename_component(_enmm_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 if(NOT TARGET enmm::enmm)
   add_library(enmm::enmm SHARED IMPORTED)

@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 use std::process::Command;
 
-use support::{SMALL, compiler, has, host, libraries, root, run, succeed};
+use support::{SMALL, compiler, has, host, libraries, root, run, say, succeed};
 
 const COUPLED: &str = "examples/cases/coupled_slope.toml";
 
@@ -51,12 +51,12 @@ fn valgrind_finds_nothing() {
 
 #[test]
 fn lives_of_models_leave_no_memory_behind() {
-    print!("{}", succeed(Command::new(host("ffi/capi/tests/c/cycles.c")).args([SMALL, "200"])));
+    say(&succeed(Command::new(host("ffi/capi/tests/c/cycles.c")).args([SMALL, "200"])));
 }
 
 #[test]
 fn threads_with_their_own_models_give_the_bits_of_one_after_the_other() {
-    print!("{}", succeed(Command::new(host("ffi/capi/tests/c/threads.c")).arg(SMALL)));
+    say(&succeed(Command::new(host("ffi/capi/tests/c/threads.c")).arg(SMALL)));
 }
 
 #[test]

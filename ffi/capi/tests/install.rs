@@ -29,7 +29,7 @@ endif()
 fn prefix() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
-        let [first, moved] = ["installed", "installed-and-moved"].map(|name| empty(name));
+        let [first, moved] = ["installed", "installed-and-moved"].map(empty);
         let mut install = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         install.args(["run", "--quiet", "--release", "--package", "xtask", "--", "install", "--prefix"]);
         succeed(install.arg(&first));

@@ -1,4 +1,4 @@
-//! Prints what a communication step of one internal step costs above the engine's own step; asserts no time.
+//! Tells what a communication step of one internal step costs above the engine's own step; asserts no time.
 
 mod support;
 
@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use engine::cosimulation::Cosimulation;
-use support::{host, root, succeed};
+use support::{host, root, say, succeed};
 
 const CASE: &str = "examples/cases/block_on_incline.toml";
 const STEPS: u32 = 5000;
@@ -26,12 +26,12 @@ fn overhead_of_a_step() {
     let facade = least(|| time = facade.do_step(time, dt).expect("a step").time);
     let told = succeed(Command::new(host("ffi/capi/tests/c/bench.c")).args([CASE, &STEPS.to_string()]));
     let told: Vec<f64> = told.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    println!(
-        "{CASE}, one internal step, ns: engine {own:.0}, façade +{:.0}, C ABI +{:.0}",
-        facade - own,
-        told[0] - own
-    );
-    println!("a call that only reads the time: {:.0} ns", told[1]);
+    let added = [facade, told[0]].map(|spent| spent - own);
+    say(&format!(
+        "{CASE}, one internal step: engine {own:.0} ns, façade +{:.0} ns, C ABI +{:.0} ns",
+        added[0], added[1]
+    ));
+    say(&format!("a call that only reads the time: {:.0} ns", told[1]));
 }
 
 /// Least mean of several rounds (ns).

@@ -19,8 +19,8 @@ pub extern "C" fn enmm_set_gravity(model: *mut enmm_model, gx: f64, gy: f64) -> 
 }
 
 /// Sets force (N per metre of thickness, x to the right, y upwards) through the mass centroid of a block, and moment
-/// about it (N*m per metre, counter-clockwise). They take the place of those that were set before, and add to loads of
-/// the case.
+/// about it (N*m per metre, counter-clockwise). They take the place of those that were set before, or that a port of
+/// the case has at the start; loads of the case stay.
 ///
 /// Acts as enmm_set_gravity tells.
 ///

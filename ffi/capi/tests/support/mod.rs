@@ -1,6 +1,7 @@
 //! Builds the library as hosts see it, compiles hosts against it, and runs them.
 #![allow(dead_code)]
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
@@ -16,8 +17,8 @@ pub fn root() -> PathBuf {
 pub fn libraries() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
-        // The test runs as target/PROFILE/deps/NAME. Cargo does not build cdylibs for tests, so it is asked to; all of the
-        // workspace is built so that it is what `cargo build --workspace` has left behind.
+        // The test runs as target/PROFILE/deps/NAME. Cargo does not build cdylibs for tests, so it is asked to; all of
+        // the workspace is built so that it is what `cargo build --workspace` has left behind.
         let test = std::env::current_exe().expect("a test that knows where it is");
         let directory = test.ancestors().nth(2).expect("target/PROFILE").to_owned();
         let profile = directory.file_name().expect("PROFILE").to_string_lossy().replace("debug", "dev");
@@ -28,11 +29,16 @@ pub fn libraries() -> &'static Path {
     })
 }
 
+/// Tells what nobody asserts, whether the test is good or not.
+pub fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
+}
+
 /// Whether `program` can be run; says so when it cannot.
 pub fn has(program: &str) -> bool {
     let there = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
-        println!("skipped: {program} is not installed");
+        say(&format!("skipped: {program} is not installed"));
     }
     there
 }
