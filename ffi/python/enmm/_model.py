@@ -202,7 +202,8 @@ class Model:
     def set_block_force(self, block: SupportsIndex, fx: float, fy: float, moment: float = 0.0) -> None:
         """Sets force (N/m) through the mass centroid of a block and moment about it (N*m/m, counter-clockwise).
 
-        They take the place of those that were set before, and add to loads of the case.
+        They take the place of those that were set before, first of those of the port of the case at this block, and add
+        to its loads.
         """
         self._core.call("enmm_set_block_force", index("block", block), number(fx), number(fy), number(moment))
 
