@@ -1,4 +1,4 @@
-"""The Python package: motion, inputs, observation, errors. Saved states, threads and memory are in `test_ctypes_life`."""
+"""The Python package: library, motion, inputs, observation, errors. `test_ctypes_life` has states and threads."""
 
 import ctypes
 import math
@@ -98,7 +98,8 @@ def test_structures_have_the_offsets_of_c(package, tmp_path):
             place = getattr(structure, field)
             expected.append((place.offset, place.size))
     source, program = tmp_path / "offsets.c", tmp_path / "offsets"
-    source.write_text(f'#include <stdio.h>\n#include "enmm.h"\nint main(void) {{ {" ".join(lines)} }}', encoding="utf-8")
+    text = f'#include <stdio.h>\n#include "enmm.h"\nint main(void) {{ {" ".join(lines)} }}'
+    source.write_text(text, encoding="utf-8")
     subprocess.run([compiler, "-I", str(ROOT / "include"), str(source), "-o", str(program)], check=True)
     output = subprocess.run([program], capture_output=True, text=True, check=True).stdout
     rows = [tuple(map(int, line.split())) for line in output.splitlines()]

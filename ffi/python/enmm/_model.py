@@ -374,10 +374,7 @@ class Model:
         return State(self._core.library, handle, interpolation)
 
     def _rows(self, rows: Rows, name: str, copy: bool, *arguments: object) -> npt.NDArray[np.void]:
-        view = rows.fill(
-            lambda buffer, capacity, written: self._core.call(name, *arguments, buffer, capacity, written),
-            lambda written: self._core.call(name, *arguments, None, 0, written),
-        )
+        view = rows.fill(lambda *buffer: self._core.call(name, *arguments, *buffer))
         return view.copy() if copy else view
 
     def _port(self, port: Port | str | SupportsIndex) -> int:

@@ -24,7 +24,8 @@ def main(case: Path) -> None:
             if tenth > 0:
                 toe.set_force(*((1 - 0.1 * tenth) * part for part in FORCE))
                 model.do_step(model.time, 0.1)
-            moved = [(port.displacement_x**2 + port.displacement_y**2) ** 0.5 * 1e3 for port in (toe.state(), face.state())]
+            states = (toe.state(), face.state())
+            moved = [(of.displacement_x**2 + of.displacement_y**2) ** 0.5 * 1e3 for of in states]
             slipping = model.totals().slipping_contacts
             print(f"{model.time:7.2f}  {1 - 0.1 * tenth:8.2f}  {moved[0]:10.4f}  {moved[1]:10.4f}  {slipping:16d}")
         for event in model.events():
