@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._errors import invalid
+from ._errors import BufferTooSmallError, invalid
 from ._library import Library
 from ._types import LogLevel
 
@@ -26,24 +26,26 @@ class Rows:
     def __init__(self, structure: type[ctypes.Structure]) -> None:
         self._structure = structure
         self._dtype = _abi.dtype_of(structure)
-        self._make(0)
+        self._make(1)
 
     def _make(self, capacity: int) -> None:
         self._capacity = capacity
-        self._buffer = (self._structure * max(capacity, 1))()
+        self._buffer = (self._structure * capacity)()
         self._view: npt.NDArray[np.void] = np.frombuffer(memoryview(self._buffer), self._dtype)
         # What is written here would not reach the model.
         self._view.flags.writeable = False
 
-    def fill(self, fetch: Callable[[Any, int, Any], None], count: Callable[[Any], None]) -> npt.NDArray[np.void]:
-        """Lets `fetch` fill the buffer, which grows to what `count` tells; returns the view of what was written."""
+    def fill(self, fetch: Callable[[Any, int, Any], None]) -> npt.NDArray[np.void]:
+        """Lets `fetch` fill the buffer, a larger one when it must be; returns the view of what was written."""
         written = c_size_t()
-        count(byref(written))
-        if written.value > self._capacity:
-            self._make(written.value)
-        self._buffer[0].struct_size = ctypes.sizeof(self._structure)
-        fetch(self._buffer, self._capacity, byref(written))
-        return self._view[: written.value]
+        while True:
+            self._buffer[0].struct_size = ctypes.sizeof(self._structure)
+            try:
+                fetch(self._buffer, self._capacity, byref(written))
+            except BufferTooSmallError:
+                self._make(written.value)
+            else:
+                return self._view[: written.value]
 
 
 class Sink:

@@ -34,8 +34,8 @@ class Library:
         self._declare("enmm_abi_version")
         found = self.functions["enmm_abi_version"]()
         if found != _abi.ABI_VERSION:
-            wanted = _abi.ABI_VERSION
-            raise LibraryError(f"{path}: has ABI version {found}, this package needs {wanted}; use those of one version")
+            versions = f"has ABI version {found}, this package needs {_abi.ABI_VERSION}"
+            raise LibraryError(f"{path}: {versions}; use those of one version")
         for name in _abi.FUNCTIONS:
             self._declare(name)
         self._raised = threading.local()

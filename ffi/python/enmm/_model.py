@@ -202,7 +202,8 @@ class Model:
     def set_block_force(self, block: SupportsIndex, fx: float, fy: float, moment: float = 0.0) -> None:
         """Sets force (N/m) through the mass centroid of a block and moment about it (N*m/m, counter-clockwise).
 
-        They take the place of those that were set before, and add to loads of the case.
+        They take the place of those that were set before, first of those of the port of the case at this block, and add
+        to its loads.
         """
         self._core.call("enmm_set_block_force", index("block", block), number(fx), number(fy), number(moment))
 
@@ -373,10 +374,7 @@ class Model:
         return State(self._core.library, handle, interpolation)
 
     def _rows(self, rows: Rows, name: str, copy: bool, *arguments: object) -> npt.NDArray[np.void]:
-        view = rows.fill(
-            lambda buffer, capacity, written: self._core.call(name, *arguments, buffer, capacity, written),
-            lambda written: self._core.call(name, *arguments, None, 0, written),
-        )
+        view = rows.fill(lambda *buffer: self._core.call(name, *arguments, *buffer))
         return view.copy() if copy else view
 
     def _port(self, port: Port | str | SupportsIndex) -> int:

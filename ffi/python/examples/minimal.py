@@ -10,7 +10,7 @@ import enmm
 
 SLOPE = Path(__file__).resolve().parents[3] / "examples" / "cases" / "coupled_slope.toml"
 FORCE = (0.9e6, 0.56e6)
-"""Force (N/m) that the case puts on the toe."""
+"""Force (N/m) that the case puts on the toe at the start."""
 
 
 def main(case: Path) -> None:
@@ -22,10 +22,10 @@ def main(case: Path) -> None:
         print("  t (s)  hold (-)    toe (mm)   face (mm)  sliding contacts")
         for tenth in range(11):
             if tenth > 0:
-                # Forces of the host add to those of the case.
-                toe.set_force(*(-0.1 * tenth * part for part in FORCE))
+                toe.set_force(*((1 - 0.1 * tenth) * part for part in FORCE))
                 model.do_step(model.time, 0.1)
-            moved = [(port.displacement_x**2 + port.displacement_y**2) ** 0.5 * 1e3 for port in (toe.state(), face.state())]
+            states = (toe.state(), face.state())
+            moved = [(of.displacement_x**2 + of.displacement_y**2) ** 0.5 * 1e3 for of in states]
             slipping = model.totals().slipping_contacts
             print(f"{model.time:7.2f}  {1 - 0.1 * tenth:8.2f}  {moved[0]:10.4f}  {moved[1]:10.4f}  {slipping:16d}")
         for event in model.events():
