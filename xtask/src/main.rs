@@ -19,7 +19,7 @@ usage: cargo xtask TASK
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
-  pictures         runs the main case and writes the README's pictures into docs/pictures";
+  pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();

@@ -18,16 +18,14 @@ const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `
 /// # Errors
 /// When the environment cannot be made or the case does not run.
 pub fn test(house: &House) -> Result<Counts, String> {
-    let python = environment(house)?;
     let results = house.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let mut pytest = house.command(python);
+    let mut pytest = command(house)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
-    pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
-    pytest.env("ENMM_LIBRARY", library(house)).env("PYTHONPATH", house.root.join(PACKAGES));
+    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -40,6 +38,17 @@ pub fn test(house: &House) -> Result<Counts, String> {
 fn library(house: &House) -> PathBuf {
     let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     house.target.join("release").join(name)
+}
+
+/// Python of the environment, which finds the package `enmm` and its library.
+///
+/// # Errors
+/// When the environment cannot be made.
+pub fn command(house: &House) -> Result<Command, String> {
+    let mut python = house.command(environment(house)?);
+    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(house));
+    python.env("PYTHONPATH", house.root.join(PACKAGES));
+    Ok(python)
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.

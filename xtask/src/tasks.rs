@@ -14,6 +14,9 @@ const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
 const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
 
+/// Coupling examples, which each draw a picture.
+const COUPLINGS: [&str; 2] = ["earthquake", "reservoir"];
+
 /// How much of the tests to run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
@@ -80,6 +83,17 @@ pub fn write_pictures(house: &House) -> Result<(), String> {
         let from = results.join(name);
         std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
         println!("wrote docs/pictures/{name}");
+    }
+    write_couplings(house, &pictures)
+}
+
+/// Runs the coupling examples, which draw the pictures of `docs/coupling.md`.
+fn write_couplings(house: &House, pictures: &Path) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
+    for name in COUPLINGS {
+        let mut example = python::command(house)?;
+        example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(pictures.join(format!("{name}.png")));
+        house::run(&mut example)?;
     }
     Ok(())
 }
