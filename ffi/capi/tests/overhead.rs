@@ -11,27 +11,32 @@ use support::{host, root, say, succeed};
 const CASE: &str = "examples/cases/block_on_incline.toml";
 const STEPS: u32 = 5000;
 const ROUNDS: u32 = 7;
+const TURNS: u32 = 5;
 
 #[test]
 fn overhead_of_a_step() {
     let loaded = engine::io::load_case(&root().join(CASE)).expect("a case");
     let mut facade = Cosimulation::new(&loaded).expect("a model");
     facade.start().expect("an equilibrium");
-    let mut engine = facade.simulation().clone();
-    let own = least(|| {
-        engine.advance(false).expect("a step");
-    });
-    let dt = facade.internal_step();
-    let mut time = facade.time();
-    let facade = least(|| time = facade.do_step(time, dt).expect("a step").time);
-    let told = succeed(Command::new(host("ffi/capi/tests/c/bench.c")).args([CASE, &STEPS.to_string()]));
-    let told: Vec<f64> = told.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    let added = [facade, told[0]].map(|spent| spent - own);
-    say(&format!(
-        "{CASE}, one internal step: engine {own:.0} ns, façade +{:.0} ns, C ABI +{:.0} ns",
-        added[0], added[1]
-    ));
-    say(&format!("a call that only reads the time: {:.0} ns", told[1]));
+    let (start, dt) = (facade.time(), facade.internal_step());
+    let bench = host("ffi/capi/tests/c/bench.c");
+    let mut least_of = [f64::INFINITY; 4];
+    // In turns, so that whatever else the machine does meets all of them.
+    for _ in 0..TURNS {
+        let mut engine = facade.simulation().clone();
+        let own = least(|| {
+            engine.advance(false).expect("a step");
+        });
+        let (mut model, mut time) = (facade.clone(), start);
+        let through = least(|| time = model.do_step(time, dt).expect("a step").time);
+        let told = succeed(Command::new(&bench).args([CASE, &STEPS.to_string()]));
+        let told: Vec<f64> = told.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+        let spent = [own, through, told[0], told[1]];
+        least_of.iter_mut().zip(spent).for_each(|(least, spent)| *least = least.min(spent));
+    }
+    let [own, through, abi, call] = least_of;
+    let added = format!("façade {:+.0} ns, C ABI {:+.0} ns", through - own, abi - own);
+    say(&format!("{CASE}, one internal step: engine {own:.0} ns, {added}; a call that only reads: {call:.0} ns"));
 }
 
 /// Least mean of several rounds (ns).
