@@ -895,6 +895,13 @@ enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
 enmm_status enmm_set_interpolation(struct enmm_model *model, int32_t mode);
 
 /**
+ * Tells how inputs go through a communication step: a value of enmm_interpolation.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
+
+/**
  * Tells the number of blocks, excavated ones included. It never changes.
  *
  * Errors: ENMM_NULL_ARGUMENT.

@@ -105,7 +105,7 @@ sys.path.insert(0, sys.argv[1])
 from test_ctypes_life import act, fingerprint
 with enmm.Model.from_file(sys.argv[2]) as model, open(sys.argv[3], "rb") as file:
     model.restore(model.deserialize(file.read()))
-    assert model.interpolation is None
+    assert model.interpolation is enmm.Interpolation.LINEAR
     act(model, 5, 15)
     sys.stdout.write(repr(fingerprint(model)))
 """

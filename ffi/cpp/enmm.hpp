@@ -179,6 +179,11 @@ public:
     void set_base_acceleration(Vector a) { detail::check(enmm_set_base_acceleration(handle_, a.x, a.y)); }
     void set_water_level(double y) { detail::check(enmm_set_water_level(handle_, y)); }
     void set_strength_factor(double factor) { detail::check(enmm_set_strength_factor(handle_, factor)); }
+    enmm_interpolation interpolation() const {
+        int32_t mode = 0;
+        detail::check(enmm_get_interpolation(handle_, &mode));
+        return static_cast<enmm_interpolation>(mode);
+    }
     void set_interpolation(enmm_interpolation mode) { detail::check(enmm_set_interpolation(handle_, mode)); }
     void set_threads(std::size_t threads) { detail::check(enmm_set_threads(handle_, threads)); }
 

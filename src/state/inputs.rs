@@ -100,6 +100,13 @@ impl Drive {
         self.until = self.since;
     }
 
+    /// Takes back a jump that has not acted yet.
+    pub fn hold_last(&mut self) {
+        if !self.is_moving() {
+            self.to.copy_from(&self.from);
+        }
+    }
+
     /// Makes the values at time `t` (s) the start of what is left of the way.
     pub fn pass(&mut self, t: f64) {
         let share = self.share(t);

@@ -10,7 +10,6 @@ pub mod instance;
 pub mod library;
 pub mod location;
 pub mod log;
-pub mod log_category;
 pub mod pack;
 mod page;
 pub mod phase;

@@ -156,6 +156,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_joint_pressure": (c_int32, [_MODEL, c_uint32, c_double]),
     "enmm_set_strength_factor": (c_int32, [_MODEL, c_double]),
     "enmm_set_interpolation": (c_int32, [_MODEL, c_int32]),
+    "enmm_get_interpolation": (c_int32, [_MODEL, _I32]),
     "enmm_block_count": (c_int32, [_MODEL, _SIZE]),
     "enmm_get_block_states": (c_int32, [_MODEL, POINTER(BlockState), c_size_t, _SIZE]),
     "enmm_get_energies": (c_int32, [_MODEL, POINTER(Energies)]),

@@ -3,7 +3,7 @@
 import ctypes
 import os
 import weakref
-from ctypes import byref, c_double, c_size_t, c_uint32, c_void_p
+from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from types import TracebackType
 from typing import Self, SupportsIndex
 
@@ -29,9 +29,8 @@ class State:
     It is given free by `close`, at the end of a `with`, or with the object.
     """
 
-    def __init__(self, library: Library, handle: c_void_p, interpolation: Interpolation | None) -> None:
+    def __init__(self, library: Library, handle: c_void_p) -> None:
         self.handle = handle
-        self.interpolation = interpolation
         self._close = weakref.finalize(self, library.functions["enmm_state_free"], handle)
 
     def close(self) -> None:
@@ -61,7 +60,6 @@ class Model:
         self._core = core
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
-        self._interpolation: Interpolation | None = Interpolation.HOLD
         self._ports = Ports(core)
 
     @classmethod
@@ -163,18 +161,16 @@ class Model:
         self._threads = count
 
     @property
-    def interpolation(self) -> Interpolation | None:
+    def interpolation(self) -> Interpolation:
         """How inputs go through a communication step; HOLD at the creation.
 
-        Holds from the next step on, and is part of saved states. It is None, unknown to this package, after a state
-        that came from bytes has been restored, until it is set.
+        Holds from the next step on, and is part of saved states.
         """
-        return self._interpolation
+        return Interpolation(self._core.get("enmm_get_interpolation", c_int32))
 
     @interpolation.setter
     def interpolation(self, mode: Interpolation) -> None:
         self._core.call("enmm_set_interpolation", index("interpolation", mode))
-        self._interpolation = Interpolation(mode)
 
     def set_log(self, callback: LogFunction | None) -> None:
         """Sets the function that gets level and text of every message of this model, or None for none.
@@ -336,7 +332,7 @@ class Model:
 
         That is motion, contacts, stage, time, events and inputs.
         """
-        return self._state("enmm_state_save", interpolation=self._interpolation)
+        return self._state("enmm_state_save")
 
     def restore(self, state: State) -> None:
         """Goes back to a saved state of this model, or of another model of the same case.
@@ -344,7 +340,6 @@ class Model:
         The state can be used again. Raises StateError for a state of another case; the model then stays as it is.
         """
         self._core.call("enmm_state_restore", state.handle)
-        self._interpolation = state.interpolation
 
     def serialize(self, state: State | None = None) -> bytes:
         """A state, without one that of now, as bytes for a file or another process.
@@ -366,12 +361,12 @@ class Model:
         Raises StateError for bytes that are damaged, or of another case or version.
         """
         whole = bytes(data)
-        return self._state("enmm_state_deserialize", whole, len(whole), interpolation=None)
+        return self._state("enmm_state_deserialize", whole, len(whole))
 
-    def _state(self, name: str, *arguments: object, interpolation: Interpolation | None) -> State:
+    def _state(self, name: str, *arguments: object) -> State:
         handle = c_void_p()
         self._core.call(name, *arguments, byref(handle))
-        return State(self._core.library, handle, interpolation)
+        return State(self._core.library, handle)
 
     def _rows(self, rows: Rows, name: str, copy: bool, *arguments: object) -> npt.NDArray[np.void]:
         view = rows.fill(lambda *buffer: self._core.call(name, *arguments, *buffer))

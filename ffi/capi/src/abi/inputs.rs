@@ -134,3 +134,12 @@ pub extern "C" fn enmm_set_strength_factor(model: *mut enmm_model, f: f64) -> en
 pub extern "C" fn enmm_set_interpolation(model: *mut enmm_model, mode: i32) -> enmm_status {
     with_model(model.addr(), |model| model.set_interpolation(mode))
 }
+
+/// Tells how inputs go through a communication step: a value of enmm_interpolation.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_interpolation(model: *mut enmm_model, mode: *mut i32) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("mode", mode, model.interpolation()) })
+}

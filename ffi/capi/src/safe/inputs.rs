@@ -6,25 +6,15 @@ use engine::geometry::Vector;
 use super::failure::{Failure, Outcome};
 use super::model::Model;
 
-/// Largest magnitude that the façade takes.
-const VALUE_MAX: f64 = 1e15;
-
 impl Model {
     /// Sets force and moment of several blocks, or of none; `loads` holds Fx, Fy and M of each block of `ids`.
     ///
     /// # Errors
     /// The first value that the façade refuses.
     pub fn set_block_forces(&mut self, ids: &[u32], loads: [&[f64]; 3]) -> Outcome {
-        let count = self.inner.simulation().slope().covers.block_count();
-        let usable = |k: &usize| {
-            (ids[*k] as usize) < count && loads.iter().all(|load| load[*k].is_finite() && load[*k].abs() <= VALUE_MAX)
-        };
-        let refused = (0..ids.len()).find(|k| !usable(k));
-        // One that is refused is handed over alone: the façade changes nothing and says why.
-        let chosen = refused.map_or(0..ids.len(), |k| k..k + 1);
-        for k in chosen {
-            self.inner.set_block_force(ids[k], Vector::new(loads[0][k], loads[1][k]), loads[2][k])?;
-        }
+        let [fx, fy, moment] = loads;
+        let forces = (0..ids.len()).map(|k| (ids[k], Vector::new(fx[k], fy[k]), moment[k]));
+        self.inner.set_block_forces(forces)?;
         Ok(())
     }
 

@@ -92,7 +92,8 @@ pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> 
 
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
     let inner = Cosimulation::new(loaded)?;
-    let model = Model { inner, log: Log::default(), warnings: loaded.warnings.clone() };
+    let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
+    let model = Model { inner, log: Log::default(), warnings };
     MODELS.insert(Shared(Mutex::new(model)))
 }
 
@@ -161,6 +162,14 @@ impl Model {
             let (count, end) = (info.unsettled, info.time);
             let message = || format!("up to t = {end} s: contact forces did not settle in {count} sub-steps");
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
+        }
+    }
+
+    /// How inputs go through a communication step, as a value of `enmm_interpolation`.
+    pub fn interpolation(&self) -> i32 {
+        match self.inner.interpolation() {
+            Interpolation::Hold => enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32,
+            Interpolation::Linear => enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32,
         }
     }
 

@@ -241,6 +241,9 @@ impl Instance {
     }
 
     fn start_model(&mut self) -> Result<(), Failure> {
+        if self.model.is_started() {
+            return Ok(());
+        }
         self.rebuild_if_changed()?;
         self.use_threads(self.values.threads(&self.table))?;
         let linear = self.values.interpolates(&self.table);
@@ -270,6 +273,18 @@ impl Instance {
         let mut model = self.model_of(&wanted)?;
         self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
         self.take_model(model, wanted);
+        Ok(())
+    }
+
+    /// Takes the initial equilibrium back, since a value of which it depends is about to change.
+    fn take_back_start(&mut self) -> Result<(), Failure> {
+        if self.phase != Phase::Initialization || !self.model.is_started() {
+            return Ok(());
+        }
+        let built = self.built.clone();
+        let mut model = self.model_of(&built)?;
+        self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
+        self.take_model(model, built);
         Ok(())
     }
 
@@ -337,6 +352,6 @@ fn same_bits(a: &[f64], b: &[f64]) -> bool {
 }
 
 fn unknown_category(name: &str) -> Failure {
-    let known = crate::log::LOG_CATEGORIES.join(", ");
+    let known = crate::log::LOG_CATEGORIES.map(|(name, _)| name).join(", ");
     format!("the log category is `{name}`, must be one of {known}")
 }
