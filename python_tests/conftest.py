@@ -1,4 +1,7 @@
-"""What the Python tests share: the results of one short run, and the program. `cargo xtask test` sets both up."""
+"""What the Python tests share: the results of one short run, the program, and the C library with its package.
+
+`cargo xtask test` sets all of them up.
+"""
 
 import os
 import subprocess
@@ -83,3 +86,36 @@ def opened():
     yield make
     for instance in instances:
         instance.free()
+
+
+@pytest.fixture(scope="session")
+def library() -> Path:
+    """The C library."""
+    return from_environment("ENMM_LIBRARY")
+
+
+@pytest.fixture(scope="session")
+def cases() -> Path:
+    """Folder of the example cases."""
+    return Path(__file__).parents[1] / "examples" / "cases"
+
+
+@pytest.fixture(scope="session")
+def package(library):
+    """The package, with the library that `ENMM_LIBRARY` names."""
+    import enmm as package  # Only here: without `cargo xtask test` it is not on the path, which `library` tells first.
+
+    assert package.load_library().path == str(library.resolve())
+    return package
+
+
+@pytest.fixture
+def incline(package, cases):
+    with package.Model.from_file(cases / "block_on_incline.toml") as model:
+        yield model
+
+
+@pytest.fixture
+def slope(package, cases):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        yield model

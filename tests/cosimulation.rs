@@ -196,7 +196,7 @@ fn a_block_that_is_pulled_off_detaches() {
 
 #[test]
 fn a_linear_input_arrives_at_the_end_of_the_step_and_a_held_one_jumps() {
-    // A free block under a force: linear from 0 gives v = F·h/(2m), held gives v = F·h/m.
+    // A free block of 1000 kg/m under a force: linear from 500 to 1000 N/m gives v = 0.75·h, held v = h.
     let text = r#"
 title = "Free block"
 domain.outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
@@ -212,11 +212,14 @@ damping = 0.0
 "#;
     let loaded = parse_case(text, "free.toml", Path::new("")).unwrap();
     let h = 0.5;
-    for (interpolation, share) in [(Interpolation::Hold, 1.0), (Interpolation::Linear, 0.5)] {
+    for (interpolation, share) in [(Interpolation::Hold, 1.0), (Interpolation::Linear, 0.75)] {
         let mut model = Cosimulation::new(&loaded).unwrap();
         model.set_interpolation(interpolation);
+        model.set_block_force(0, Vector::new(-700.0, 0.0), 0.0).unwrap();
+        model.set_block_force(0, Vector::new(500.0, 0.0), 0.0).unwrap();
         model.start().unwrap();
         model.set_block_force(0, Vector::new(1000.0, 0.0), 0.0).unwrap();
+        model.set_strength_factor(0.5).unwrap();
         model.do_step(0.0, h).unwrap();
         let v = states(&model)[0].velocity.x;
         assert!((v - share * h).abs() < 2.0 * model.internal_step(), "{interpolation:?}: {v}");

@@ -88,6 +88,8 @@ struct Pick {
     length: f64,
     tangent: Vector,
     held: Option<ContactHistory>,
+    /// Whether the contact carried force in the last step.
+    is_held: bool,
     admitted: bool,
 }
 
@@ -134,6 +136,7 @@ impl Narrow<'_> {
     }
 
     fn pick(&self, node: usize, edges: &[Candidate], held: Option<ContactHistory>) -> Option<Pick> {
+        let is_held = held.is_some_and(|h| h.state != ContactState::Open);
         let p = self.node_place(node);
         let over = |c: &Candidate| {
             let (a, b) = self.ends(c.edge as usize);
@@ -142,7 +145,8 @@ impl Narrow<'_> {
             let along = (p - a).dot(&tangent);
             let gap = (p - a).dot(&right_of(tangent));
             let beyond = (-along).max(along - length).max(0.0);
-            let pick = Pick { side: c.side, edge: c.edge, gap, along, length, tangent, held, admitted: false };
+            let (side, edge) = (c.side, c.edge);
+            let pick = Pick { side, edge, gap, along, length, tangent, held, is_held, admitted: false };
             (beyond.hypot(gap), beyond, pick)
         };
         let (_, beyond, mut pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
@@ -181,11 +185,7 @@ impl Narrow<'_> {
 
     /// Distance (m) beyond a corner that counts as the corner.
     fn corner_tolerance(&self, pick: &Pick) -> f64 {
-        self.size * if Self::is_held(pick) { HELD_BEYOND } else { CORNER_TOLERANCE }
-    }
-
-    fn is_held(pick: &Pick) -> bool {
-        pick.held.is_some_and(|h| h.state != ContactState::Open)
+        self.size * if pick.is_held { HELD_BEYOND } else { CORNER_TOLERANCE }
     }
 
     /// Rule (ii): at a convex end of the side the node is not beyond the end, and not past the facet round it.
@@ -251,7 +251,7 @@ impl Narrow<'_> {
             return (p - q).dot(&outward) <= tolerance;
         }
         let gap = (q - p).dot(&facing);
-        if pick.gap > 0.0 && gap <= 0.0 && !Self::is_held(pick) {
+        if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
         }
         let own_side = || match end {
@@ -261,7 +261,7 @@ impl Narrow<'_> {
         if pick.gap > 0.0 || gap > 0.0 {
             return gap <= tolerance;
         }
-        if Self::is_held(pick) {
+        if pick.is_held {
             return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
         }
         gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
@@ -345,8 +345,8 @@ impl Narrow<'_> {
             return None;
         }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
-        let deep_loses = if Self::is_held(deep) {
-            Self::is_held(shallow) && shallow.admitted
+        let deep_loses = if deep.is_held {
+            shallow.is_held && shallow.admitted
         } else {
             let far = !adjacent && shallow.gap > 0.0 || deep.held.is_none() && self.was_deep(node, deep);
             behind && far || shallow.admitted && shallow.gap <= 0.0

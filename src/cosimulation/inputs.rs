@@ -4,6 +4,8 @@
 //! [`Interpolation::Linear`](super::Interpolation) (Eq. 32). In the ramp of a first static stage all inputs grow with
 //! gravity.
 
+use std::fmt::Display;
+
 use crate::geometry::Vector;
 use crate::state::{Inputs, PortKind};
 
@@ -24,7 +26,7 @@ impl Cosimulation {
     /// # Errors
     /// A value that is not finite or too large.
     pub fn set_gravity(&mut self, gravity: Vector) -> Result<(), CosimulationError> {
-        vector("gravity", gravity, ACCELERATION_MAX, "m/s²")?;
+        vector(&"gravity", gravity, ACCELERATION_MAX, "m/s²")?;
         self.set(|inputs| replace(&mut inputs.gravity, gravity));
         Ok(())
     }
@@ -35,7 +37,7 @@ impl Cosimulation {
     /// # Errors
     /// A value that is not finite or too large.
     pub fn set_base_acceleration(&mut self, acceleration: Vector) -> Result<(), CosimulationError> {
-        vector("base_acceleration", acceleration, ACCELERATION_MAX, "m/s²")?;
+        vector(&"base_acceleration", acceleration, ACCELERATION_MAX, "m/s²")?;
         self.set(|inputs| replace(&mut inputs.base_acceleration, acceleration));
         Ok(())
     }
@@ -45,7 +47,7 @@ impl Cosimulation {
     /// # Errors
     /// A value that is not finite or too large, or a case without water.
     pub fn set_water_level(&mut self, level: f64) -> Result<(), CosimulationError> {
-        number("water_level", level, LEVEL_MAX, "m")?;
+        number(&"water_level", level, LEVEL_MAX, "m")?;
         if self.simulation.slope().water.is_none() {
             let remedy = "add `[water]` with `level` to the case";
             return Err(CosimulationError::value("water_level", level, "that of a case with water", remedy));
@@ -67,16 +69,35 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise).
+    /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise); they take the
+    /// place of those that a port of the case has at the start.
     ///
     /// # Errors
     /// A value that is not finite or too large, or a block that does not exist.
     pub fn set_block_force(&mut self, block: u32, force: Vector, moment: f64) -> Result<(), CosimulationError> {
-        self.check_block(block)?;
-        vector(&format!("force on block {block}"), force, VALUE_MAX, "N/m")?;
-        number(&format!("moment on block {block}"), moment, VALUE_MAX, "N·m/m")?;
-        let k = block as usize;
-        self.set(|inputs| replace(&mut inputs.block_force[k], force) | replace(&mut inputs.block_moment[k], moment));
+        self.set_block_forces(std::iter::once((block, force, moment)))
+    }
+
+    /// Sets forces and moments on blocks, all or none of them.
+    ///
+    /// # Errors
+    /// The first value that [`Cosimulation::set_block_force`] would refuse.
+    pub fn set_block_forces(
+        &mut self,
+        forces: impl Iterator<Item = (u32, Vector, f64)> + Clone,
+    ) -> Result<(), CosimulationError> {
+        for (block, force, moment) in forces.clone() {
+            self.check_block(block)?;
+            vector(&format_args!("force on block {block}"), force, VALUE_MAX, "N/m")?;
+            number(&format_args!("moment on block {block}"), moment, VALUE_MAX, "N·m/m")?;
+        }
+        self.set(|inputs| {
+            forces.fold(false, |changed, (block, force, moment)| {
+                let k = block as usize;
+                let force = replace(&mut inputs.block_force[k], force);
+                changed | force | replace(&mut inputs.block_moment[k], moment)
+            })
+        });
         Ok(())
     }
 
@@ -86,7 +107,7 @@ impl Cosimulation {
     /// A value that is not finite or too large, or a port that does not exist or is no boundary.
     pub fn set_boundary_traction(&mut self, port: usize, traction: Vector) -> Result<(), CosimulationError> {
         let name = self.check_port(port, &[PortKind::Boundary], "a port of a boundary")?;
-        vector(&format!("traction on port {name}"), traction, VALUE_MAX, "Pa")?;
+        vector(&format_args!("traction on port {name}"), traction, VALUE_MAX, "Pa")?;
         self.set(|inputs| replace(&mut inputs.port_traction[port], traction));
         Ok(())
     }
@@ -98,7 +119,7 @@ impl Cosimulation {
     pub fn set_pressure(&mut self, port: usize, pressure: f64) -> Result<(), CosimulationError> {
         let kinds = [PortKind::Boundary, PortKind::Joint];
         let name = self.check_port(port, &kinds, "a port of a boundary or of joints")?;
-        number(&format!("pressure on port {name}"), pressure, VALUE_MAX, "Pa")?;
+        number(&format_args!("pressure on port {name}"), pressure, VALUE_MAX, "Pa")?;
         self.set(|inputs| replace(&mut inputs.port_pressure[port], pressure));
         Ok(())
     }
@@ -128,7 +149,9 @@ impl Cosimulation {
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
         let was_moving = drive.is_moving();
-        drive.arrive();
+        if was_moving {
+            drive.arrive();
+        }
         self.standing.changed |= change(&mut drive.to) || was_moving;
     }
 }
@@ -140,15 +163,16 @@ fn replace<T: Copy + PartialEq>(old: &mut T, new: T) -> bool {
     changed
 }
 
-fn number(name: &str, value: f64, most: f64, unit: &str) -> Result<(), CosimulationError> {
+fn number(name: &dyn Display, value: f64, most: f64, unit: &str) -> Result<(), CosimulationError> {
     if value.is_finite() && value.abs() <= most {
         return Ok(());
     }
     let limit = format!("a finite number of at most {most:e} {unit} in magnitude");
-    Err(CosimulationError::value(name, format!("{value} {unit}"), &limit, "correct the value; the old one still holds"))
+    let (name, value) = (name.to_string(), format!("{value} {unit}"));
+    Err(CosimulationError::value(name, value, &limit, "correct the value; the old one still holds"))
 }
 
-fn vector(name: &str, value: Vector, most: f64, unit: &str) -> Result<(), CosimulationError> {
-    number(&format!("{name}, x"), value.x, most, unit)?;
-    number(&format!("{name}, y"), value.y, most, unit)
+fn vector(name: &dyn Display, value: Vector, most: f64, unit: &str) -> Result<(), CosimulationError> {
+    number(&format_args!("{name}, x"), value.x, most, unit)?;
+    number(&format_args!("{name}, y"), value.y, most, unit)
 }

@@ -85,20 +85,21 @@ impl Cosimulation {
     /// # Errors
     /// A numerical failure; the model is then as it was when the interval began.
     pub fn advance(&mut self, interval: &mut Interval) -> Result<bool, CosimulationError> {
-        let left = interval.end - self.time();
-        if left <= self.same_time(interval.end) {
-            self.finish(interval);
+        let left = interval.end - self.grid_time();
+        let same = self.same_time(interval.end);
+        if left <= same {
+            self.arrive(interval);
             return Ok(false);
         }
-        match self.internal(left) {
+        match self.internal(left, same) {
             Ok(dt) => {
                 interval.info.steps += 1;
                 interval.info.dt = interval.info.dt.max(dt);
-                interval.info.time = self.time();
+                interval.info.time = self.grid_time();
                 self.note_events(interval);
-                let more = interval.end - self.time() > self.same_time(interval.end);
+                let more = interval.end - self.grid_time() > same;
                 if !more {
-                    self.finish(interval);
+                    self.arrive(interval);
                 }
                 Ok(more)
             }
@@ -109,14 +110,14 @@ impl Cosimulation {
         }
     }
 
-    /// One internal step, or the part of it that is left; returns its length (s).
-    fn internal(&mut self, left: f64) -> Result<f64, CosimulationError> {
+    /// One internal step, or the part of it that is `left` (s); returns its length. Times within `same` are the same.
+    fn internal(&mut self, left: f64, same: f64) -> Result<f64, CosimulationError> {
         if self.simulation.stage_is_over(None) {
             self.next_stage()?;
         }
         let dt = self.internal_step();
         let rest = dt - self.simulation.state().part;
-        if left >= rest - SAME_TIME * dt {
+        if left >= rest - same {
             self.step(None, false)?;
             self.grid = None;
             return Ok(rest);
@@ -133,6 +134,12 @@ impl Cosimulation {
         if self.simulation.state().events.list.len() > known {
             interval.info.events.extend(self.events().skip(known));
         }
+    }
+
+    /// Ends an interval at its end.
+    fn arrive(&mut self, interval: &mut Interval) {
+        self.standing.told = interval.end;
+        self.finish(interval);
     }
 
     fn finish(&mut self, interval: &mut Interval) {
@@ -170,7 +177,7 @@ impl Cosimulation {
     }
 
     /// Difference (s) below which two times near `t` are the same.
-    fn same_time(&self, t: f64) -> f64 {
+    pub(super) fn same_time(&self, t: f64) -> f64 {
         let dt = self.internal_step();
         (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt)
     }

@@ -48,6 +48,8 @@ struct Standing {
     /// Whether an input has changed since the last step ended.
     changed: bool,
     interpolation: Interpolation,
+    /// End of the last communication step as the host counts (s); [`Cosimulation::time`] as long as the model is there.
+    told: f64,
 }
 
 /// A model in the hands of a host.
@@ -98,13 +100,24 @@ impl Cosimulation {
         &self.hash
     }
 
+    /// What the user should know of the model as built; the warnings of reading its case come with the case.
+    pub fn warnings(&self) -> &[String] {
+        &self.simulation.built().warnings
+    }
+
     /// The model and its state.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// Time (s) since the start of the first dynamic stage.
+    /// Time (s) since the start of the first dynamic stage; after a communication step exactly its t + h.
     pub fn time(&self) -> f64 {
+        let (own, told) = (self.grid_time(), self.standing.told);
+        if (own - told).abs() <= self.same_time(own) { told } else { own }
+    }
+
+    /// Time (s) as whole internal steps and a part of one make it.
+    fn grid_time(&self) -> f64 {
         let state = self.simulation.state();
         (state.step - self.standing.origin) as f64 * self.internal_step() + state.part
     }
@@ -238,7 +251,7 @@ impl Cosimulation {
 
     /// Simulated time (s) at time 0.
     fn start_time(&self) -> f64 {
-        self.simulation.time() - self.time()
+        self.simulation.time() - self.grid_time()
     }
 }
 

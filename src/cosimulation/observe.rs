@@ -2,7 +2,7 @@
 
 use crate::contact::{Boundary, ContactHistory, ContactState};
 use crate::geometry::{Point, Vector};
-use crate::state::{EventKind, Ledger, Port, PortKind};
+use crate::state::{Event, EventKind, Ledger, Port, PortKind};
 
 use super::Cosimulation;
 
@@ -74,7 +74,8 @@ impl Cosimulation {
         let report = simulation.report();
         let most = |field: &[Vector]| field.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let contacts = |which| state.contacts.iter().filter(|contact| contact.state == which).count() as u32;
-        let events = |which| state.events.list.iter().filter(|event| event.kind == which).count() as u32;
+        let of_kind = |event: &&Event, which| event.kind == which && event.subject != u32::MAX;
+        let events = |which| state.events.list.iter().filter(|event| of_kind(event, which)).count() as u32;
         Totals {
             ledger: report.ledger,
             displacement_max: most(&state.displacement),

@@ -124,9 +124,11 @@ impl Simulation {
         step::advance_part(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, dt)
     }
 
-    /// Energies and the unbalanced ratio now; nothing advances.
+    /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances.
     pub fn report(&self) -> StepReport {
-        step::outlook(self.slope(), self.regime, self.state(), &self.scratch)
+        let mut state = self.state().clone();
+        state.drive.hold_last();
+        step::outlook(self.slope(), self.regime, state, &self.scratch)
     }
 
     /// Whether all indices and lengths of a state are those of this model.

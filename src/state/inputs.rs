@@ -96,9 +96,14 @@ impl Drive {
 
     /// Ends the change at once: the values are those of `to`.
     pub fn arrive(&mut self) {
-        if self.is_moving() {
-            self.from.copy_from(&self.to);
-            self.until = self.since;
+        self.from.copy_from(&self.to);
+        self.until = self.since;
+    }
+
+    /// Takes back a jump that has not acted yet.
+    pub fn hold_last(&mut self) {
+        if !self.is_moving() {
+            self.to.copy_from(&self.from);
         }
     }
 

@@ -91,8 +91,8 @@ pub fn advance_part(
 }
 
 /// Energies and the unbalanced ratio that the next step will find at its start; nothing advances.
-pub fn outlook(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> StepReport {
-    let (mut state, mut scratch) = (state.clone(), scratch.clone());
+pub fn outlook(slope: &Slope, regime: Regime, mut state: State, scratch: &Scratch) -> StepReport {
+    let mut scratch = scratch.clone();
     let rest = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     step.report = true;

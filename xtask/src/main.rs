@@ -3,6 +3,7 @@
 
 mod counts;
 mod house;
+mod install;
 mod python;
 mod tasks;
 
@@ -11,10 +12,14 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  test [--quick]   format, lints, build, tests, documentation, schema, Python; --quick leaves out the last three
+  test [--quick]   format, lints, build, tests, documentation, header, schema, Python;
+                   --quick leaves out the last four
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   schema           writes docs/case.schema.json
-  pictures         runs the main case and writes the README's pictures into docs/pictures";
+  header           writes include/enmm.h
+  install --prefix DIR
+                   builds and copies program, libraries, headers, CMake and pkg-config files
+  pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -23,6 +28,8 @@ fn main() -> ExitCode {
         ["test"] => Ok(tasks::test(&house, tasks::Extent::Full)),
         ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
         ["long"] => Ok(tasks::long(&house)),
+        ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
+        ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&house).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.to_owned()),

@@ -9,15 +9,10 @@ use crate::house::{self, House};
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
 const REQUIREMENTS: &str = "python_tests/requirements.txt";
-const LIBRARY: &str = if cfg!(windows) {
-    "enmm.dll"
-} else if cfg!(target_os = "macos") {
-    "libenmm.dylib"
-} else {
-    "libenmm.so"
-};
 /// Cases that the Python tests have as FMUs of both versions.
 const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
+/// Folder of the package `enmm`.
+const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
 /// Runs the short case, then pytest over its results.
@@ -25,17 +20,14 @@ const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `
 /// # Errors
 /// When the environment cannot be made or the case does not run.
 pub fn test(house: &House) -> Result<Counts, String> {
-    let python = environment(house)?;
     let results = house.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let fmus = pack(house)?;
-    let mut pytest = house.command(python);
+    let mut pytest = command(house)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
-    pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
-    pytest.env("ENMM_FMUS", &fmus).env("ENMM_LIBRARY", house.target.join("release").join(LIBRARY));
+    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm()).env("ENMM_FMUS", pack(house)?);
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -56,6 +48,23 @@ fn pack(house: &House) -> Result<PathBuf, String> {
         }
     }
     Ok(folder)
+}
+
+/// The C library as `cargo build --release` leaves it.
+fn library(house: &House) -> PathBuf {
+    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    house.target.join("release").join(name)
+}
+
+/// Python of the environment, which finds the package `enmm` and its library.
+///
+/// # Errors
+/// When the environment cannot be made.
+pub fn command(house: &House) -> Result<Command, String> {
+    let mut python = house.command(environment(house)?);
+    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(house));
+    python.env("PYTHONPATH", house.root.join(PACKAGES));
+    Ok(python)
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.

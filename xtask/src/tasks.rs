@@ -1,5 +1,6 @@
 //! The tasks, each a list of steps.
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
@@ -8,16 +9,20 @@ use crate::house::{self, House};
 use crate::python;
 
 const SCHEMA: &str = "docs/case.schema.json";
+const HEADER: &str = "include/enmm.h";
 const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
 const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
+
+/// Coupling examples, which each draw a picture.
+const COUPLINGS: [&str; 2] = ["earthquake", "reservoir"];
 
 /// How much of the tests to run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// Everything.
     Full,
-    /// Without documentation, schema and Python.
+    /// Without documentation, header, schema and Python.
     Quick,
 }
 
@@ -38,6 +43,7 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
             let mut doc = house.cargo(&["doc", "--workspace", "--no-deps"]);
             house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
+        steps.take("header", || compare_header(house).map(|()| Counts::default()));
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
         steps.take("python", || python::test(house));
     }
@@ -78,6 +84,17 @@ pub fn write_pictures(house: &House) -> Result<(), String> {
         std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
         println!("wrote docs/pictures/{name}");
     }
+    write_couplings(house, &pictures)
+}
+
+/// Runs the coupling examples, which draw the pictures of `docs/coupling.md`.
+fn write_couplings(house: &House, pictures: &Path) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
+    for name in COUPLINGS {
+        let mut example = python::command(house)?;
+        example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(pictures.join(format!("{name}.png")));
+        house::run(&mut example)?;
+    }
     Ok(())
 }
 
@@ -100,15 +117,43 @@ fn schema(house: &House) -> Result<Vec<u8>, String> {
     house::capture(house.command(house.enmm()).arg("schema"))
 }
 
+/// Writes the C header that belongs to the sources of the C ABI.
+///
+/// # Errors
+/// When its program does not build or run, or the file cannot be written.
+pub fn write_header(house: &House) -> Result<(), String> {
+    make_header(house, &house.root.join(HEADER))?;
+    println!("wrote {HEADER}");
+    Ok(())
+}
+
+fn make_header(house: &House, to: &Path) -> Result<(), String> {
+    house::run(house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header", "--"]).arg(to))
+}
+
+fn compare_header(house: &House) -> Result<(), String> {
+    let own = house.target.join("enmm.h");
+    make_header(house, &own)?;
+    compare(HEADER, &read(&own)?, &read(&house.root.join(HEADER))?, "cargo xtask header")
+}
+
 fn compare_schema(house: &House) -> Result<(), String> {
     let told = schema(house)?;
-    let committed = std::fs::read(house.root.join(SCHEMA)).map_err(|error| format!("{SCHEMA}: {error}"))?;
-    if told == committed {
+    compare(SCHEMA, &told, &read(&house.root.join(SCHEMA))?, "cargo xtask schema")
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Compares a file that is `committed` with what its generator makes.
+fn compare(name: &str, made: &[u8], committed: &[u8], remedy: &str) -> Result<(), String> {
+    if made == committed {
         return Ok(());
     }
-    let line =
-        1 + told.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n')).take_while(|(a, b)| a == b).count();
-    Err(format!("{SCHEMA} differs from `enmm schema` from line {line} on: run `cargo xtask schema` and commit"))
+    let lines = made.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n'));
+    let line = 1 + lines.take_while(|(a, b)| a == b).count();
+    Err(format!("{name} is not what the sources make from line {line} on: run `{remedy}` and commit"))
 }
 
 /// Steps that have run.

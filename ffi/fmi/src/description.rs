@@ -4,7 +4,7 @@ use std::io;
 
 use enmm::cosimulation::Cosimulation;
 
-use crate::log_category::CATEGORIES;
+use crate::log::LOG_CATEGORIES;
 use crate::table::{Causality, Table, Type, Variable};
 use crate::unit;
 use crate::xml::{Xml, number};
@@ -78,7 +78,7 @@ pub fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
 /// Writes the log categories.
 pub fn log_categories(xml: &mut Xml) -> io::Result<()> {
     xml.element("LogCategories", &[], |xml| {
-        CATEGORIES.iter().try_for_each(|(name, description)| {
+        LOG_CATEGORIES.iter().try_for_each(|(name, description)| {
             xml.leaf("Category", &[("name", (*name).to_owned()), ("description", (*description).to_owned())])
         })
     })

@@ -34,8 +34,8 @@ pub struct Ended {
 }
 
 impl<H: Host> Handle<H> {
-    /// Does `work` on the instance; `function` stands before its messages. A panic is [`Status::Fatal`], and so is every
-    /// later call.
+    /// Does `work` on the instance; `function` stands before its messages. A panic is [`Status::Fatal`], and so is
+    /// every later call.
     pub fn call(&self, function: &str, work: impl FnOnce(&mut Instance) -> Status) -> Status {
         let done = catch_unwind(AssertUnwindSafe(|| match self.instance.try_lock() {
             Ok(mut instance) => {

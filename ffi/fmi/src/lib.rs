@@ -1,5 +1,5 @@
-//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed, and
-//! the safe instance behind the C entry points.
+//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed,
+//! and the safe instance behind the C entry points.
 #![forbid(unsafe_code)]
 
 mod description;
@@ -10,7 +10,6 @@ pub mod instance;
 pub mod library;
 pub mod location;
 pub mod log;
-pub mod log_category;
 pub mod pack;
 mod page;
 pub mod phase;

@@ -16,9 +16,15 @@ pub enum Status {
     Fatal = 4,
 }
 
-/// Names of the categories, as the model descriptions list them, in the order of [`Category`].
-pub const LOG_CATEGORIES: [&str; 6] =
-    ["logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal", "logAll"];
+/// Name and description of each category, as the model descriptions declare them, in the order of [`Category`].
+pub const LOG_CATEGORIES: [(&str, &str); 6] = [
+    ("logEvents", "Blocks that detach or fail, joints that slip"),
+    ("logStatusWarning", "Warnings"),
+    ("logStatusDiscard", "Calls that were refused and changed nothing"),
+    ("logStatusError", "Errors"),
+    ("logStatusFatal", "Errors after which the instance is lost"),
+    ("logAll", "All messages"),
+];
 
 /// Category of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +46,7 @@ pub enum Category {
 impl Category {
     /// Name in the model description.
     pub fn name(self) -> &'static str {
-        LOG_CATEGORIES[self as usize]
+        LOG_CATEGORIES[self as usize].0
     }
 }
 
@@ -86,7 +92,7 @@ impl Filter {
     pub fn of<'a>(on: bool, names: &[&'a str]) -> Result<Self, &'a str> {
         let mut filter = Self::new(on && names.is_empty());
         for &name in names {
-            let k = LOG_CATEGORIES.iter().position(|&known| known == name).ok_or(name)?;
+            let k = LOG_CATEGORIES.iter().position(|&(known, _)| known == name).ok_or(name)?;
             filter.on[k] = on;
         }
         Ok(filter)
@@ -115,6 +121,6 @@ mod tests {
         assert!(!Filter::of(false, &["logEvents"]).unwrap().passes(Category::Events));
         assert_eq!(Filter::of(true, &["logEvents", "logEvent"]).unwrap_err(), "logEvent");
         let all = [Category::Events, Category::Warning, Category::Discard, Category::Error, Category::Fatal];
-        assert!(all.iter().zip(LOG_CATEGORIES).all(|(category, name)| category.name() == name));
+        assert!(all.iter().zip(LOG_CATEGORIES).all(|(category, (name, _))| category.name() == name));
     }
 }

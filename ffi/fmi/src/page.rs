@@ -4,7 +4,7 @@ use enmm::cosimulation::Cosimulation;
 use quick_xml::escape::escape;
 
 use crate::description::{Facts, tool};
-use crate::log_category::CATEGORIES;
+use crate::log::LOG_CATEGORIES;
 use crate::table::{Causality, Table, Type, Variable, Version};
 use crate::xml::{clean, number};
 
@@ -185,6 +185,6 @@ fn blocks(model: &Cosimulation) -> String {
 }
 
 fn log() -> String {
-    let items = CATEGORIES.map(|(name, what)| format!("<code>{name}</code>: {what}"));
+    let items = LOG_CATEGORIES.map(|(name, what)| format!("<code>{name}</code>: {what}"));
     section("Log categories", &items)
 }

@@ -97,8 +97,8 @@ const ALL_BUT_UPDATE: u16 = I | N | S | F | T | E;
 /// Rows: call, mask of FMI 2, mask of FMI 3.
 ///
 /// FMI 2 leaves a failed step by a saved state. Here the step is a transaction and the model stands at its begin, so
-/// that a shorter step, or other inputs, are also welcome without one. FMI 3 knows no such state: a discarded step leaves
-/// the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists.
+/// that a shorter step, or other inputs, are also welcome without one. FMI 3 knows no such state: a discarded step
+/// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists.
 const TABLE: [(Call, u16, u16); 14] = [
     (Call::Logging, ALL_BUT_UPDATE, ALL_BUT_UPDATE | U),
     (Call::Free, ALL_BUT_UPDATE, ALL_BUT_UPDATE),

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::io;
 
-use enmm::geometry::{NONE, Point};
+use enmm::geometry::Point;
+use enmm::io::model_decor;
 use enmm::io::picture::{ModelDecor, model_picture};
 use enmm::model::Simulation;
-use enmm::model::case::Port;
 use enmm::model::snapshot::Boundary;
 use resvg::{tiny_skia, usvg};
 
@@ -21,39 +21,8 @@ const HELD: &str = "#8a9299";
 
 /// The slope as a PNG: blocks, joints by law, supports, monitors and ports.
 pub fn slope(simulation: &Simulation) -> io::Result<Vec<u8>> {
-    model_picture(&simulation.snapshot(), &decor(simulation)).png()
-}
-
-fn decor(simulation: &Simulation) -> ModelDecor {
-    let (slope, case) = (simulation.slope(), simulation.case());
-    let covers = &slope.covers;
-    let supports = slope.supports.iter().map(|support| {
-        let place = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
-        support.covers.iter().zip(support.weights).map(place).sum()
-    });
-    let mut fixed: Vec<Point> = supports.collect();
-    fixed.dedup();
-    let joints = covers.outlines.pieces.iter().filter(|piece| piece.trace != NONE && piece.element < piece.opposite);
-    let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
-    let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
-    ModelDecor {
-        title: case.title.clone(),
-        fixed,
-        monitors: monitors.chain(ports).collect(),
-        counts: vec![
-            format!("{} blocks", covers.block_count()),
-            format!("{} elements", covers.element_count()),
-            format!("mesh size {} m", covers.mesh.size),
-        ],
-        trace_segments: joints.map(|piece| ([piece.a, piece.b], slope.trace_law[piece.trace as usize])).collect(),
-        ..ModelDecor::default()
-    }
-}
-
-/// Where a port is marked: at its point or half way along its segment.
-fn place_of(port: &Port) -> Option<Point> {
-    let middle = |[a, b]: [[f64; 2]; 2]| Point::from([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
-    port.block.map(Point::from).or_else(|| port.boundary.or(port.joint).map(middle))
+    let decor = ModelDecor { stars: Vec::new(), ..model_decor(simulation) };
+    model_picture(&simulation.snapshot(), &decor).png()
 }
 
 /// The blocks alone, filled, on a clear square, as a PNG.

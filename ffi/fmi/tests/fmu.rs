@@ -9,7 +9,7 @@ use enmm::geometry::Vector;
 use enmm::io::{LoadedCase, load_case};
 use enmm_fmi::pack::{PackError, identifier, pack};
 use enmm_fmi::table::{Axis, Causality, Quantity, Table, Type, Version};
-use enmm_fmi::{library, log_category, resource};
+use enmm_fmi::{library, log, resource};
 use quick_xml::Reader;
 use quick_xml::XmlVersion;
 use quick_xml::events::Event;
@@ -163,7 +163,7 @@ fn the_structure_lists_exactly_the_outputs_in_order() {
         }
         assert!(elements.iter().all(|e| e.get("derivative").is_none()));
         let categories = elements.iter().filter(|e| e.name == "Category").map(|e| e.get("name").unwrap());
-        assert!(categories.eq(log_category::CATEGORIES.map(|(name, _)| name)));
+        assert!(categories.eq(log::LOG_CATEGORIES.map(|(name, _)| name)));
     }
 }
 

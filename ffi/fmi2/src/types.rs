@@ -1,5 +1,5 @@
-//! Types of `fmi2TypesPlatform.h` and `fmi2FunctionTypes.h`. Enumerations and Booleans that come in are integers, so that
-//! every value that an importer may give is one of the type.
+//! Types of `fmi2TypesPlatform.h` and `fmi2FunctionTypes.h`. Enumerations and Booleans that come in are integers, so
+//! that every value that an importer may give is one of the type.
 
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};

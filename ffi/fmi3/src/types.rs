@@ -21,8 +21,8 @@ pub type Binary = *const u8;
 /// `fmi3LogMessageCallback`.
 pub type LogMessage = unsafe extern "C" fn(Environment, Status, Text, Text);
 
-/// `fmi3IntermediateUpdateCallback`: time, whether setting is requested, whether getting is allowed, whether the internal
-/// step is finished, whether to return early is possible; then whether it is wanted, and when.
+/// `fmi3IntermediateUpdateCallback`: time, whether setting is requested, whether getting is allowed, whether the
+/// internal step is finished, whether to return early is possible; then whether it is wanted, and when.
 pub type IntermediateUpdate = unsafe extern "C" fn(Environment, f64, bool, bool, bool, bool, *mut bool, *mut f64);
 
 /// The importer of an instance.

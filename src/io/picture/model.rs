@@ -211,7 +211,7 @@ impl Model<'_> {
             (!self.snapshot.boundaries.is_empty(), Sign::Line(INK), "block outline"),
             (held_blocks, Sign::Hatch, "block held"),
             (!self.decor.fixed.is_empty(), Sign::Support, "point held"),
-            (!self.decor.monitors.is_empty(), Sign::Monitor, "monitor"),
+            (!self.decor.monitors.is_empty(), Sign::Monitor, "monitor or port"),
         ];
         let present = all.into_iter().filter(|(present, ..)| *present);
         present.map(|(_, sign, text)| Entry { sign, text: text.to_owned() }).collect()

@@ -4,8 +4,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::geometry::{NONE, Point};
-use crate::io::picture::{ModelDecor, displacement_picture, history_picture, model_picture};
+use crate::geometry::Point;
+use crate::io::decor::model_decor;
+use crate::io::picture::{displacement_picture, history_picture, model_picture};
 use crate::model::snapshot::Polygons;
 use crate::model::{Case, Simulation};
 
@@ -27,7 +28,7 @@ pub fn clear(directory: &Path) -> io::Result<()> {
 
 /// Draws the model before it moves.
 pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
-    model_picture(&simulation.snapshot(), &decor(simulation)).write_png(&directory.join("model.png"))
+    model_picture(&simulation.snapshot(), &model_decor(simulation)).write_png(&directory.join("model.png"))
 }
 
 /// Draws the slope as it is now, and the histories.
@@ -48,29 +49,4 @@ fn outline(case: &Case) -> Polygons {
         polygons.start.push(polygons.points.len() as u32);
     }
     polygons
-}
-
-fn decor(simulation: &Simulation) -> ModelDecor {
-    let (slope, case) = (simulation.slope(), simulation.case());
-    let covers = &slope.covers;
-    let supports = slope.supports.iter().map(|support| {
-        let place = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
-        support.covers.iter().zip(support.weights).map(place).sum()
-    });
-    let mut fixed: Vec<Point> = supports.collect();
-    fixed.dedup();
-    let joints = covers.outlines.pieces.iter().filter(|piece| piece.trace != NONE && piece.element < piece.opposite);
-    ModelDecor {
-        title: case.title.clone(),
-        stars: covers.covers_by_star().into_iter().map(|(star, count)| (covers.mesh.node(star), count)).collect(),
-        fixed,
-        monitors: case.monitors.iter().map(|m| (m.name.clone(), Point::from(m.point))).collect(),
-        counts: vec![
-            format!("{} blocks", covers.block_count()),
-            format!("{} elements", covers.element_count()),
-            format!("{} physical covers", covers.cover_count()),
-            format!("mesh size {} m", covers.mesh.size),
-        ],
-        trace_segments: joints.map(|piece| ([piece.a, piece.b], slope.trace_law[piece.trace as usize])).collect(),
-    }
 }

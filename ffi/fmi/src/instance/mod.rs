@@ -1,7 +1,7 @@
 //! One instance of an FMU: its life cycle. Both sets of C entry points are thin over it.
 //!
-//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is then
-//! [`Phase::Error`], except for calls that only handle saved states or logging.
+//! A call either does all that it should or returns an error and leaves values and model as they were; the phase is
+//! then [`Phase::Error`], except for calls that only handle saved states or logging.
 
 mod read;
 mod saved;
@@ -64,6 +64,8 @@ pub struct Instance {
     threads: usize,
     values: Values,
     phase: Phase,
+    /// Whether a call within intermediate update mode has failed; the error shows when the mode is left.
+    spoiled: bool,
     experiment: Experiment,
     time: f64,
     early_return: bool,
@@ -97,6 +99,7 @@ impl Instance {
             threads: 1,
             values,
             phase: Phase::Instantiated,
+            spoiled: false,
             experiment: Experiment { start: 0.0, stop: None },
             time: 0.0,
             early_return: plan.early_return,
@@ -145,7 +148,11 @@ impl Instance {
 
     /// Ends a call that failed.
     fn fail(&mut self, failure: Failure) -> Status {
-        self.phase = Phase::Error;
+        if self.phase == Phase::Intermediate {
+            self.spoiled = true;
+        } else {
+            self.phase = Phase::Error;
+        }
         self.complain(failure)
     }
 
@@ -234,6 +241,9 @@ impl Instance {
     }
 
     fn start_model(&mut self) -> Result<(), Failure> {
+        if self.model.is_started() {
+            return Ok(());
+        }
         self.rebuild_if_changed()?;
         self.use_threads(self.values.threads(&self.table))?;
         let linear = self.values.interpolates(&self.table);
@@ -263,6 +273,18 @@ impl Instance {
         let mut model = self.model_of(&wanted)?;
         self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
         self.take_model(model, wanted);
+        Ok(())
+    }
+
+    /// Takes the initial equilibrium back, since a value of which it depends is about to change.
+    fn take_back_start(&mut self) -> Result<(), Failure> {
+        if self.phase != Phase::Initialization || !self.model.is_started() {
+            return Ok(());
+        }
+        let built = self.built.clone();
+        let mut model = self.model_of(&built)?;
+        self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
+        self.take_model(model, built);
         Ok(())
     }
 
@@ -330,6 +352,6 @@ fn same_bits(a: &[f64], b: &[f64]) -> bool {
 }
 
 fn unknown_category(name: &str) -> Failure {
-    let known = crate::log::LOG_CATEGORIES.join(", ");
+    let known = crate::log::LOG_CATEGORIES.map(|(name, _)| name).join(", ");
     format!("the log category is `{name}`, must be one of {known}")
 }

@@ -32,8 +32,8 @@ impl Instance {
     /// Reads variables of one type into `values`, which has room for exactly their elements.
     pub fn get(&mut self, references: &[u32], kind: Type, values: &mut [f64]) -> Status {
         let legal = self.allow(Call::Get);
-        let outcome =
-            legal.and_then(|()| self.check_count(references, kind, values.len())).and_then(|()| self.prepare());
+        let counted = legal.and_then(|()| self.check_count(references, kind, values.len()));
+        let outcome = counted.and_then(|()| if self.reads_state(references) { self.prepare() } else { Ok(()) });
         let outcome = outcome.and_then(|()| {
             let mut rest = values;
             for &reference in references {
@@ -93,10 +93,16 @@ impl Instance {
         }
     }
 
-    /// While parameters may change, outputs are those of the parameters that hold.
+    fn reads_state(&self, references: &[u32]) -> bool {
+        references.iter().filter_map(|&r| self.table.get(r)).any(|v| v.causality == Causality::Output)
+    }
+
+    /// While parameters and inputs may change, outputs are those of the parameters that hold, and in initialization
+    /// mode of the equilibrium under the inputs that hold.
     fn prepare(&mut self) -> Result<(), Failure> {
         match self.phase {
-            Phase::Instantiated | Phase::Initialization => self.rebuild_if_changed(),
+            Phase::Instantiated => self.rebuild_if_changed(),
+            Phase::Initialization => self.start_model(),
             _ => Ok(()),
         }
     }

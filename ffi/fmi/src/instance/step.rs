@@ -183,12 +183,12 @@ impl Instance {
 
     /// Leaves intermediate update mode; `wanted` is the time (s) of an early return.
     pub fn leave_update(&mut self, step: &mut Step, wanted: Option<f64>) -> Status {
-        if self.phase != Phase::Intermediate {
+        self.phase = Phase::Step;
+        if std::mem::take(&mut self.spoiled) {
             self.model.leave(step.interval.clone());
             step.done = true;
             return self.fail("an illegal call within intermediate update mode has ended the step".to_owned());
         }
-        self.phase = Phase::Step;
         if step.done && !step.early {
             self.time = step.end;
         }

@@ -11,7 +11,8 @@ impl Instance {
     /// Sets variables of one type; a Boolean is 0 or 1.
     pub fn set(&mut self, references: &[u32], kind: Type, values: &[f64]) -> Status {
         let legal = self.allow(Call::Set);
-        let outcome = legal.and_then(|()| self.check(references, kind, values)).and_then(|()| {
+        let checked = legal.and_then(|()| self.check(references, kind, values));
+        let outcome = checked.and_then(|()| self.take_back_start()).and_then(|()| {
             let before = self.values.clone();
             let set = self.store(references, values);
             if set.is_err() {

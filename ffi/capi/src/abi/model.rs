@@ -1,0 +1,198 @@
+//! Life and time of a model.
+
+use std::ffi::CString;
+use std::sync::Arc;
+
+use libc::{c_char, c_void};
+
+use super::pointers;
+use crate::safe::enter::{guard, with_model};
+use crate::safe::model::{self, MODELS, Sink};
+use crate::types::{enmm_log_callback, enmm_log_level, enmm_model, enmm_status, enmm_step_info};
+
+/// Builds the model of a case file. Nothing moves yet.
+///
+/// `case_path` is a path in UTF-8; files that the case names are sought beside it. `*out` gets the handle, to be given
+/// to enmm_destroy in the end, or NULL on failure.
+///
+/// Errors: ENMM_FILE_ERROR, ENMM_INVALID_CASE with file, line and key, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_create_from_file(case_path: *const c_char, out: *mut *mut enmm_model) -> enmm_status {
+    guard(|| {
+        // SAFETY: promised by the host.
+        unsafe {
+            pointers::write_handle("out", out, 0)?;
+            let path = pointers::text("case_path", case_path)?;
+            pointers::write_handle("out", out, model::create_from_file(path)?)
+        }
+    })
+}
+
+/// Builds the model of a case that is given as text in TOML.
+///
+/// `base_dir` is the directory where files that the case names are sought; NULL stands for the current one. `*out` gets
+/// the handle, to be given to enmm_destroy in the end, or NULL on failure.
+///
+/// Errors: as enmm_create_from_file; the text is called "case" in messages.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_create_from_string(
+    toml: *const c_char,
+    base_dir: *const c_char,
+    out: *mut *mut enmm_model,
+) -> enmm_status {
+    guard(|| {
+        // SAFETY: promised by the host.
+        unsafe {
+            pointers::write_handle("out", out, 0)?;
+            let toml = pointers::text("toml", toml)?;
+            let base = if base_dir.is_null() { "" } else { pointers::text("base_dir", base_dir)? };
+            pointers::write_handle("out", out, model::create_from_string(toml, base)?)
+        }
+    })
+}
+
+/// Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
+/// model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
+    // A handle that is NULL or dead is no reason to forget the message of the last failure.
+    let _ = guard(|| {
+        let _ = MODELS.remove(model.addr());
+        Ok(())
+    });
+}
+
+/// Seeks the initial equilibrium now, under the inputs that have been set: runs the static stages before the first
+/// dynamic one. Otherwise the first enmm_do_step does. Does nothing when it has been done. Time 0 is its end.
+///
+/// Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
+    with_model(model.addr(), |model| model.start())
+}
+
+/// Advances the model from `t` to exactly `t + h` (s), or not at all.
+///
+/// `t` must be the time of the model. The interval is covered by internal steps not longer than the critical one; how a
+/// time is split into communication steps does not change results when they are multiples of the internal step. Inputs
+/// that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After the last stage
+/// of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
+///
+/// Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
+/// with block, place and cause. The model then still is at `t`, with its inputs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_do_step(
+    model: *mut enmm_model,
+    t: f64,
+    h: f64,
+    info: *mut enmm_step_info,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        // SAFETY: promised by the host.
+        unsafe {
+            if info.is_null() {
+                return model.do_step(t, h).map(|_| ());
+            }
+            pointers::check_struct(info)?;
+            pointers::fill_struct(&model.do_step(t, h)?, info)
+        }
+    })
+}
+
+/// Tells the time of the model (s): 0 at the start of the first dynamic stage.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_time(model: *mut enmm_model, time: *mut f64) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("time", time, model.inner.time()) })
+}
+
+/// Tells the internal step (s), an integer fraction of a tenth of the communication step.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_internal_step(model: *mut enmm_model, step: *mut f64) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("step", step, model.inner.internal_step()) })
+}
+
+/// Tells the communication step (s) that the case suggests; hosts may take any other.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_communication_step(model: *mut enmm_model, step: *mut f64) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("step", step, model.inner.communication_step()) })
+}
+
+/// Tells the time (s) at which the stages of the case end; hosts may go on.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_stop_time(model: *mut enmm_model, time: *mut f64) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("time", time, model.inner.stop_time()) })
+}
+
+/// Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
+/// depend on it, not even in the last bit. Acts from the next step on.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> enmm_status {
+    with_model(model.addr(), |model| Ok(model.inner.set_threads(threads)?))
+}
+
+/// Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
+/// warnings of the case at once; later messages come at the end of the calls that they are about.
+///
+/// `user` is handed to the callback as it is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_set_log_callback(
+    model: *mut enmm_model,
+    callback: enmm_log_callback,
+    user: *mut c_void,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        model.set_sink(callback.map(|callback| sink(callback, user)));
+        Ok(())
+    })
+}
+
+fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_char), user: *mut c_void) -> Sink {
+    /// The pointer of a host, which is only handed back.
+    struct User(*mut c_void);
+    // SAFETY: nothing is read or written through it here; the host is told on which threads it gets it back.
+    unsafe impl Send for User {}
+    // SAFETY: as above.
+    unsafe impl Sync for User {}
+    impl User {
+        fn get(&self) -> *mut c_void {
+            self.0
+        }
+    }
+    let user = User(user);
+    Arc::new(move |level, message| {
+        let text = CString::new(message.replace('\0', "?")).unwrap_or_default();
+        // SAFETY: the host has promised that the callback can be called with its pointer until another is set.
+        unsafe { callback(user.get(), level, text.as_ptr()) };
+    })
+}
+
+/// Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised
+/// state.
+///
+/// `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+///
+/// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_case_hash(
+    model: *mut enmm_model,
+    out: *mut c_char,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_text(model.inner.hash(), out, capacity, written) })
+}

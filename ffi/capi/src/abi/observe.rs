@@ -1,0 +1,236 @@
+//! What hosts read.
+
+use engine::geometry::Point;
+use libc::c_char;
+
+use super::pointers;
+use crate::safe::enter::with_model;
+use crate::safe::failure::Failure;
+use crate::types::*;
+
+/// Tells the number of blocks, excavated ones included. It never changes.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
+    with_model(model.addr(), |model| {
+        let own = model.inner.simulation().slope().covers.block_count();
+        // SAFETY: promised by the host.
+        unsafe { pointers::write("count", count, own) }
+    })
+}
+
+/// Writes the state of every block, by id.
+///
+/// `out` holds `capacity` structures; `out[0].struct_size` must be set and is the distance from one to the next.
+/// `*written` gets their number. `out` NULL and `capacity` 0 ask for it alone.
+///
+/// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_block_states(
+    model: *mut enmm_model,
+    out: *mut enmm_block_state,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.block_states(), out, capacity, written) })
+}
+
+/// Writes energies and works. `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_energies(model: *mut enmm_model, out: *mut enmm_energies) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.energies(), out) })
+}
+
+/// Writes sums and extremes over the model. `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_totals(model: *mut enmm_model, out: *mut enmm_totals) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.totals(), out) })
+}
+
+/// Writes the contacts with the forces of the last internal step, those without force included.
+///
+/// Buffer and errors as enmm_get_block_states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_contacts(
+    model: *mut enmm_model,
+    out: *mut enmm_contact,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.contacts(), out, capacity, written) })
+}
+
+/// Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
+/// goes back to its events.
+///
+/// Buffer and errors as enmm_get_block_states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_events(
+    model: *mut enmm_model,
+    first: usize,
+    out: *mut enmm_event,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.events(first), out, capacity, written) })
+}
+
+/// Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).
+///
+/// `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. `xy` NULL and
+/// `capacity` 0 ask for it alone. Cracks that end in the block are part of its outline. For holes see
+/// enmm_get_block_hole.
+///
+/// Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a block that does not exist; ENMM_NOT_FOUND for one that
+/// has been excavated; ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_block_polygon(
+    model: *mut enmm_model,
+    block: u32,
+    xy: *mut f64,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { outline(&model.block_loops(block)?, 0, xy, capacity, written) })
+}
+
+/// Tells the number of holes of a block.
+///
+/// Errors: as enmm_get_block_polygon.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_block_hole_count(model: *mut enmm_model, block: u32, count: *mut usize) -> enmm_status {
+    with_model(model.addr(), |model| {
+        let holes = model.block_loops(block)?.len().saturating_sub(1);
+        // SAFETY: promised by the host.
+        unsafe { pointers::write("count", count, holes) }
+    })
+}
+
+/// Writes the current outline of hole `hole` (from 0) of a block, clockwise; buffer as enmm_get_block_polygon.
+///
+/// Errors: as enmm_get_block_polygon; ENMM_INVALID_ARGUMENT for a hole that does not exist.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_block_hole(
+    model: *mut enmm_model,
+    block: u32,
+    hole: u32,
+    xy: *mut f64,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        let loops = model.block_loops(block)?;
+        // SAFETY: promised by the host.
+        unsafe { outline(&loops, hole as usize + 1, xy, capacity, written) }
+    })
+}
+
+unsafe fn outline(
+    loops: &[Vec<Point>],
+    k: usize,
+    xy: *mut f64,
+    capacity: usize,
+    written: *mut usize,
+) -> Result<(), Failure> {
+    let Some(points) = loops.get(k) else {
+        let holes = loops.len().saturating_sub(1);
+        let message = format!("hole: is {}, must be less than the number of holes, {holes}", k.saturating_sub(1));
+        return Err(Failure::invalid(message));
+    };
+    let points: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+    // SAFETY: promised by the host; a pair has the size and alignment of two numbers.
+    unsafe { pointers::fill(&points, xy.cast(), capacity, written) }
+}
+
+/// Tells which block is at a place (m) now; the lowest id where blocks meet.
+///
+/// Errors: ENMM_NOT_FOUND where no rock is; ENMM_INVALID_ARGUMENT for values that are not finite; ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_find_block_at(model: *mut enmm_model, x: f64, y: f64, block: *mut u32) -> enmm_status {
+    with_model(model.addr(), |model| {
+        let found = model.block_at(Point::new(x, y))?;
+        // SAFETY: promised by the host.
+        unsafe { pointers::write("block", block, found) }
+    })
+}
+
+/// Tells the number of ports that the case names by `[[port]]`.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_port_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("count", count, model.inner.ports().len()) })
+}
+
+/// Tells the port that has a name.
+///
+/// Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_find_port(model: *mut enmm_model, name: *const c_char, port: *mut u32) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        let found = model.find_port(pointers::text("name", name)?)?;
+        pointers::write("port", port, found)
+    })
+}
+
+/// Writes the name of a port in UTF-8.
+///
+/// `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_port_name(
+    model: *mut enmm_model,
+    port: u32,
+    out: *mut c_char,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_text(model.port_name(port)?, out, capacity, written) })
+}
+
+/// Tells the kind of a port.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_port_kind(model: *mut enmm_model, port: u32, kind: *mut enmm_port_type) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("kind", kind, model.port_kind(port)?) })
+}
+
+/// Tells the block of a port: its own, or that of the first edge of a boundary or joint.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_port_block(model: *mut enmm_model, port: u32, block: *mut u32) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("block", block, model.port_block(port)?) })
+}
+
+/// Writes the state of a port. `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or a struct_size that no version had,
+/// ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_port_state(
+    model: *mut enmm_model,
+    port: u32,
+    out: *mut enmm_port_state,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.port_state(port)?, out) })
+}

@@ -1,0 +1,78 @@
+//! Saved states.
+
+use super::pointers;
+use crate::safe::enter::{guard, with_model};
+use crate::safe::state::STATES;
+use crate::types::{enmm_model, enmm_state, enmm_status};
+
+/// Saves all that the model needs to go on from here with the same bits: motion, contacts, stage, time, events, inputs.
+///
+/// `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure. The state may outlive the
+/// model.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut enmm_state) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        pointers::write_handle("out", out, 0)?;
+        pointers::write_handle("out", out, model.save()?)
+    })
+}
+
+/// Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
+///
+/// Errors: ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE; the model then stays as it is.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_state_restore(model: *mut enmm_model, state: *mut enmm_state) -> enmm_status {
+    with_model(model.addr(), |model| model.restore(state.addr()))
+}
+
+/// Gives a state free. NULL does nothing.
+///
+/// Errors: ENMM_DEAD_HANDLE.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_state_free(state: *mut enmm_state) -> enmm_status {
+    guard(|| if state.is_null() { Ok(()) } else { STATES.remove(state.addr()) })
+}
+
+/// Writes a state as bytes for a file or another process; they tell version and case, and have a checksum.
+///
+/// `model` is one of the case that the state is of. `*written` gets the number of bytes. `buffer` NULL and `capacity` 0
+/// ask for it alone.
+///
+/// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE, ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_state_serialize(
+    model: *mut enmm_model,
+    state: *mut enmm_state,
+    buffer: *mut u8,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        // SAFETY: promised by the host.
+        let copy = |bytes: &[u8]| unsafe { pointers::fill(bytes, buffer, capacity, written) };
+        model.serialize(state.addr(), buffer.is_null(), copy)
+    })
+}
+
+/// Makes a state of bytes that enmm_state_serialize wrote, in this process or another.
+///
+/// `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure.
+///
+/// Errors: ENMM_WRONG_STATE for bytes that are damaged, or of another case or version; ENMM_NULL_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_state_deserialize(
+    model: *mut enmm_model,
+    bytes: *const u8,
+    size: usize,
+    out: *mut *mut enmm_state,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        pointers::write_handle("out", out, 0)?;
+        let bytes = pointers::slice("bytes", bytes, size)?;
+        pointers::write_handle("out", out, model.deserialize(bytes)?)
+    })
+}

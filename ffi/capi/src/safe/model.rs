@@ -1,0 +1,201 @@
+//! A model behind a handle: the façade, the log of its host, and the calls that make it move.
+
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
+use engine::io::{LoadedCase, load_case, parse_case};
+
+use super::failure::{Failure, Outcome};
+use super::handles::Table;
+use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
+
+/// Models that are alive.
+pub static MODELS: Table<Shared> = Table::new(0x10, "model");
+
+/// Where messages of a model go.
+pub type Sink = std::sync::Arc<dyn Fn(enmm_log_level, &str) + Send + Sync>;
+
+/// A model that one thread at a time may use.
+pub struct Shared(Mutex<Model>);
+
+impl Shared {
+    /// The model for the time of a call.
+    ///
+    /// # Errors
+    /// Another thread uses it, or a panic has left it broken.
+    pub fn lock(&self) -> Result<MutexGuard<'_, Model>, Failure> {
+        self.0.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => {
+                let message = "another thread is using this model; let one thread at a time use it";
+                Failure::new(enmm_status::ENMM_BUSY, message)
+            }
+            TryLockError::Poisoned(_) => {
+                let message = "an internal error has broken this model; destroy it, and create it anew";
+                Failure::new(enmm_status::ENMM_PANIC, message)
+            }
+        })
+    }
+}
+
+/// A model and the log of its host.
+pub struct Model {
+    /// The façade.
+    pub inner: Cosimulation,
+    log: Log,
+    warnings: Vec<String>,
+}
+
+/// Messages of one call, and where they go.
+#[derive(Default)]
+pub struct Log {
+    sink: Option<Sink>,
+    mail: Vec<(enmm_log_level, String)>,
+}
+
+impl Log {
+    fn write(&mut self, level: enmm_log_level, message: impl FnOnce() -> String) {
+        if self.sink.is_some() {
+            self.mail.push((level, message()));
+        }
+    }
+}
+
+/// Messages to be delivered when the model is free again, so that the host may call it.
+pub struct Mail(Option<Sink>, Vec<(enmm_log_level, String)>);
+
+impl Mail {
+    /// Hands every message to the host.
+    pub fn deliver(self) {
+        let Self(Some(sink), mail) = self else { return };
+        for (level, message) in &mail {
+            sink(*level, message);
+        }
+    }
+}
+
+/// Builds a model from a case file and returns its handle.
+///
+/// # Errors
+/// The file cannot be read, or the case cannot be used.
+pub fn create_from_file(path: &str) -> Result<usize, Failure> {
+    create(&load_case(Path::new(path))?)
+}
+
+/// Builds a model from the text of a case and returns its handle.
+///
+/// # Errors
+/// The case cannot be used.
+pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> {
+    create(&parse_case(toml, "case", Path::new(base_dir))?)
+}
+
+fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
+    let inner = Cosimulation::new(loaded)?;
+    let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
+    let model = Model { inner, log: Log::default(), warnings };
+    MODELS.insert(Shared(Mutex::new(model)))
+}
+
+impl Model {
+    /// Sets or takes away the host's log; a first one gets the warnings of the case.
+    pub fn set_sink(&mut self, sink: Option<Sink>) {
+        self.log.sink = sink;
+        if self.log.sink.is_some() {
+            for warning in std::mem::take(&mut self.warnings) {
+                self.log.write(enmm_log_level::ENMM_LOG_WARNING, || warning);
+            }
+        }
+    }
+
+    /// Messages that have come together.
+    pub fn take_mail(&mut self) -> Mail {
+        let mail = std::mem::take(&mut self.log.mail);
+        Mail(if mail.is_empty() { None } else { self.log.sink.clone() }, mail)
+    }
+
+    /// Seeks the initial equilibrium.
+    ///
+    /// # Errors
+    /// A numerical failure.
+    pub fn start(&mut self) -> Outcome {
+        let was_started = self.inner.is_started();
+        let result = self.inner.start().map_err(Failure::from);
+        if let Err(failure) = &result {
+            self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone());
+        } else if !was_started {
+            let steps = self.inner.simulation().state().step;
+            let message = || format!("the initial equilibrium was sought in {steps} steps");
+            self.log.write(enmm_log_level::ENMM_LOG_INFO, message);
+        }
+        result
+    }
+
+    /// Advances from `t` over `h`.
+    ///
+    /// # Errors
+    /// Times that do not fit, or a numerical failure.
+    pub fn do_step(&mut self, t: f64, h: f64) -> Result<enmm_step_info, Failure> {
+        let result = self.inner.do_step(t, h).map_err(Failure::from);
+        match &result {
+            Ok(info) => self.log_step(info),
+            Err(failure) => self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone()),
+        }
+        let info = result?;
+        Ok(enmm_step_info {
+            struct_size: size_of::<enmm_step_info>(),
+            time: info.time,
+            steps: info.steps,
+            dt: info.dt,
+            event_count: info.events.len(),
+            first_event: self.inner.events().len() - info.events.len(),
+            halved: info.halved,
+            unsettled: info.unsettled,
+        })
+    }
+
+    fn log_step(&mut self, info: &StepInfo) {
+        for event in &info.events {
+            self.log.write(enmm_log_level::ENMM_LOG_INFO, || sentence(event));
+        }
+        if info.unsettled > 0 {
+            let (count, end) = (info.unsettled, info.time);
+            let message = || format!("up to t = {end} s: contact forces did not settle in {count} sub-steps");
+            self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
+        }
+    }
+
+    /// How inputs go through a communication step, as a value of `enmm_interpolation`.
+    pub fn interpolation(&self) -> i32 {
+        match self.inner.interpolation() {
+            Interpolation::Hold => enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32,
+            Interpolation::Linear => enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32,
+        }
+    }
+
+    /// Sets how inputs go through a communication step.
+    ///
+    /// # Errors
+    /// An unknown way.
+    pub fn set_interpolation(&mut self, mode: i32) -> Outcome {
+        let hold = enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32;
+        let linear = enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32;
+        let mode = match mode {
+            _ if mode == hold => Interpolation::Hold,
+            _ if mode == linear => Interpolation::Linear,
+            _ => return Err(Failure::invalid(format!("mode: is {mode}, must be {hold} (hold) or {linear} (linear)"))),
+        };
+        self.inner.set_interpolation(mode);
+        Ok(())
+    }
+}
+
+fn sentence(event: &Event) -> String {
+    let (subject, time) = (event.subject, event.time);
+    match event.kind {
+        EventKind::Detached => format!("t = {time} s: block {subject} lost its last contact"),
+        EventKind::Slipped if subject == u32::MAX => format!("t = {time} s: a contact away from joints slipped"),
+        EventKind::Slipped => format!("t = {time} s: joint {subject} slipped"),
+        EventKind::Failed => format!("t = {time} s: block {subject} moved beyond the failure displacement"),
+    }
+}

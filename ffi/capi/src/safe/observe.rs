@@ -1,0 +1,278 @@
+//! What hosts read, in the structures of C.
+
+use engine::contact::ContactState;
+use engine::cosimulation::{EventKind, PortKind};
+use engine::geometry::{Point, polygon};
+use engine::model::BlockState;
+
+use super::failure::{Failure, Outcome};
+use super::model::Model;
+use crate::types::*;
+
+impl Model {
+    /// The state of every block, by id.
+    pub fn block_states(&self) -> Vec<enmm_block_state> {
+        let failed = &self.inner.simulation().state().events.failed;
+        let states = self.inner.block_states();
+        states.iter().map(|state| block_state(state, failed[state.id as usize])).collect()
+    }
+
+    /// Energies and works.
+    pub fn energies(&self) -> enmm_energies {
+        let ledger = self.inner.totals().ledger;
+        enmm_energies {
+            struct_size: size_of::<enmm_energies>(),
+            kinetic: ledger.kinetic,
+            strain: ledger.strain,
+            potential: ledger.potential,
+            stored: ledger.stored,
+            friction: ledger.friction,
+            contact_work: ledger.contact_work,
+            support_work: ledger.support_work,
+            damping: ledger.damping,
+            external_work: ledger.external_work,
+            baseline: ledger.baseline,
+            contact_dissipation: ledger.contact_dissipation(),
+            residual: ledger.residual(),
+        }
+    }
+
+    /// Sums and extremes.
+    pub fn totals(&self) -> enmm_totals {
+        let totals = self.inner.totals();
+        enmm_totals {
+            struct_size: size_of::<enmm_totals>(),
+            displacement_max: totals.displacement_max,
+            velocity_max: totals.velocity_max,
+            penetration_max: totals.penetration_max,
+            unbalanced: totals.unbalanced,
+            critical_dt: self.inner.simulation().slope().critical_dt,
+            open_contacts: totals.open_contacts,
+            slipping_contacts: totals.slipping_contacts,
+            locked_contacts: totals.locked_contacts,
+            detached_blocks: totals.detached_blocks,
+            slipped_joints: totals.slipped_joints,
+            failed_blocks: totals.failed_blocks,
+        }
+    }
+
+    /// All contacts.
+    pub fn contacts(&self) -> Vec<enmm_contact> {
+        let simulation = self.inner.simulation();
+        let (places, boundary) = (simulation.places(), &simulation.slope().boundary);
+        let contacts = simulation.contacts();
+        let of = |contact: &engine::contact::VertexEdge| {
+            let history = &contact.history;
+            let position = places[boundary.node_point[history.node as usize] as usize];
+            enmm_contact {
+                struct_size: size_of::<enmm_contact>(),
+                state: match history.state {
+                    ContactState::Open => enmm_contact_state::ENMM_CONTACT_OPEN,
+                    ContactState::Slip => enmm_contact_state::ENMM_CONTACT_SLIP,
+                    ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
+                },
+                law: contact.law,
+                node_block: contact.blocks[0],
+                edge_block: contact.blocks[1],
+                position_x: position.x,
+                position_y: position.y,
+                normal_x: contact.normal.x,
+                normal_y: contact.normal.y,
+                length: contact.length,
+                normal_stress: -history.normal_force / contact.length,
+                shear_stress: history.shear_force / contact.length,
+            }
+        };
+        contacts.iter().map(of).collect()
+    }
+
+    /// Events from the one of index `first` on.
+    pub fn events(&self, first: usize) -> Vec<enmm_event> {
+        let of = |event: engine::cosimulation::Event| enmm_event {
+            struct_size: size_of::<enmm_event>(),
+            kind: match event.kind {
+                EventKind::Detached => enmm_event_kind::ENMM_EVENT_DETACHED,
+                EventKind::Slipped => enmm_event_kind::ENMM_EVENT_SLIPPED,
+                EventKind::Failed => enmm_event_kind::ENMM_EVENT_FAILED,
+            },
+            subject: event.subject,
+            time: event.time,
+        };
+        self.inner.events().skip(first).map(of).collect()
+    }
+
+    /// Current boundary loops of a block, the outer one first.
+    ///
+    /// # Errors
+    /// A block that does not exist or has been excavated.
+    pub fn block_loops(&self, block: u32) -> Result<Vec<Vec<Point>>, Failure> {
+        let state = self.inner.simulation().state();
+        match state.removed.get(block as usize) {
+            None => {
+                let count = state.removed.len();
+                let message = format!("block: is {block}, must be less than the number of blocks, {count}");
+                Err(Failure::invalid(message))
+            }
+            Some(true) => {
+                let message = format!("block {block} has been excavated; look at its flags before");
+                Err(Failure::new(enmm_status::ENMM_NOT_FOUND, message))
+            }
+            Some(false) => {
+                let mut loops = self.loops(|of| of == block);
+                let mut loops: Vec<_> = loops.drain(..).map(|(_, points)| points).collect();
+                loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
+                Ok(loops)
+            }
+        }
+    }
+
+    /// The block whose rock covers a point now; the lowest id where blocks overlap or meet.
+    ///
+    /// # Errors
+    /// No rock there.
+    pub fn block_at(&self, p: Point) -> Result<u32, Failure> {
+        if !(p.x.is_finite() && p.y.is_finite()) {
+            return Err(Failure::invalid(format!("x, y: are {}, {}, must be finite numbers (m)", p.x, p.y)));
+        }
+        let removed = &self.inner.simulation().state().removed;
+        let loops = self.loops(|block| !removed[block as usize]);
+        let mut around: Vec<u32> =
+            loops.iter().filter(|(_, points)| polygon::contains(points, p)).map(|(block, _)| *block).collect();
+        around.sort_unstable();
+        // A point in a hole is inside the outer loop and the loop of the hole: rock is where the count is odd.
+        let found = around.chunk_by(|a, b| a == b).find(|same| same.len() % 2 == 1);
+        found.map(|same| same[0]).ok_or_else(|| {
+            Failure::new(enmm_status::ENMM_NOT_FOUND, format!("there is no rock at ({}, {}) m now", p.x, p.y))
+        })
+    }
+
+    /// Boundary loops of the `wanted` blocks at their current places.
+    fn loops(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, Vec<Point>)> {
+        let simulation = self.inner.simulation();
+        let boundary = &simulation.slope().boundary;
+        let places = simulation.places();
+        let mut loops = Vec::new();
+        let mut k = 0;
+        while k < boundary.len() {
+            let first = k;
+            while boundary.after(k) != first {
+                k = boundary.after(k);
+            }
+            k += 1;
+            if wanted(boundary.block[first]) {
+                loops.push((boundary.block[first], places[first..k].to_vec()));
+            }
+        }
+        loops
+    }
+
+    /// Index of the port of this name.
+    ///
+    /// # Errors
+    /// No port has the name.
+    pub fn find_port(&self, name: &str) -> Result<u32, Failure> {
+        let ports = self.inner.ports();
+        let found = ports.iter().position(|port| port.name == name);
+        found.map(|k| k as u32).ok_or_else(|| {
+            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
+            let message = format!("no port is named {name:?}; the case names: {}", names.join(", "));
+            Failure::new(enmm_status::ENMM_NOT_FOUND, message)
+        })
+    }
+
+    /// Name of a port.
+    ///
+    /// # Errors
+    /// No such port.
+    pub fn port_name(&self, port: u32) -> Result<&str, Failure> {
+        self.check_port(port)?;
+        Ok(&self.inner.ports()[port as usize].name)
+    }
+
+    /// Kind of a port.
+    ///
+    /// # Errors
+    /// No such port.
+    pub fn port_kind(&self, port: u32) -> Result<enmm_port_type, Failure> {
+        self.check_port(port)?;
+        Ok(match self.inner.ports()[port as usize].kind {
+            PortKind::Block => enmm_port_type::ENMM_PORT_BLOCK,
+            PortKind::Boundary => enmm_port_type::ENMM_PORT_BOUNDARY,
+            PortKind::Joint => enmm_port_type::ENMM_PORT_JOINT,
+        })
+    }
+
+    /// Block of a port: its own, or that of the first edge of a boundary or joint.
+    ///
+    /// # Errors
+    /// No such port.
+    pub fn port_block(&self, port: u32) -> Result<u32, Failure> {
+        self.check_port(port)?;
+        Ok(self.inner.ports()[port as usize].block)
+    }
+
+    /// State of a port.
+    ///
+    /// # Errors
+    /// No such port.
+    pub fn port_state(&self, port: u32) -> Result<enmm_port_state, Failure> {
+        self.check_port(port)?;
+        let state = self.inner.port_state(port as usize);
+        Ok(enmm_port_state {
+            struct_size: size_of::<enmm_port_state>(),
+            displacement_x: state.displacement.x,
+            displacement_y: state.displacement.y,
+            velocity_x: state.velocity.x,
+            velocity_y: state.velocity.y,
+            rotation: state.rotation,
+            angular_velocity: state.angular_velocity,
+            contact_force_x: state.contact_force.x,
+            contact_force_y: state.contact_force.y,
+            stress_xx: state.stress[0],
+            stress_yy: state.stress[1],
+            stress_xy: state.stress[2],
+            normal_force: state.normal_force,
+            shear_force: state.shear_force,
+            slip: state.slip,
+        })
+    }
+
+    fn check_port(&self, port: u32) -> Outcome {
+        let count = self.inner.ports().len();
+        if (port as usize) < count {
+            return Ok(());
+        }
+        let remedy = "name the place by `[[port]]` in the case";
+        Err(Failure::invalid(format!("port: is {port}, must be less than the number of ports, {count}; {remedy}")))
+    }
+}
+
+fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
+    let flag = |holds: bool, bit: u32| if holds { bit } else { 0 };
+    enmm_block_state {
+        struct_size: size_of::<enmm_block_state>(),
+        id: state.id,
+        flags: flag(state.fixed, ENMM_BLOCK_FIXED)
+            | flag(state.detached, ENMM_BLOCK_DETACHED)
+            | flag(failed, ENMM_BLOCK_FAILED)
+            | flag(state.removed, ENMM_BLOCK_REMOVED),
+        centroid_x: state.centroid.x,
+        centroid_y: state.centroid.y,
+        displacement_x: state.displacement.x,
+        displacement_y: state.displacement.y,
+        rotation: state.rotation,
+        velocity_x: state.velocity.x,
+        velocity_y: state.velocity.y,
+        angular_velocity: state.angular_velocity,
+        mean_stress_xx: state.mean_stress[0],
+        mean_stress_yy: state.mean_stress[1],
+        mean_stress_xy: state.mean_stress[2],
+        area: state.area,
+        mass: state.mass,
+        kinetic_energy: state.kinetic_energy,
+        strain_energy: state.strain_energy,
+        contact_count: state.contact_count,
+        reserved: 0,
+        largest_penetration: state.penetration_max,
+    }
+}

@@ -1,0 +1,368 @@
+//! Types of the boundary; what is written here is the documentation of `include/enmm.h`.
+
+use libc::{c_char, c_void};
+
+/// Version of the binary interface: changes when a program that was built before would no longer work.
+pub const ENMM_ABI_VERSION: u32 = 1;
+
+/// Flag of a block: no part of it can move.
+pub const ENMM_BLOCK_FIXED: u32 = 1;
+/// Flag of a block: it can move, and no contact on it carries force now.
+pub const ENMM_BLOCK_DETACHED: u32 = 2;
+/// Flag of a block: it has moved beyond the failure displacement of the case; this stays.
+pub const ENMM_BLOCK_FAILED: u32 = 4;
+/// Flag of a block: it has been excavated; its other values are those of when it was there.
+pub const ENMM_BLOCK_REMOVED: u32 = 8;
+
+/// Subject of a slip event of a contact that lies on no joint trace of the case.
+pub const ENMM_NO_JOINT: u32 = u32::MAX;
+
+/// A model. The handle is a number that is never followed: one that is NULL or dead is an error and never a crash.
+pub struct enmm_model(());
+
+/// A saved state of a model; it may outlive the model. The handle is as safe as that of a model.
+pub struct enmm_state(());
+
+/// What came of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() tells what was
+/// wrong, the limit and the remedy.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[must_use]
+pub enum enmm_status {
+    /// Done.
+    ENMM_OK = 0,
+    /// A pointer or handle is NULL that must not be.
+    ENMM_NULL_ARGUMENT = 1,
+    /// The handle was destroyed, or never was one of this kind.
+    ENMM_DEAD_HANDLE = 2,
+    /// Another thread is using the model.
+    ENMM_BUSY = 3,
+    /// A value is not finite or out of range, names something that does not exist, or a text is not UTF-8.
+    ENMM_INVALID_ARGUMENT = 4,
+    /// The case cannot be used; the message tells file, line and key.
+    ENMM_INVALID_CASE = 5,
+    /// A file cannot be read.
+    ENMM_FILE_ERROR = 6,
+    /// A communication step does not begin at the time of the model.
+    ENMM_WRONG_TIME = 7,
+    /// The step failed numerically; the model stands where it stood before the call.
+    ENMM_NUMERICAL_FAILURE = 8,
+    /// The buffer is too small: nothing was written to it, and `*written` tells what is needed.
+    ENMM_BUFFER_TOO_SMALL = 9,
+    /// There is no such port, or no rock at this place.
+    ENMM_NOT_FOUND = 10,
+    /// The state is of another case or version, or its bytes are damaged.
+    ENMM_WRONG_STATE = 11,
+    /// An internal error. The model that was in use can only be destroyed; all others are unharmed.
+    ENMM_PANIC = 12,
+}
+
+/// How inputs go through a communication step.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_interpolation {
+    /// A value that was set acts from the start of the next step on (as at the creation of a model).
+    ENMM_INTERPOLATION_HOLD = 0,
+    /// A value that was set is reached at the end of the next step, linearly from the one before.
+    ENMM_INTERPOLATION_LINEAR = 1,
+}
+
+/// Kind of a port.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_port_type {
+    /// A block: takes force and moment (enmm_set_block_force with the id of enmm_port_block).
+    ENMM_PORT_BLOCK = 0,
+    /// A part of the outer boundary: takes traction and pressure.
+    ENMM_PORT_BOUNDARY = 1,
+    /// Faces of joints: takes fluid pressure.
+    ENMM_PORT_JOINT = 2,
+}
+
+/// State of a contact.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_contact_state {
+    /// It carries no force.
+    ENMM_CONTACT_OPEN = 0,
+    /// Its shear force is at the limit.
+    ENMM_CONTACT_SLIP = 1,
+    /// Its shear force is below the limit.
+    ENMM_CONTACT_LOCK = 2,
+}
+
+/// Kind of an event. Each happens once to a block or joint, and only in dynamic stages.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_event_kind {
+    /// A block that touched others lost its last contact.
+    ENMM_EVENT_DETACHED = 0,
+    /// A joint slipped.
+    ENMM_EVENT_SLIPPED = 1,
+    /// A block moved beyond the failure displacement.
+    ENMM_EVENT_FAILED = 2,
+}
+
+/// Weight of a message.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_log_level {
+    /// A step failed.
+    ENMM_LOG_ERROR = 0,
+    /// Something is unusual: warnings of the case, contact forces that did not settle.
+    ENMM_LOG_WARNING = 1,
+    /// Events, and the end of the search for the initial equilibrium.
+    ENMM_LOG_INFO = 2,
+}
+
+/// Takes the messages of a model. It is called on the thread of a call to the model, when that call is otherwise done,
+/// so that it may call any function. `message` is valid during the call. It must return: no longjmp, no exception.
+pub type enmm_log_callback =
+    Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
+
+/// What a communication step did.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_step_info {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// Time that the model has reached (s): t + h.
+    pub time: f64,
+    /// Internal steps, parts of one included.
+    pub steps: u64,
+    /// Largest internal step (s), at most the critical one.
+    pub dt: f64,
+    /// Events of this step.
+    pub event_count: usize,
+    /// Index of the first of them for enmm_get_events.
+    pub first_event: usize,
+    /// Internal steps that were redone in halves.
+    pub halved: u64,
+    /// Sub-steps whose contact forces did not settle; 0 in a sound run.
+    pub unsettled: u64,
+}
+
+/// A block now. Velocities are those of half an internal step ago, as the method has them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_block_state {
+    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+    pub struct_size: usize,
+    /// Block id: 0, 1, ...
+    pub id: u32,
+    /// Sum of ENMM_BLOCK_FIXED, ENMM_BLOCK_DETACHED, ENMM_BLOCK_FAILED, ENMM_BLOCK_REMOVED.
+    pub flags: u32,
+    /// Mass centroid now, x (m).
+    pub centroid_x: f64,
+    /// Mass centroid now, y (m, upwards).
+    pub centroid_y: f64,
+    /// Displacement of the mass centroid, x (m).
+    pub displacement_x: f64,
+    /// Displacement of the mass centroid, y (m).
+    pub displacement_y: f64,
+    /// Rotation (rad, counter-clockwise, within -pi and pi).
+    pub rotation: f64,
+    /// Velocity of the mass centroid, x (m/s).
+    pub velocity_x: f64,
+    /// Velocity of the mass centroid, y (m/s).
+    pub velocity_y: f64,
+    /// Angular velocity (rad/s, counter-clockwise).
+    pub angular_velocity: f64,
+    /// Area mean of the stress, xx (Pa, tension positive).
+    pub mean_stress_xx: f64,
+    /// Area mean of the stress, yy (Pa, tension positive).
+    pub mean_stress_yy: f64,
+    /// Area mean of the stress, xy (Pa).
+    pub mean_stress_xy: f64,
+    /// Area before any deformation (m2).
+    pub area: f64,
+    /// Mass (kg per metre of thickness).
+    pub mass: f64,
+    /// Kinetic energy (J/m).
+    pub kinetic_energy: f64,
+    /// Strain energy (J/m).
+    pub strain_energy: f64,
+    /// Contacts on the block that carry force.
+    pub contact_count: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Largest penetration of its contacts (m).
+    pub largest_penetration: f64,
+}
+
+/// Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping equals
+/// contact_work + support_work + external_work + baseline + residual.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_energies {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Potential energy of gravity, from the undeformed state on.
+    pub potential: f64,
+    /// Energy in the springs of contacts and supports.
+    pub stored: f64,
+    /// Energy that slip turned into heat.
+    pub friction: f64,
+    /// Work of contact forces on the blocks.
+    pub contact_work: f64,
+    /// Work of supports on the blocks.
+    pub support_work: f64,
+    /// Energy that damping took.
+    pub damping: f64,
+    /// Work of loads and inputs, and of gravity while it grows or changes.
+    pub external_work: f64,
+    /// Energy of the start, less what left with excavated blocks.
+    pub baseline: f64,
+    /// Energy that contacts lost in other ways than slip.
+    pub contact_dissipation: f64,
+    /// Energy that appeared from nowhere: the error of the time steps.
+    pub residual: f64,
+}
+
+/// Sums and extremes over the model.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_totals {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// Largest displacement (m).
+    pub displacement_max: f64,
+    /// Largest velocity (m/s).
+    pub velocity_max: f64,
+    /// Largest penetration of the whole run (m).
+    pub penetration_max: f64,
+    /// Net over applied force; near 0 at rest.
+    pub unbalanced: f64,
+    /// Critical internal step (s).
+    pub critical_dt: f64,
+    /// Contacts without force.
+    pub open_contacts: u32,
+    /// Contacts at their shear limit.
+    pub slipping_contacts: u32,
+    /// Contacts below their shear limit.
+    pub locked_contacts: u32,
+    /// Blocks that have lost their last contact at least once.
+    pub detached_blocks: u32,
+    /// Joints that have slipped.
+    pub slipped_joints: u32,
+    /// Blocks that have failed.
+    pub failed_blocks: u32,
+}
+
+/// A contact between a boundary node of one block and an edge of another.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_contact {
+    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+    pub struct_size: usize,
+    /// Open, slip or lock.
+    pub state: enmm_contact_state,
+    /// Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+    pub law: u32,
+    /// Block of the node.
+    pub node_block: u32,
+    /// Block of the edge.
+    pub edge_block: u32,
+    /// Node now, x (m).
+    pub position_x: f64,
+    /// Node now, y (m).
+    pub position_y: f64,
+    /// Outward unit normal of the edge, x.
+    pub normal_x: f64,
+    /// Outward unit normal of the edge, y.
+    pub normal_y: f64,
+    /// Length of boundary that the node stands for (m).
+    pub length: f64,
+    /// Normal stress (Pa, tension positive).
+    pub normal_stress: f64,
+    /// Shear stress (Pa), on the node, positive along the normal turned by 90 degrees counter-clockwise.
+    pub shear_stress: f64,
+}
+
+/// Something that happened for the first time.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_event {
+    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+    pub struct_size: usize,
+    /// What happened.
+    pub kind: enmm_event_kind,
+    /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT.
+    pub subject: u32,
+    /// End of the internal step in which it happened (s), as enmm_get_time counts.
+    pub time: f64,
+}
+
+/// A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
+/// last three. What is not filled is 0.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_port_state {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// Displacement of the mass centroid, or mean along the boundary, x (m).
+    pub displacement_x: f64,
+    /// The same, y (m).
+    pub displacement_y: f64,
+    /// Velocity of the mass centroid, or mean along the boundary, x (m/s).
+    pub velocity_x: f64,
+    /// The same, y (m/s).
+    pub velocity_y: f64,
+    /// Rotation of the block (rad, counter-clockwise).
+    pub rotation: f64,
+    /// Angular velocity of the block (rad/s, counter-clockwise).
+    pub angular_velocity: f64,
+    /// Sum of the contact forces on the block, x (N/m).
+    pub contact_force_x: f64,
+    /// The same, y (N/m).
+    pub contact_force_y: f64,
+    /// Mean stress in the block, or in the blocks along the boundary, xx (Pa, tension positive).
+    pub stress_xx: f64,
+    /// The same, yy (Pa, tension positive).
+    pub stress_yy: f64,
+    /// The same, xy (Pa).
+    pub stress_xy: f64,
+    /// Sum of the normal forces across the joints (N/m, compression positive).
+    pub normal_force: f64,
+    /// Sum of the magnitudes of the shear forces along the joints (N/m).
+    pub shear_force: f64,
+    /// Largest slip that a contact of the joints has summed up (m).
+    pub slip: f64,
+}
+
+/// A structure that begins with its size, and may grow at its end.
+///
+/// # Safety
+/// The type must be `repr(C)`, without padding, and its first field `struct_size: usize`; `FIRST_SIZE` is its size in
+/// version 1 of the interface.
+pub unsafe trait Growing: Copy {
+    /// Size in version 1 of the interface (bytes).
+    const FIRST_SIZE: usize;
+    /// Name in messages.
+    const NAME: &str;
+}
+
+macro_rules! sized {
+    ($($type:ident $size:literal)*) => { $(
+        // SAFETY: `repr(C)`, and a size equal to the sum of its fields leaves no room for padding.
+        unsafe impl Growing for $type {
+            const FIRST_SIZE: usize = $size;
+            const NAME: &str = stringify!($type);
+        }
+        const _: () = assert!(size_of::<$type>() >= $size);
+    )* };
+}
+
+sized! {
+    enmm_step_info 64
+    enmm_block_state 152
+    enmm_energies 104
+    enmm_totals 72
+    enmm_contact 80
+    enmm_event 24
+    enmm_port_state 120
+}

@@ -1,0 +1,75 @@
+//! Hosts in C and C++ use the library as it is built: header, every function, leaks, threads, a coupled run.
+
+mod support;
+
+use std::path::Path;
+use std::process::Command;
+
+use support::{SMALL, compiler, has, host, libraries, root, run, say, succeed};
+
+const COUPLED: &str = "examples/cases/coupled_slope.toml";
+
+#[test]
+fn the_header_compiles_alone_in_both_languages() {
+    for name in ["alone.c", "alone.cpp"] {
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&file, "#include \"enmm.h\"\n#include \"enmm.h\"\n").expect("a file that can be written");
+        succeed(compiler(name).arg("-fsyntax-only").arg(file));
+    }
+}
+
+#[test]
+fn every_function_does_what_it_says_and_refuses_what_it_must() {
+    succeed(Command::new(host("ffi/capi/tests/c/checks.c")).arg(SMALL));
+}
+
+#[test]
+fn the_library_shows_nothing_but_its_functions() {
+    if !has("nm") {
+        return;
+    }
+    let listed = succeed(Command::new("nm").args(["-D", "--defined-only"]).arg(libraries().join("libenmm.so")));
+    let names: Vec<_> = listed.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    let foreign: Vec<_> = names.iter().filter(|name| !name.starts_with("enmm_")).collect();
+    assert!(foreign.is_empty(), "{foreign:?}");
+    let header = std::fs::read_to_string(root().join("include/enmm.h")).expect("the header");
+    let absent: Vec<_> = names.iter().filter(|name| !header.contains(&format!("{name}("))).collect();
+    assert!(absent.is_empty() && names.len() >= 45, "{} functions, not in the header: {absent:?}", names.len());
+}
+
+#[test]
+fn valgrind_finds_nothing() {
+    if !has("valgrind") {
+        return;
+    }
+    let host = host("ffi/capi/tests/c/checks.c");
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args(["--error-exitcode=99", "--leak-check=full", "--show-leak-kinds=definite"]);
+    valgrind.arg("--errors-for-leak-kinds=definite");
+    succeed(valgrind.arg(host).arg(SMALL));
+}
+
+#[test]
+fn lives_of_models_leave_no_memory_behind() {
+    say(&succeed(Command::new(host("ffi/capi/tests/c/cycles.c")).args([SMALL, "200"])));
+}
+
+#[test]
+fn threads_with_their_own_models_give_the_bits_of_one_after_the_other() {
+    say(&succeed(Command::new(host("ffi/capi/tests/c/threads.c")).arg(SMALL)));
+}
+
+#[test]
+fn the_coupled_reservoir_holds_its_checks() {
+    let host = host("ffi/c/coupled_reservoir.c");
+    let table = succeed(Command::new(&host).arg(COUPLED));
+    assert!(table.contains("with twice the inflow") && table.lines().count() > 12, "{table}");
+    let refused = run(Command::new(&host).arg("absent.toml"));
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("absent.toml"));
+}
+
+#[test]
+fn the_example_in_cpp_holds_its_checks() {
+    succeed(Command::new(host("ffi/cpp/example.cpp")).arg(SMALL));
+}

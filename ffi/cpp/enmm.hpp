@@ -1,0 +1,417 @@
+/*
+ * C++17 over enmm.h: models and states that clean up after themselves, exceptions instead of statuses, vectors instead of
+ * buffers. Header only; link with the library of enmm.h, which documents units, signs and when a value takes effect.
+ */
+#ifndef ENMM_HPP
+#define ENMM_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "enmm.h"
+
+namespace enmm {
+
+/** A call that did nothing, with its status and the message of the library. */
+class Error : public std::runtime_error {
+public:
+    Error(enmm_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
+
+    /** Status of the call. */
+    enmm_status status() const noexcept { return status_; }
+
+private:
+    enmm_status status_;
+};
+
+/** A point or vector. */
+struct Vector {
+    double x = 0;
+    double y = 0;
+};
+
+using BlockState = enmm_block_state;
+using Contact = enmm_contact;
+using Energies = enmm_energies;
+using Event = enmm_event;
+using PortState = enmm_port_state;
+using StepInfo = enmm_step_info;
+using Totals = enmm_totals;
+
+namespace detail {
+
+inline void check(enmm_status status)
+{
+    if (status != ENMM_OK)
+        throw Error(status, enmm_last_error());
+}
+
+template <class T>
+T sized() noexcept
+{
+    T value{};
+    value.struct_size = sizeof(T);
+    return value;
+}
+
+/** A number that `get(handle, &number)` tells. */
+template <class T, class Get>
+T number(enmm_model *model, Get get)
+{
+    T value{};
+    check(get(model, &value));
+    return value;
+}
+
+/** Values that `get(buffer, capacity, written)` writes into a buffer of the size it asks for. */
+template <class T, class Get>
+std::vector<T> list(const T &like, Get get)
+{
+    std::size_t count = 0;
+    check(get(nullptr, 0, &count));
+    std::vector<T> values(count, like);
+    check(get(values.data(), values.size(), &count));
+    values.resize(count, like);
+    return values;
+}
+
+/** The same for texts, without the closing zero. */
+template <class Get>
+std::string text(Get get)
+{
+    const std::vector<char> letters = list<char>('\0', get);
+    return letters.data();
+}
+
+} // namespace detail
+
+/** A saved state. It can be moved, not copied, and may outlive its model. */
+class State {
+public:
+    State(State &&other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+
+    State &operator=(State &&other) noexcept
+    {
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+
+    State(const State &) = delete;
+    State &operator=(const State &) = delete;
+
+    ~State() { enmm_state_free(handle_); }
+
+    /** Handle for calls of enmm.h; it stays owned by this object. */
+    enmm_state *handle() const noexcept { return handle_; }
+
+private:
+    friend class Model;
+    explicit State(enmm_state *handle) noexcept : handle_(handle) {}
+
+    enmm_state *handle_;
+};
+
+/** A model. It can be moved, not copied; a model that was moved from can only be assigned to or destroyed. */
+class Model {
+public:
+    using Log = std::function<void(enmm_log_level, const std::string &)>;
+
+    /** Builds the model of a case file. */
+    static Model from_file(const std::string &path)
+    {
+        enmm_model *handle = nullptr;
+        detail::check(enmm_create_from_file(path.c_str(), &handle));
+        return Model(handle);
+    }
+
+    /** Builds the model of a case in TOML; files that it names are sought in `base_dir`. */
+    static Model from_string(const std::string &toml, const std::string &base_dir = ".")
+    {
+        enmm_model *handle = nullptr;
+        detail::check(enmm_create_from_string(toml.c_str(), base_dir.c_str(), &handle));
+        return Model(handle);
+    }
+
+    Model(Model &&other) noexcept : handle_(std::exchange(other.handle_, nullptr)), log_(std::move(other.log_)) {}
+
+    Model &operator=(Model &&other) noexcept
+    {
+        std::swap(handle_, other.handle_);
+        std::swap(log_, other.log_);
+        return *this;
+    }
+
+    Model(const Model &) = delete;
+    Model &operator=(const Model &) = delete;
+
+    ~Model() { enmm_destroy(handle_); }
+
+    /** Handle for calls of enmm.h; it stays owned by this object. */
+    enmm_model *handle() const noexcept { return handle_; }
+
+    // Time.
+
+    void start() { call([&] { return enmm_start(handle_); }); }
+
+    StepInfo do_step(double t, double h)
+    {
+        auto info = detail::sized<StepInfo>();
+        call([&] { return enmm_do_step(handle_, t, h, &info); });
+        return info;
+    }
+
+    double time() const { return detail::number<double>(handle_, enmm_get_time); }
+    double internal_step() const { return detail::number<double>(handle_, enmm_get_internal_step); }
+    double communication_step() const { return detail::number<double>(handle_, enmm_get_communication_step); }
+    double stop_time() const { return detail::number<double>(handle_, enmm_get_stop_time); }
+
+    // Inputs.
+
+    void set_gravity(Vector g) { detail::check(enmm_set_gravity(handle_, g.x, g.y)); }
+    void set_base_acceleration(Vector a) { detail::check(enmm_set_base_acceleration(handle_, a.x, a.y)); }
+    void set_water_level(double y) { detail::check(enmm_set_water_level(handle_, y)); }
+    void set_strength_factor(double factor) { detail::check(enmm_set_strength_factor(handle_, factor)); }
+    enmm_interpolation interpolation() const {
+        int32_t mode = 0;
+        detail::check(enmm_get_interpolation(handle_, &mode));
+        return static_cast<enmm_interpolation>(mode);
+    }
+    void set_interpolation(enmm_interpolation mode) { detail::check(enmm_set_interpolation(handle_, mode)); }
+    void set_threads(std::size_t threads) { detail::check(enmm_set_threads(handle_, threads)); }
+
+    void set_block_force(std::uint32_t block, Vector force, double moment = 0)
+    {
+        detail::check(enmm_set_block_force(handle_, block, force.x, force.y, moment));
+    }
+
+    /** All lists must have the length of `ids`. */
+    void set_block_forces(const std::vector<std::uint32_t> &ids, const std::vector<double> &fx,
+                          const std::vector<double> &fy, const std::vector<double> &moment)
+    {
+        if (fx.size() != ids.size() || fy.size() != ids.size() || moment.size() != ids.size())
+            throw Error(ENMM_INVALID_ARGUMENT, "ids, fx, fy and moment must have the same length");
+        detail::check(enmm_set_block_forces(handle_, ids.data(), ids.size(), fx.data(), fy.data(), moment.data()));
+    }
+
+    void set_boundary_traction(std::uint32_t port, Vector traction)
+    {
+        detail::check(enmm_set_boundary_traction(handle_, port, traction.x, traction.y));
+    }
+
+    void set_boundary_pressure(std::uint32_t port, double p)
+    {
+        detail::check(enmm_set_boundary_pressure(handle_, port, p));
+    }
+
+    void set_joint_pressure(std::uint32_t port, double p) { detail::check(enmm_set_joint_pressure(handle_, port, p)); }
+
+    // Ports.
+
+    std::size_t port_count() const { return detail::number<std::size_t>(handle_, enmm_port_count); }
+
+    std::uint32_t find_port(const std::string &name) const
+    {
+        std::uint32_t port = 0;
+        detail::check(enmm_find_port(handle_, name.c_str(), &port));
+        return port;
+    }
+
+    std::string port_name(std::uint32_t port) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_port_name(handle_, port, out, capacity, written);
+        });
+    }
+
+    enmm_port_type port_kind(std::uint32_t port) const
+    {
+        enmm_port_type kind{};
+        detail::check(enmm_port_kind(handle_, port, &kind));
+        return kind;
+    }
+
+    std::uint32_t port_block(std::uint32_t port) const
+    {
+        std::uint32_t block = 0;
+        detail::check(enmm_port_block(handle_, port, &block));
+        return block;
+    }
+
+    PortState port_state(std::uint32_t port) const
+    {
+        auto state = detail::sized<PortState>();
+        detail::check(enmm_get_port_state(handle_, port, &state));
+        return state;
+    }
+
+    // The model now.
+
+    std::size_t block_count() const { return detail::number<std::size_t>(handle_, enmm_block_count); }
+
+    std::vector<BlockState> block_states() const { return list<BlockState>(enmm_get_block_states); }
+    std::vector<Contact> contacts() const { return list<Contact>(enmm_get_contacts); }
+
+    /** Events from index `first` on. */
+    std::vector<Event> events(std::size_t first = 0) const
+    {
+        return detail::list(detail::sized<Event>(), [&](Event *out, std::size_t capacity, std::size_t *written) {
+            return enmm_get_events(handle_, first, out, capacity, written);
+        });
+    }
+
+    Energies energies() const { return filled<Energies>(enmm_get_energies); }
+    Totals totals() const { return filled<Totals>(enmm_get_totals); }
+
+    /** Outer outline of a block, counter-clockwise. */
+    std::vector<Vector> block_polygon(std::uint32_t block) const
+    {
+        return points([&](double *xy, std::size_t capacity, std::size_t *written) {
+            return enmm_get_block_polygon(handle_, block, xy, capacity, written);
+        });
+    }
+
+    /** Outlines of the holes of a block, clockwise. */
+    std::vector<std::vector<Vector>> block_holes(std::uint32_t block) const
+    {
+        std::size_t count = 0;
+        detail::check(enmm_block_hole_count(handle_, block, &count));
+        std::vector<std::vector<Vector>> holes;
+        for (std::uint32_t hole = 0; hole < count; ++hole)
+            holes.push_back(points([&](double *xy, std::size_t capacity, std::size_t *written) {
+                return enmm_get_block_hole(handle_, block, hole, xy, capacity, written);
+            }));
+        return holes;
+    }
+
+    /** The block at a place, or none. */
+    std::optional<std::uint32_t> find_block_at(Vector place) const
+    {
+        std::uint32_t block = 0;
+        const enmm_status status = enmm_find_block_at(handle_, place.x, place.y, &block);
+        if (status == ENMM_NOT_FOUND)
+            return std::nullopt;
+        detail::check(status);
+        return block;
+    }
+
+    std::string case_hash() const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_case_hash(handle_, out, capacity, written);
+        });
+    }
+
+    // States.
+
+    State save() const
+    {
+        enmm_state *state = nullptr;
+        detail::check(enmm_state_save(handle_, &state));
+        return State(state);
+    }
+
+    void restore(const State &state) { detail::check(enmm_state_restore(handle_, state.handle())); }
+
+    std::vector<std::uint8_t> serialize(const State &state) const
+    {
+        return detail::list<std::uint8_t>(0, [&](std::uint8_t *out, std::size_t capacity, std::size_t *written) {
+            return enmm_state_serialize(handle_, state.handle(), out, capacity, written);
+        });
+    }
+
+    State deserialize(const std::vector<std::uint8_t> &bytes) const
+    {
+        enmm_state *state = nullptr;
+        detail::check(enmm_state_deserialize(handle_, bytes.data(), bytes.size(), &state));
+        return State(state);
+    }
+
+    /** Sets where messages go; an empty function stops them. What it throws comes out of the call that it speaks in. */
+    void set_log(Log log)
+    {
+        auto fresh = log ? std::make_unique<Listener>(Listener{std::move(log), nullptr}) : nullptr;
+        Listener *listener = fresh.get();
+        detail::check(enmm_set_log_callback(handle_, listener ? speak : nullptr, listener));
+        log_ = std::move(fresh);
+        rethrow();
+    }
+
+private:
+    struct Listener {
+        Log log;
+        std::exception_ptr thrown;
+    };
+
+    explicit Model(enmm_model *handle) noexcept : handle_(handle) {}
+
+    /** No exception may pass the library: it waits here until the call is over. */
+    static void speak(void *user, enmm_log_level level, const char *message) noexcept
+    {
+        auto *listener = static_cast<Listener *>(user);
+        try {
+            listener->log(level, message);
+        } catch (...) {
+            listener->thrown = std::current_exception();
+        }
+    }
+
+    void rethrow()
+    {
+        if (log_ && log_->thrown)
+            std::rethrow_exception(std::exchange(log_->thrown, nullptr));
+    }
+
+    template <class Call>
+    void call(Call what)
+    {
+        const enmm_status status = what();
+        const std::string message = status == ENMM_OK ? "" : enmm_last_error();
+        rethrow();
+        if (status != ENMM_OK)
+            throw Error(status, message);
+    }
+
+    template <class T, class Get>
+    T filled(Get get) const
+    {
+        auto value = detail::sized<T>();
+        detail::check(get(handle_, &value));
+        return value;
+    }
+
+    template <class T, class Get>
+    std::vector<T> list(Get get) const
+    {
+        return detail::list(detail::sized<T>(), [&](T *out, std::size_t capacity, std::size_t *written) {
+            return get(handle_, out, capacity, written);
+        });
+    }
+
+    template <class Get>
+    static std::vector<Vector> points(Get get)
+    {
+        std::size_t count = 0;
+        detail::check(get(nullptr, 0, &count));
+        std::vector<double> xy(2 * count);
+        detail::check(get(xy.data(), count, &count));
+        std::vector<Vector> points;
+        for (std::size_t k = 0; k < count; ++k)
+            points.push_back({xy[2 * k], xy[2 * k + 1]});
+        return points;
+    }
+
+    enmm_model *handle_;
+    std::unique_ptr<Listener> log_;
+};
+
+} // namespace enmm
+
+#endif

@@ -1,0 +1,120 @@
+/*
+ * A slope is shaken harder and harder until a block fails; the host then goes back to the last state before and asks how
+ * much support would have held it.
+ *
+ *     c++ -std=c++17 -I include -I ffi/cpp ffi/cpp/example.cpp -L target/release -lenmm -Wl,-rpath,target/release
+ *     ./a.out ffi/capi/tests/cases/small.toml
+ *
+ * The case needs a port of a block called "block". The exit status is 0 when everything went as it must.
+ */
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "enmm.hpp"
+
+namespace {
+
+int wrong = 0;
+
+void must(bool holds, const char *what)
+{
+    if (!holds) {
+        ++wrong;
+        std::fprintf(stderr, "not so: %s\n", what);
+    }
+}
+
+/** Runs for a while under base acceleration and the support force; tells whether the block stays. */
+bool holds(enmm::Model &model, const enmm::State &from, std::uint32_t block, double acceleration, double support)
+{
+    model.restore(from);
+    model.set_base_acceleration({acceleration, 0});
+    model.set_block_force(block, {support, 0});
+    const double begin = model.time(), h = model.communication_step();
+    for (int k = 0; k < 30; ++k)
+        model.do_step(begin + k * h, h);
+    return (model.block_states().at(block).flags & ENMM_BLOCK_FAILED) == 0;
+}
+
+void errors_are_exceptions(enmm::Model &model)
+{
+    try {
+        model.set_gravity({NAN, 0});
+        must(false, "a value that is no number throws");
+    } catch (const enmm::Error &error) {
+        must(error.status() == ENMM_INVALID_ARGUMENT, "the exception tells the status");
+        std::printf("as it should be: %s\n", error.what());
+    }
+    try {
+        enmm::Model::from_file("absent.toml");
+        must(false, "a file that is absent throws");
+    } catch (const enmm::Error &error) {
+        must(error.status() == ENMM_FILE_ERROR, "the exception tells the status");
+    }
+}
+
+void run(const char *path)
+{
+    enmm::Model model = enmm::Model::from_file(path);
+    int messages = 0;
+    model.set_log([&](enmm_log_level, const std::string &) { ++messages; });
+    model.start();
+    const std::uint32_t block = model.port_block(model.find_port("block"));
+    const enmm::State rest = model.save();
+
+    double weak = 0, strong = 12;
+    must(holds(model, rest, block, weak, 0), "the block rests without shaking");
+    must(!holds(model, rest, block, strong, 0), "strong shaking moves the block");
+    must(messages > 0 && !model.events().empty(), "a moving block is an event");
+    while (strong - weak > 0.1) {
+        const double middle = 0.5 * (weak + strong);
+        (holds(model, rest, block, middle, 0) ? weak : strong) = middle;
+    }
+    std::printf("the block fails at a base acceleration between %.2f and %.2f m/s2\n", weak, strong);
+    must(weak > 3 && strong < 11, "friction tells when the block moves");
+
+    const double mass = model.block_states().at(block).mass;
+    must(holds(model, rest, block, strong, 0.5 * mass * strong), "support against the motion holds the block");
+
+    const auto bytes = model.serialize(rest);
+    enmm::Model other = std::move(model);
+    model = enmm::Model::from_file(path);
+    const enmm::State copy = model.deserialize(bytes);
+    must(holds(model, copy, block, weak, 0) && holds(other, rest, block, weak, 0), "both hold");
+    must(model.energies().kinetic == other.energies().kinetic, "a state from bytes gives the same bits");
+    must(model.case_hash() == other.case_hash(), "both are of one case");
+
+    const auto outline = model.block_polygon(block);
+    const auto state = model.block_states().at(block);
+    must(outline.size() >= 3, "a block has an outline");
+    must(model.find_block_at({state.centroid_x, state.centroid_y}) == block, "a block is where its centroid is");
+    must(!model.find_block_at({1e6, 1e6}), "no rock is far away");
+    errors_are_exceptions(model);
+
+    other.set_log([](enmm_log_level, const std::string &) { throw 7; });
+    try {
+        other.do_step(-1, 1);
+        must(false, "what the log throws comes out");
+    } catch (int seven) {
+        must(seven == 7, "what the log throws comes out whole");
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: %s CASE.toml\n", argv[0]);
+        return 2;
+    }
+    try {
+        run(argv[1]);
+    } catch (const enmm::Error &error) {
+        std::fprintf(stderr, "status %d: %s\n", static_cast<int>(error.status()), error.what());
+        return 1;
+    }
+    std::printf("%d checks failed\n", wrong);
+    return wrong ? 1 : 0;
+}

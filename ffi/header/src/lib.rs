@@ -1,0 +1,69 @@
+//! The C header of the C ABI, made of its sources. `cargo xtask header` writes it to [`HEADER`].
+
+use std::path::{Path, PathBuf};
+
+use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language};
+
+/// Place of the header in the repository.
+pub const HEADER: &str = "include/enmm.h";
+
+/// What the reader of the header is told first.
+const INTRODUCTION: &str = "\
+/*
+ * enmm: explicit numerical manifold method for jointed rock. Made by `cargo xtask header`: do not edit.
+ *
+ * Units are SI: m, s, kg, N, Pa, rad, per metre of thickness; x to the right, y upwards, angles and moments
+ * counter-clockwise, stresses positive in tension.
+ *
+ * Status. Every function that can fail returns enmm_status, 0 for done; when it is not 0 nothing has changed, and
+ * enmm_last_error() tells why. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with a model. No
+ * exception and no panic leaves the library.
+ *
+ * Handles of models and states are numbers in a table of the process, and never followed: one that is NULL or dead is
+ * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
+ * function says.
+ *
+ * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model; any
+ * other gets ENMM_BUSY. A state may be used by many.
+ *
+ * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
+ * that, so that structures can grow and programs built with an older header go on. Members that the library does not
+ * know stay as they are.
+ *
+ * Texts are UTF-8 and end with a zero byte.
+ */";
+
+/// Root of the repository.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The header that belongs to the sources.
+///
+/// # Errors
+/// When the sources cannot be read.
+pub fn generate() -> Result<String, String> {
+    let config = Config {
+        language: Language::C,
+        cpp_compat: true,
+        header: Some(INTRODUCTION.to_owned()),
+        include_guard: Some("ENMM_H".to_owned()),
+        no_includes: true,
+        sys_includes: vec!["stddef.h".to_owned(), "stdint.h".to_owned()],
+        usize_is_size_t: true,
+        documentation_style: DocumentationStyle::Doxy,
+        documentation_length: DocumentationLength::Full,
+        line_length: 120,
+        ..Config::default()
+    };
+    let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation");
+    let sources = root().join("ffi/capi/src");
+    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/observe", "abi/state"] {
+        builder = builder.with_src(sources.join(file).with_extension("rs"));
+    }
+    let bindings = builder.generate().map_err(|error| error.to_string())?;
+    let mut bytes = Vec::new();
+    bindings.write(&mut bytes);
+    let text = String::from_utf8(bytes).map_err(|error| error.to_string())?;
+    Ok(text.lines().map(|line| line.trim_end().to_owned() + "\n").collect())
+}

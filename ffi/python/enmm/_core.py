@@ -1,0 +1,177 @@
+"""A handle of the C library with what calls need: buffers, checked arguments, the way of log messages."""
+
+import ctypes
+import itertools
+import operator
+import os
+import weakref
+from collections.abc import Callable
+from ctypes import POINTER, byref, c_double, c_size_t, c_void_p
+from typing import Any, SupportsFloat, SupportsIndex
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi
+from ._errors import BufferTooSmallError, invalid
+from ._library import Library
+from ._types import LogLevel
+
+LogFunction = Callable[[LogLevel, str], object]
+
+
+class Rows:
+    """A buffer of C structures that calls fill anew, and the numpy view of it."""
+
+    def __init__(self, structure: type[ctypes.Structure]) -> None:
+        self._structure = structure
+        self._dtype = _abi.dtype_of(structure)
+        self._make(1)
+
+    def _make(self, capacity: int) -> None:
+        self._capacity = capacity
+        self._buffer = (self._structure * capacity)()
+        self._view: npt.NDArray[np.void] = np.frombuffer(memoryview(self._buffer), self._dtype)
+        # What is written here would not reach the model.
+        self._view.flags.writeable = False
+
+    def fill(self, fetch: Callable[[Any, int, Any], None]) -> npt.NDArray[np.void]:
+        """Lets `fetch` fill the buffer, a larger one when it must be; returns the view of what was written."""
+        written = c_size_t()
+        while True:
+            self._buffer[0].struct_size = ctypes.sizeof(self._structure)
+            try:
+                fetch(self._buffer, self._capacity, byref(written))
+            except BufferTooSmallError:
+                self._make(written.value)
+            else:
+                return self._view[: written.value]
+
+
+class Sink:
+    """A log function of a host; the library knows it by its key, so that nothing dead is ever followed."""
+
+    def __init__(self, library: Library, function: LogFunction) -> None:
+        self.library, self.function = library, function
+        self.key = next(_keys)
+        _sinks[self.key] = self
+
+
+_keys = itertools.count(1)
+_sinks: "weakref.WeakValueDictionary[int, Sink]" = weakref.WeakValueDictionary()
+
+
+def _deliver(user: int | None, level: int, message: bytes | None) -> None:
+    sink = _sinks.get(user or 0)
+    if sink is None:
+        return
+    try:
+        known = LogLevel(level) if level in set(LogLevel) else LogLevel.INFO
+        sink.function(known, (message or b"").decode(errors="replace"))
+    except BaseException as error:  # Nothing may leave through C; the call that this belongs to raises it.
+        sink.library.keep_raised(error)
+
+
+# One for the whole process, so that it is there as long as any library may call it.
+_deliver_from_c = _abi.LOG_CALLBACK(_deliver)
+_nowhere = _abi.LOG_CALLBACK()
+
+
+class Core:
+    """A model of the library. Its end, by `close` or by the collector, destroys the model."""
+
+    def __init__(self, library: Library, creator: str, *arguments: Any) -> None:
+        self.library = library
+        handle = c_void_p()
+        library.call(creator, *arguments, byref(handle))
+        self.handle = handle
+        self.close = weakref.finalize(self, library.functions["enmm_destroy"], handle)
+        self._sink: Sink | None = None
+
+    def call(self, name: str, *arguments: Any) -> None:
+        """Calls a function with the handle of the model before its arguments."""
+        self.library.call(name, self.handle, *arguments)
+
+    def get(self, name: str, kind: Any, *arguments: Any) -> Any:
+        """A number that a function writes behind its last pointer."""
+        value = kind()
+        self.call(name, *arguments, byref(value))
+        return value.value
+
+    def read(self, name: str, structure: type[ctypes.Structure], *arguments: Any) -> Any:
+        """A structure that a function writes behind its last pointer."""
+        value = structure()
+        value.struct_size = ctypes.sizeof(structure)
+        self.call(name, *arguments, byref(value))
+        return value
+
+    def text(self, name: str, *arguments: Any) -> str:
+        """A text that a function writes."""
+        count = c_size_t()
+        self.call(name, *arguments, None, 0, byref(count))
+        buffer = ctypes.create_string_buffer(count.value)
+        self.call(name, *arguments, buffer, count.value, byref(count))
+        return buffer.value.decode()
+
+    def points(self, name: str, *arguments: Any) -> npt.NDArray[np.float64]:
+        """Points that a function writes, one in each row."""
+        count = c_size_t()
+        self.call(name, *arguments, None, 0, byref(count))
+        xy = np.empty((count.value, 2))
+        self.call(name, *arguments, pointer(xy, c_double), count.value, byref(count))
+        return xy
+
+    def set_log(self, function: LogFunction | None) -> None:
+        """Sets where messages go."""
+        sink = None if function is None else Sink(self.library, function)
+        callback, key = (_nowhere, None) if sink is None else (_deliver_from_c, sink.key)
+        status, message, raised = self.library.attempt("enmm_set_log_callback", self.handle, callback, key)
+        if not status:
+            self._sink = sink
+        self.library.judge(status, message, raised)
+
+
+def pointer(array: npt.NDArray[Any], kind: Any) -> Any:
+    """Address of the first value of a contiguous array."""
+    return array.ctypes.data_as(POINTER(kind))
+
+
+def number(value: SupportsFloat) -> float:
+    """A number of any library as one that ctypes takes."""
+    return float(value)
+
+
+def index(name: str, value: SupportsIndex) -> int:
+    """A number that fits into 32 bits: ctypes would cut off the others."""
+    whole = operator.index(value)
+    if not 0 <= whole <= _abi.UINT32_MAX:
+        raise invalid(f"{name}: is {whole}, must be at least 0 and at most {_abi.UINT32_MAX}")
+    return whole
+
+
+def text(name: str, value: str | os.PathLike[str]) -> bytes:
+    """A text as C takes it."""
+    encoded = os.fspath(value).encode("utf-8", "surrogateescape")
+    if b"\0" in encoded:
+        raise invalid(f"{name}: has a zero character, which ends a text in C; take it out")
+    return encoded
+
+
+def ids_of(values: npt.ArrayLike) -> npt.NDArray[np.uint32]:
+    """Block ids of any array of whole numbers."""
+    array = np.atleast_1d(np.asarray(values))
+    if array.ndim != 1:
+        raise invalid(f"ids: has {array.ndim} dimensions, must have 1")
+    if array.size and array.dtype.kind not in "iu":
+        raise invalid(f"ids: holds values of type {array.dtype}, must hold whole numbers")
+    for value in array[(array < 0) | (array > _abi.UINT32_MAX)][:1].tolist():
+        index("ids", value)
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def values_of(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[np.float64]:
+    """One number for each block: one for all of them, or as many as there are."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape not in ((), (count,)):
+        raise invalid(f"{name}: has the shape {array.shape}, must be a number or have the shape ({count},)")
+    return np.ascontiguousarray(np.broadcast_to(array, (count,)))

@@ -1,0 +1,196 @@
+"""Values that models give and take. SI units per metre of thickness; x to the right, y upwards."""
+
+from enum import IntEnum, IntFlag
+from typing import NamedTuple
+
+
+class BlockFlag(IntFlag):
+    """Bits of `flags` of a block."""
+
+    FIXED = 1
+    """No part of it can move."""
+    DETACHED = 2
+    """It can move, and no contact on it carries force now."""
+    FAILED = 4
+    """It has moved beyond the failure displacement of the case; this stays."""
+    REMOVED = 8
+    """It has been excavated; its other values are those of when it was there."""
+
+
+class ContactState(IntEnum):
+    """`state` of a contact."""
+
+    OPEN = 0
+    """It carries no force."""
+    SLIP = 1
+    """Its shear force is at the limit."""
+    LOCK = 2
+    """Its shear force is below the limit."""
+
+
+class EventKind(IntEnum):
+    """Kind of an event. Each happens once to a block or joint, and only in dynamic stages."""
+
+    DETACHED = 0
+    """A block that touched others lost its last contact."""
+    SLIPPED = 1
+    """A joint slipped."""
+    FAILED = 2
+    """A block moved beyond the failure displacement."""
+
+
+class PortKind(IntEnum):
+    """Kind of a port."""
+
+    BLOCK = 0
+    """A block: takes force and moment."""
+    BOUNDARY = 1
+    """A part of the outer boundary: takes traction and pressure."""
+    JOINT = 2
+    """Faces of joints: takes fluid pressure."""
+
+
+class Interpolation(IntEnum):
+    """How inputs go through a communication step."""
+
+    HOLD = 0
+    """A value that was set acts from the start of the next step on."""
+    LINEAR = 1
+    """A value that was set is reached at the end of the next step, linearly from the one before."""
+
+
+class LogLevel(IntEnum):
+    """Weight of a message."""
+
+    ERROR = 0
+    """A step failed."""
+    WARNING = 1
+    """Something is unusual: warnings of the case, contact forces that did not settle."""
+    INFO = 2
+    """Events, and the end of the search for the initial equilibrium."""
+
+
+class StepInfo(NamedTuple):
+    """What a communication step did."""
+
+    time: float
+    """Time that the model has reached (s): t + h."""
+    steps: int
+    """Internal steps, parts of one included."""
+    dt: float
+    """Largest internal step (s), at most the critical one."""
+    event_count: int
+    """Events of this step."""
+    first_event: int
+    """Index of the first of them: `model.events(info.first_event)` tells them."""
+    halved: int
+    """Internal steps that were redone in halves."""
+    unsettled: int
+    """Sub-steps whose contact forces did not settle; 0 in a sound run."""
+
+
+class Energies(NamedTuple):
+    """Energies now and works since the start (J per metre of thickness).
+
+    kinetic + strain + potential + damping equals contact_work + support_work + external_work + baseline + residual.
+    """
+
+    kinetic: float
+    """Kinetic energy."""
+    strain: float
+    """Strain energy."""
+    potential: float
+    """Potential energy of gravity, from the undeformed state on."""
+    stored: float
+    """Energy in the springs of contacts and supports."""
+    friction: float
+    """Energy that slip turned into heat."""
+    contact_work: float
+    """Work of contact forces on the blocks."""
+    support_work: float
+    """Work of supports on the blocks."""
+    damping: float
+    """Energy that damping took."""
+    external_work: float
+    """Work of loads and inputs, and of gravity while it grows or changes."""
+    baseline: float
+    """Energy of the start, less what left with excavated blocks."""
+    contact_dissipation: float
+    """Energy that contacts lost in other ways than slip."""
+    residual: float
+    """Energy that appeared from nowhere: the error of the time steps."""
+
+
+class Totals(NamedTuple):
+    """Sums and extremes over the model."""
+
+    displacement_max: float
+    """Largest displacement (m)."""
+    velocity_max: float
+    """Largest velocity (m/s)."""
+    penetration_max: float
+    """Largest penetration of the whole run (m)."""
+    unbalanced: float
+    """Net over applied force; near 0 at rest."""
+    critical_dt: float
+    """Critical internal step (s)."""
+    open_contacts: int
+    """Contacts without force."""
+    slipping_contacts: int
+    """Contacts at their shear limit."""
+    locked_contacts: int
+    """Contacts below their shear limit."""
+    detached_blocks: int
+    """Blocks that have lost their last contact at least once."""
+    slipped_joints: int
+    """Joints that have slipped."""
+    failed_blocks: int
+    """Blocks that have failed."""
+
+
+class Event(NamedTuple):
+    """Something that happened for the first time."""
+
+    kind: EventKind
+    """What happened."""
+    subject: int | None
+    """Block id; for a slip the number of the joint trace, or None for a contact that lies on none."""
+    time: float
+    """End of the internal step in which it happened (s), as `Model.time` counts."""
+
+
+class PortState(NamedTuple):
+    """A port now.
+
+    A block fills all but the last three values; a boundary displacement, velocity and stress; joints the last three.
+    What is not filled is 0.
+    """
+
+    displacement_x: float
+    """Displacement of the mass centroid, or mean along the boundary, x (m)."""
+    displacement_y: float
+    """The same, y (m)."""
+    velocity_x: float
+    """Velocity of the mass centroid, or mean along the boundary, x (m/s)."""
+    velocity_y: float
+    """The same, y (m/s)."""
+    rotation: float
+    """Rotation of the block (rad, counter-clockwise)."""
+    angular_velocity: float
+    """Angular velocity of the block (rad/s, counter-clockwise)."""
+    contact_force_x: float
+    """Sum of the contact forces on the block, x (N/m)."""
+    contact_force_y: float
+    """The same, y (N/m)."""
+    stress_xx: float
+    """Mean stress in the block, or in the blocks along the boundary, xx (Pa, tension positive)."""
+    stress_yy: float
+    """The same, yy (Pa, tension positive)."""
+    stress_xy: float
+    """The same, xy (Pa)."""
+    normal_force: float
+    """Sum of the normal forces across the joints (N/m, compression positive)."""
+    shear_force: float
+    """Sum of the magnitudes of the shear forces along the joints (N/m)."""
+    slip: float
+    """Largest slip that a contact of the joints has summed up (m)."""

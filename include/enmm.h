@@ -1,0 +1,1098 @@
+/*
+ * enmm: explicit numerical manifold method for jointed rock. Made by `cargo xtask header`: do not edit.
+ *
+ * Units are SI: m, s, kg, N, Pa, rad, per metre of thickness; x to the right, y upwards, angles and moments
+ * counter-clockwise, stresses positive in tension.
+ *
+ * Status. Every function that can fail returns enmm_status, 0 for done; when it is not 0 nothing has changed, and
+ * enmm_last_error() tells why. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with a model. No
+ * exception and no panic leaves the library.
+ *
+ * Handles of models and states are numbers in a table of the process, and never followed: one that is NULL or dead is
+ * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
+ * function says.
+ *
+ * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model; any
+ * other gets ENMM_BUSY. A state may be used by many.
+ *
+ * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
+ * that, so that structures can grow and programs built with an older header go on. Members that the library does not
+ * know stay as they are.
+ *
+ * Texts are UTF-8 and end with a zero byte.
+ */
+
+#ifndef ENMM_H
+#define ENMM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * Version of the binary interface: changes when a program that was built before would no longer work.
+ */
+#define ENMM_ABI_VERSION 1
+
+/**
+ * Flag of a block: no part of it can move.
+ */
+#define ENMM_BLOCK_FIXED 1
+
+/**
+ * Flag of a block: it can move, and no contact on it carries force now.
+ */
+#define ENMM_BLOCK_DETACHED 2
+
+/**
+ * Flag of a block: it has moved beyond the failure displacement of the case; this stays.
+ */
+#define ENMM_BLOCK_FAILED 4
+
+/**
+ * Flag of a block: it has been excavated; its other values are those of when it was there.
+ */
+#define ENMM_BLOCK_REMOVED 8
+
+/**
+ * Subject of a slip event of a contact that lies on no joint trace of the case.
+ */
+#define ENMM_NO_JOINT UINT32_MAX
+
+/**
+ * What came of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() tells what was
+ * wrong, the limit and the remedy.
+ */
+enum enmm_status
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Done.
+   */
+  ENMM_OK = 0,
+  /**
+   * A pointer or handle is NULL that must not be.
+   */
+  ENMM_NULL_ARGUMENT = 1,
+  /**
+   * The handle was destroyed, or never was one of this kind.
+   */
+  ENMM_DEAD_HANDLE = 2,
+  /**
+   * Another thread is using the model.
+   */
+  ENMM_BUSY = 3,
+  /**
+   * A value is not finite or out of range, names something that does not exist, or a text is not UTF-8.
+   */
+  ENMM_INVALID_ARGUMENT = 4,
+  /**
+   * The case cannot be used; the message tells file, line and key.
+   */
+  ENMM_INVALID_CASE = 5,
+  /**
+   * A file cannot be read.
+   */
+  ENMM_FILE_ERROR = 6,
+  /**
+   * A communication step does not begin at the time of the model.
+   */
+  ENMM_WRONG_TIME = 7,
+  /**
+   * The step failed numerically; the model stands where it stood before the call.
+   */
+  ENMM_NUMERICAL_FAILURE = 8,
+  /**
+   * The buffer is too small: nothing was written to it, and `*written` tells what is needed.
+   */
+  ENMM_BUFFER_TOO_SMALL = 9,
+  /**
+   * There is no such port, or no rock at this place.
+   */
+  ENMM_NOT_FOUND = 10,
+  /**
+   * The state is of another case or version, or its bytes are damaged.
+   */
+  ENMM_WRONG_STATE = 11,
+  /**
+   * An internal error. The model that was in use can only be destroyed; all others are unharmed.
+   */
+  ENMM_PANIC = 12,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_status enmm_status;
+#else
+typedef int32_t enmm_status;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Weight of a message.
+ */
+enum enmm_log_level
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A step failed.
+   */
+  ENMM_LOG_ERROR = 0,
+  /**
+   * Something is unusual: warnings of the case, contact forces that did not settle.
+   */
+  ENMM_LOG_WARNING = 1,
+  /**
+   * Events, and the end of the search for the initial equilibrium.
+   */
+  ENMM_LOG_INFO = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_log_level enmm_log_level;
+#else
+typedef int32_t enmm_log_level;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * State of a contact.
+ */
+enum enmm_contact_state
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * It carries no force.
+   */
+  ENMM_CONTACT_OPEN = 0,
+  /**
+   * Its shear force is at the limit.
+   */
+  ENMM_CONTACT_SLIP = 1,
+  /**
+   * Its shear force is below the limit.
+   */
+  ENMM_CONTACT_LOCK = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_contact_state enmm_contact_state;
+#else
+typedef int32_t enmm_contact_state;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Kind of an event. Each happens once to a block or joint, and only in dynamic stages.
+ */
+enum enmm_event_kind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A block that touched others lost its last contact.
+   */
+  ENMM_EVENT_DETACHED = 0,
+  /**
+   * A joint slipped.
+   */
+  ENMM_EVENT_SLIPPED = 1,
+  /**
+   * A block moved beyond the failure displacement.
+   */
+  ENMM_EVENT_FAILED = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_event_kind enmm_event_kind;
+#else
+typedef int32_t enmm_event_kind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Kind of a port.
+ */
+enum enmm_port_type
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A block: takes force and moment (enmm_set_block_force with the id of enmm_port_block).
+   */
+  ENMM_PORT_BLOCK = 0,
+  /**
+   * A part of the outer boundary: takes traction and pressure.
+   */
+  ENMM_PORT_BOUNDARY = 1,
+  /**
+   * Faces of joints: takes fluid pressure.
+   */
+  ENMM_PORT_JOINT = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_port_type enmm_port_type;
+#else
+typedef int32_t enmm_port_type;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How inputs go through a communication step.
+ */
+enum enmm_interpolation
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A value that was set acts from the start of the next step on (as at the creation of a model).
+   */
+  ENMM_INTERPOLATION_HOLD = 0,
+  /**
+   * A value that was set is reached at the end of the next step, linearly from the one before.
+   */
+  ENMM_INTERPOLATION_LINEAR = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_interpolation enmm_interpolation;
+#else
+typedef int32_t enmm_interpolation;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A model. The handle is a number that is never followed: one that is NULL or dead is an error and never a crash.
+ */
+typedef struct enmm_model enmm_model;
+
+/**
+ * A saved state of a model; it may outlive the model. The handle is as safe as that of a model.
+ */
+typedef struct enmm_state enmm_state;
+
+/**
+ * What a communication step did.
+ */
+typedef struct enmm_step_info {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Time that the model has reached (s): t + h.
+   */
+  double time;
+  /**
+   * Internal steps, parts of one included.
+   */
+  uint64_t steps;
+  /**
+   * Largest internal step (s), at most the critical one.
+   */
+  double dt;
+  /**
+   * Events of this step.
+   */
+  size_t event_count;
+  /**
+   * Index of the first of them for enmm_get_events.
+   */
+  size_t first_event;
+  /**
+   * Internal steps that were redone in halves.
+   */
+  uint64_t halved;
+  /**
+   * Sub-steps whose contact forces did not settle; 0 in a sound run.
+   */
+  uint64_t unsettled;
+} enmm_step_info;
+
+/**
+ * Takes the messages of a model. It is called on the thread of a call to the model, when that call is otherwise done,
+ * so that it may call any function. `message` is valid during the call. It must return: no longjmp, no exception.
+ */
+typedef void (*enmm_log_callback)(void *user, enmm_log_level level, const char *message);
+
+/**
+ * A block now. Velocities are those of half an internal step ago, as the method has them.
+ */
+typedef struct enmm_block_state {
+  /**
+   * Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+   */
+  size_t struct_size;
+  /**
+   * Block id: 0, 1, ...
+   */
+  uint32_t id;
+  /**
+   * Sum of ENMM_BLOCK_FIXED, ENMM_BLOCK_DETACHED, ENMM_BLOCK_FAILED, ENMM_BLOCK_REMOVED.
+   */
+  uint32_t flags;
+  /**
+   * Mass centroid now, x (m).
+   */
+  double centroid_x;
+  /**
+   * Mass centroid now, y (m, upwards).
+   */
+  double centroid_y;
+  /**
+   * Displacement of the mass centroid, x (m).
+   */
+  double displacement_x;
+  /**
+   * Displacement of the mass centroid, y (m).
+   */
+  double displacement_y;
+  /**
+   * Rotation (rad, counter-clockwise, within -pi and pi).
+   */
+  double rotation;
+  /**
+   * Velocity of the mass centroid, x (m/s).
+   */
+  double velocity_x;
+  /**
+   * Velocity of the mass centroid, y (m/s).
+   */
+  double velocity_y;
+  /**
+   * Angular velocity (rad/s, counter-clockwise).
+   */
+  double angular_velocity;
+  /**
+   * Area mean of the stress, xx (Pa, tension positive).
+   */
+  double mean_stress_xx;
+  /**
+   * Area mean of the stress, yy (Pa, tension positive).
+   */
+  double mean_stress_yy;
+  /**
+   * Area mean of the stress, xy (Pa).
+   */
+  double mean_stress_xy;
+  /**
+   * Area before any deformation (m2).
+   */
+  double area;
+  /**
+   * Mass (kg per metre of thickness).
+   */
+  double mass;
+  /**
+   * Kinetic energy (J/m).
+   */
+  double kinetic_energy;
+  /**
+   * Strain energy (J/m).
+   */
+  double strain_energy;
+  /**
+   * Contacts on the block that carry force.
+   */
+  uint32_t contact_count;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * Largest penetration of its contacts (m).
+   */
+  double largest_penetration;
+} enmm_block_state;
+
+/**
+ * Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping equals
+ * contact_work + support_work + external_work + baseline + residual.
+ */
+typedef struct enmm_energies {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Kinetic energy.
+   */
+  double kinetic;
+  /**
+   * Strain energy.
+   */
+  double strain;
+  /**
+   * Potential energy of gravity, from the undeformed state on.
+   */
+  double potential;
+  /**
+   * Energy in the springs of contacts and supports.
+   */
+  double stored;
+  /**
+   * Energy that slip turned into heat.
+   */
+  double friction;
+  /**
+   * Work of contact forces on the blocks.
+   */
+  double contact_work;
+  /**
+   * Work of supports on the blocks.
+   */
+  double support_work;
+  /**
+   * Energy that damping took.
+   */
+  double damping;
+  /**
+   * Work of loads and inputs, and of gravity while it grows or changes.
+   */
+  double external_work;
+  /**
+   * Energy of the start, less what left with excavated blocks.
+   */
+  double baseline;
+  /**
+   * Energy that contacts lost in other ways than slip.
+   */
+  double contact_dissipation;
+  /**
+   * Energy that appeared from nowhere: the error of the time steps.
+   */
+  double residual;
+} enmm_energies;
+
+/**
+ * Sums and extremes over the model.
+ */
+typedef struct enmm_totals {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Largest displacement (m).
+   */
+  double displacement_max;
+  /**
+   * Largest velocity (m/s).
+   */
+  double velocity_max;
+  /**
+   * Largest penetration of the whole run (m).
+   */
+  double penetration_max;
+  /**
+   * Net over applied force; near 0 at rest.
+   */
+  double unbalanced;
+  /**
+   * Critical internal step (s).
+   */
+  double critical_dt;
+  /**
+   * Contacts without force.
+   */
+  uint32_t open_contacts;
+  /**
+   * Contacts at their shear limit.
+   */
+  uint32_t slipping_contacts;
+  /**
+   * Contacts below their shear limit.
+   */
+  uint32_t locked_contacts;
+  /**
+   * Blocks that have lost their last contact at least once.
+   */
+  uint32_t detached_blocks;
+  /**
+   * Joints that have slipped.
+   */
+  uint32_t slipped_joints;
+  /**
+   * Blocks that have failed.
+   */
+  uint32_t failed_blocks;
+} enmm_totals;
+
+/**
+ * A contact between a boundary node of one block and an edge of another.
+ */
+typedef struct enmm_contact {
+  /**
+   * Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+   */
+  size_t struct_size;
+  /**
+   * Open, slip or lock.
+   */
+  enmm_contact_state state;
+  /**
+   * Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+   */
+  uint32_t law;
+  /**
+   * Block of the node.
+   */
+  uint32_t node_block;
+  /**
+   * Block of the edge.
+   */
+  uint32_t edge_block;
+  /**
+   * Node now, x (m).
+   */
+  double position_x;
+  /**
+   * Node now, y (m).
+   */
+  double position_y;
+  /**
+   * Outward unit normal of the edge, x.
+   */
+  double normal_x;
+  /**
+   * Outward unit normal of the edge, y.
+   */
+  double normal_y;
+  /**
+   * Length of boundary that the node stands for (m).
+   */
+  double length;
+  /**
+   * Normal stress (Pa, tension positive).
+   */
+  double normal_stress;
+  /**
+   * Shear stress (Pa), on the node, positive along the normal turned by 90 degrees counter-clockwise.
+   */
+  double shear_stress;
+} enmm_contact;
+
+/**
+ * Something that happened for the first time.
+ */
+typedef struct enmm_event {
+  /**
+   * Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+   */
+  size_t struct_size;
+  /**
+   * What happened.
+   */
+  enmm_event_kind kind;
+  /**
+   * Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT.
+   */
+  uint32_t subject;
+  /**
+   * End of the internal step in which it happened (s), as enmm_get_time counts.
+   */
+  double time;
+} enmm_event;
+
+/**
+ * A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
+ * last three. What is not filled is 0.
+ */
+typedef struct enmm_port_state {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Displacement of the mass centroid, or mean along the boundary, x (m).
+   */
+  double displacement_x;
+  /**
+   * The same, y (m).
+   */
+  double displacement_y;
+  /**
+   * Velocity of the mass centroid, or mean along the boundary, x (m/s).
+   */
+  double velocity_x;
+  /**
+   * The same, y (m/s).
+   */
+  double velocity_y;
+  /**
+   * Rotation of the block (rad, counter-clockwise).
+   */
+  double rotation;
+  /**
+   * Angular velocity of the block (rad/s, counter-clockwise).
+   */
+  double angular_velocity;
+  /**
+   * Sum of the contact forces on the block, x (N/m).
+   */
+  double contact_force_x;
+  /**
+   * The same, y (N/m).
+   */
+  double contact_force_y;
+  /**
+   * Mean stress in the block, or in the blocks along the boundary, xx (Pa, tension positive).
+   */
+  double stress_xx;
+  /**
+   * The same, yy (Pa, tension positive).
+   */
+  double stress_yy;
+  /**
+   * The same, xy (Pa).
+   */
+  double stress_xy;
+  /**
+   * Sum of the normal forces across the joints (N/m, compression positive).
+   */
+  double normal_force;
+  /**
+   * Sum of the magnitudes of the shear forces along the joints (N/m).
+   */
+  double shear_force;
+  /**
+   * Largest slip that a contact of the joints has summed up (m).
+   */
+  double slip;
+} enmm_port_state;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * Version of the library, such as "0.1.0". The text is there for ever.
+ */
+const char *enmm_version(void);
+
+/**
+ * Version of the binary interface of the library; a program works with it when this equals ENMM_ABI_VERSION of the
+ * header it was compiled with.
+ */
+uint32_t enmm_abi_version(void);
+
+/**
+ * Message of the last call that failed on the calling thread: what, the value, the limit, the remedy. It is empty when
+ * none has failed, and valid until the next one fails on this thread or the thread ends.
+ */
+const char *enmm_last_error(void);
+
+/**
+ * Builds the model of a case file. Nothing moves yet.
+ *
+ * `case_path` is a path in UTF-8; files that the case names are sought beside it. `*out` gets the handle, to be given
+ * to enmm_destroy in the end, or NULL on failure.
+ *
+ * Errors: ENMM_FILE_ERROR, ENMM_INVALID_CASE with file, line and key, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_create_from_file(const char *case_path, struct enmm_model **out);
+
+/**
+ * Builds the model of a case that is given as text in TOML.
+ *
+ * `base_dir` is the directory where files that the case names are sought; NULL stands for the current one. `*out` gets
+ * the handle, to be given to enmm_destroy in the end, or NULL on failure.
+ *
+ * Errors: as enmm_create_from_file; the text is called "case" in messages.
+ */
+enmm_status enmm_create_from_string(const char *toml, const char *base_dir, struct enmm_model **out);
+
+/**
+ * Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
+ * model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+ */
+void enmm_destroy(struct enmm_model *model);
+
+/**
+ * Seeks the initial equilibrium now, under the inputs that have been set: runs the static stages before the first
+ * dynamic one. Otherwise the first enmm_do_step does. Does nothing when it has been done. Time 0 is its end.
+ *
+ * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
+ */
+enmm_status enmm_start(struct enmm_model *model);
+
+/**
+ * Advances the model from `t` to exactly `t + h` (s), or not at all.
+ *
+ * `t` must be the time of the model. The interval is covered by internal steps not longer than the critical one; how a
+ * time is split into communication steps does not change results when they are multiples of the internal step. Inputs
+ * that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After the last stage
+ * of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
+ *
+ * Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
+ * with block, place and cause. The model then still is at `t`, with its inputs.
+ */
+enmm_status enmm_do_step(struct enmm_model *model, double t, double h, struct enmm_step_info *info);
+
+/**
+ * Tells the time of the model (s): 0 at the start of the first dynamic stage.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_time(struct enmm_model *model, double *time);
+
+/**
+ * Tells the internal step (s), an integer fraction of a tenth of the communication step.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_internal_step(struct enmm_model *model, double *step);
+
+/**
+ * Tells the communication step (s) that the case suggests; hosts may take any other.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_communication_step(struct enmm_model *model, double *step);
+
+/**
+ * Tells the time (s) at which the stages of the case end; hosts may go on.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_stop_time(struct enmm_model *model, double *time);
+
+/**
+ * Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
+ * depend on it, not even in the last bit. Acts from the next step on.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants.
+ */
+enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
+
+/**
+ * Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
+ * warnings of the case at once; later messages come at the end of the calls that they are about.
+ *
+ * `user` is handed to the callback as it is.
+ */
+enmm_status enmm_set_log_callback(struct enmm_model *model, enmm_log_callback callback, void *user);
+
+/**
+ * Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised
+ * state.
+ *
+ * `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+ *
+ * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_case_hash(struct enmm_model *model, char *out, size_t capacity, size_t *written);
+
+/**
+ * Sets gravity (m/s2, x to the right, y upwards; on Earth 0 and -9.81).
+ *
+ * Acts from the start of the next step on, or is reached at its end (enmm_set_interpolation), and holds until it is
+ * set anew; so do all inputs. In the initial equilibrium it grows from 0.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a value that is not finite or beyond 1e4 m/s2; the old one then holds.
+ */
+enmm_status enmm_set_gravity(struct enmm_model *model, double gx, double gy);
+
+/**
+ * Sets force (N per metre of thickness, x to the right, y upwards) through the mass centroid of a block, and moment
+ * about it (N*m per metre, counter-clockwise). They take the place of those that were set before, or that a port of
+ * the case has at the start; loads of the case stay.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a block that does not exist, or a value that is not finite or beyond 1e15.
+ */
+enmm_status enmm_set_block_force(struct enmm_model *model, uint32_t block, double fx, double fy, double moment);
+
+/**
+ * Sets force and moment of `n` blocks at once: all, or none when one value is refused.
+ *
+ * `ids`, `fx`, `fy` and `m` hold `n` values each, with the units of enmm_set_block_force. Where a block is named twice
+ * the last one counts. Blocks that are not named keep their force.
+ *
+ * Errors: as enmm_set_block_force, for the first block that is refused; ENMM_NULL_ARGUMENT when `n` is not 0.
+ */
+enmm_status enmm_set_block_forces(struct enmm_model *model,
+                                  const uint32_t *ids,
+                                  size_t n,
+                                  const double *fx,
+                                  const double *fy,
+                                  const double *m);
+
+/**
+ * Sets the acceleration of the base (m/s2, x to the right, y upwards). Displacements and velocities are relative to
+ * the base; all rock feels the opposite acceleration.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a value that is not finite or beyond 1e4 m/s2.
+ */
+enmm_status enmm_set_base_acceleration(struct enmm_model *model, double ax, double ay);
+
+/**
+ * Sets the height y of the water surface (m, upwards, in the coordinates of the case). The case must have `[water]`.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a case without water, or a value that is not finite or beyond 1e9 m.
+ */
+enmm_status enmm_set_water_level(struct enmm_model *model, double y);
+
+/**
+ * Sets traction (Pa, global axes, per length before deformation) on a boundary port; positive pushes to the right and
+ * upwards.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is no boundary, or a value that is not finite or
+ * beyond 1e15 Pa.
+ */
+enmm_status enmm_set_boundary_traction(struct enmm_model *model, uint32_t port, double tx, double ty);
+
+/**
+ * Sets fluid pressure (Pa) on a boundary port; positive pushes into the rock, normal to its current surface.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: as enmm_set_boundary_traction.
+ */
+enmm_status enmm_set_boundary_pressure(struct enmm_model *model, uint32_t port, double p);
+
+/**
+ * Sets fluid pressure (Pa) in the joints of a joint port; positive pushes both faces into their rock, apart.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is none of joints, or a value that is not finite or
+ * beyond 1e15 Pa.
+ */
+enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, double p);
+
+/**
+ * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied; 1 is the
+ * strength of the case.
+ *
+ * Acts as enmm_set_gravity tells.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a value that is not at least 0 and at most 1e6.
+ */
+enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
+
+/**
+ * Sets how inputs go through a communication step: a value of enmm_interpolation. Holds from the next step on, and is
+ * part of saved states.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another number.
+ */
+enmm_status enmm_set_interpolation(struct enmm_model *model, int32_t mode);
+
+/**
+ * Tells how inputs go through a communication step: a value of enmm_interpolation.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
+
+/**
+ * Tells the number of blocks, excavated ones included. It never changes.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_block_count(struct enmm_model *model, size_t *count);
+
+/**
+ * Writes the state of every block, by id.
+ *
+ * `out` holds `capacity` structures; `out[0].struct_size` must be set and is the distance from one to the next.
+ * `*written` gets their number. `out` NULL and `capacity` 0 ask for it alone.
+ *
+ * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_block_states(struct enmm_model *model,
+                                  struct enmm_block_state *out,
+                                  size_t capacity,
+                                  size_t *written);
+
+/**
+ * Writes energies and works. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_energies(struct enmm_model *model, struct enmm_energies *out);
+
+/**
+ * Writes sums and extremes over the model. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_totals(struct enmm_model *model, struct enmm_totals *out);
+
+/**
+ * Writes the contacts with the forces of the last internal step, those without force included.
+ *
+ * Buffer and errors as enmm_get_block_states.
+ */
+enmm_status enmm_get_contacts(struct enmm_model *model, struct enmm_contact *out, size_t capacity, size_t *written);
+
+/**
+ * Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
+ * goes back to its events.
+ *
+ * Buffer and errors as enmm_get_block_states.
+ */
+enmm_status enmm_get_events(struct enmm_model *model,
+                            size_t first,
+                            struct enmm_event *out,
+                            size_t capacity,
+                            size_t *written);
+
+/**
+ * Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).
+ *
+ * `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. `xy` NULL and
+ * `capacity` 0 ask for it alone. Cracks that end in the block are part of its outline. For holes see
+ * enmm_get_block_hole.
+ *
+ * Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a block that does not exist; ENMM_NOT_FOUND for one that
+ * has been excavated; ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_block_polygon(struct enmm_model *model,
+                                   uint32_t block,
+                                   double *xy,
+                                   size_t capacity,
+                                   size_t *written);
+
+/**
+ * Tells the number of holes of a block.
+ *
+ * Errors: as enmm_get_block_polygon.
+ */
+enmm_status enmm_block_hole_count(struct enmm_model *model, uint32_t block, size_t *count);
+
+/**
+ * Writes the current outline of hole `hole` (from 0) of a block, clockwise; buffer as enmm_get_block_polygon.
+ *
+ * Errors: as enmm_get_block_polygon; ENMM_INVALID_ARGUMENT for a hole that does not exist.
+ */
+enmm_status enmm_get_block_hole(struct enmm_model *model,
+                                uint32_t block,
+                                uint32_t hole,
+                                double *xy,
+                                size_t capacity,
+                                size_t *written);
+
+/**
+ * Tells which block is at a place (m) now; the lowest id where blocks meet.
+ *
+ * Errors: ENMM_NOT_FOUND where no rock is; ENMM_INVALID_ARGUMENT for values that are not finite; ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_find_block_at(struct enmm_model *model, double x, double y, uint32_t *block);
+
+/**
+ * Tells the number of ports that the case names by `[[port]]`.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_port_count(struct enmm_model *model, size_t *count);
+
+/**
+ * Tells the port that has a name.
+ *
+ * Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_find_port(struct enmm_model *model, const char *name, uint32_t *port);
+
+/**
+ * Writes the name of a port in UTF-8.
+ *
+ * `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_port_name(struct enmm_model *model, uint32_t port, char *out, size_t capacity, size_t *written);
+
+/**
+ * Tells the kind of a port.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_port_kind(struct enmm_model *model, uint32_t port, enmm_port_type *kind);
+
+/**
+ * Tells the block of a port: its own, or that of the first edge of a boundary or joint.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_port_block(struct enmm_model *model, uint32_t port, uint32_t *block);
+
+/**
+ * Writes the state of a port. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or a struct_size that no version had,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_port_state(struct enmm_model *model, uint32_t port, struct enmm_port_state *out);
+
+/**
+ * Saves all that the model needs to go on from here with the same bits: motion, contacts, stage, time, events, inputs.
+ *
+ * `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure. The state may outlive the
+ * model.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_state_save(struct enmm_model *model, struct enmm_state **out);
+
+/**
+ * Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
+ *
+ * Errors: ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE; the model then stays as it is.
+ */
+enmm_status enmm_state_restore(struct enmm_model *model, struct enmm_state *state);
+
+/**
+ * Gives a state free. NULL does nothing.
+ *
+ * Errors: ENMM_DEAD_HANDLE.
+ */
+enmm_status enmm_state_free(struct enmm_state *state);
+
+/**
+ * Writes a state as bytes for a file or another process; they tell version and case, and have a checksum.
+ *
+ * `model` is one of the case that the state is of. `*written` gets the number of bytes. `buffer` NULL and `capacity` 0
+ * ask for it alone.
+ *
+ * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_state_serialize(struct enmm_model *model,
+                                 struct enmm_state *state,
+                                 uint8_t *buffer,
+                                 size_t capacity,
+                                 size_t *written);
+
+/**
+ * Makes a state of bytes that enmm_state_serialize wrote, in this process or another.
+ *
+ * `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure.
+ *
+ * Errors: ENMM_WRONG_STATE for bytes that are damaged, or of another case or version; ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_state_deserialize(struct enmm_model *model,
+                                   const uint8_t *bytes,
+                                   size_t size,
+                                   struct enmm_state **out);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* ENMM_H */

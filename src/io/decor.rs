@@ -1,0 +1,41 @@
+//! What a picture of a model shows beside its blocks.
+
+use crate::geometry::{NONE, Point};
+use crate::model::Simulation;
+use crate::model::case::Port;
+
+use super::picture::ModelDecor;
+
+/// Title, stars, supports, monitors, ports, joints and counts of a model.
+pub fn model_decor(simulation: &Simulation) -> ModelDecor {
+    let (slope, case) = (simulation.slope(), simulation.case());
+    let covers = &slope.covers;
+    let supports = slope.supports.iter().map(|support| {
+        let place = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
+        support.covers.iter().zip(support.weights).map(place).sum()
+    });
+    let mut fixed: Vec<Point> = supports.collect();
+    fixed.dedup();
+    let joints = covers.outlines.pieces.iter().filter(|piece| piece.trace != NONE && piece.element < piece.opposite);
+    let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
+    let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
+    ModelDecor {
+        title: case.title.clone(),
+        stars: covers.covers_by_star().into_iter().map(|(star, count)| (covers.mesh.node(star), count)).collect(),
+        fixed,
+        monitors: monitors.chain(ports).collect(),
+        counts: vec![
+            format!("{} blocks", covers.block_count()),
+            format!("{} elements", covers.element_count()),
+            format!("{} physical covers", covers.cover_count()),
+            format!("mesh size {} m", covers.mesh.size),
+        ],
+        trace_segments: joints.map(|piece| ([piece.a, piece.b], slope.trace_law[piece.trace as usize])).collect(),
+    }
+}
+
+/// Where a port is marked: at its point or half way along its segment.
+fn place_of(port: &Port) -> Option<Point> {
+    let middle = |[a, b]: [[f64; 2]; 2]| Point::from([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+    port.block.map(Point::from).or_else(|| port.boundary.or(port.joint).map(middle))
+}
