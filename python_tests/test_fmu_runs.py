@@ -110,7 +110,8 @@ def test_c4_base_pulse_slips_by_newmark(enmm, tmp_path, version, begin):
     assert done.returncode == 0, done.stderr
     # A jump is two rows of the same time; FMPy takes the value after it.
     a = -0.5 * G
-    rows = [(0.0, 0.0), (begin, 0.0), (begin, a), (begin + 0.5, a), (begin + 0.5, 0.0), (begin + 1.5, 0.0)]
+    rows = [(begin, a), (begin + 0.5, a), (begin + 0.5, 0.0), (begin + 1.5, 0.0)]
+    rows = rows if begin == 0.0 else [(0.0, 0.0), (begin, 0.0), *rows]
     pulse = numpy.array(rows, dtype=[("time", float), ("base_acceleration_x", float)])
     names = ["base_acceleration_x", "block.displacement_x", "block.velocity_x"]
     result = simulate_fmu(str(path), input=pulse, output=names, output_interval=H, stop_time=begin + 1.5)
@@ -344,6 +345,13 @@ def test_interpolated_inputs_ramp_over_the_step(incline_fmu, opened):
     """A force that is reached linearly does half the impulse of one that holds."""
     hold, linear = (sped(opened(incline_fmu), {"interpolate_inputs": flag}) for flag in (False, True))
     assert hold - linear == pytest.approx(0.05, abs=6e-4)
+
+
+def test_start_inputs_do_not_ramp(incline_fmu, opened):
+    """What was set before initialization ends holds from the first instant on, with interpolation too."""
+    start = {"gravity_y": 0.0}
+    hold, linear = (sped(opened(incline_fmu), start | {"interpolate_inputs": flag}) for flag in (False, True))
+    assert hold == pytest.approx(0.1, abs=2e-4) and linear == pytest.approx(0.05, abs=6e-4)
 
 
 def test_port_and_array_forces_add(fmus, opened):
