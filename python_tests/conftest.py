@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from fmu_support import Fmu, Instance
 
 
 def from_environment(name: str) -> Path:
@@ -43,6 +44,48 @@ def enmm():
         return subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
 
     return run
+
+
+FMUS = [f"{case}_fmi{version}.fmu" for case in ("block_on_incline", "coupled_slope") for version in (2, 3)]
+
+
+@pytest.fixture(scope="session")
+def fmus(tmp_path_factory) -> dict[str, Fmu]:
+    """The four FMUs by file name, unpacked."""
+    packed, folder = from_environment("ENMM_FMUS"), tmp_path_factory.mktemp("fmus")
+    return {name: Fmu.unpack(packed / name, folder / name.removesuffix(".fmu")) for name in FMUS}
+
+
+@pytest.fixture(params=FMUS, ids=lambda name: name.removesuffix(".fmu"))
+def fmu(request, fmus) -> Fmu:
+    """Each FMU in turn."""
+    return fmus[request.param]
+
+
+@pytest.fixture(params=[2, 3], ids=["fmi2", "fmi3"])
+def incline_fmu(request, fmus) -> Fmu:
+    """The block on an incline in both versions."""
+    return fmus[f"block_on_incline_fmi{request.param}.fmu"]
+
+
+@pytest.fixture(params=[2, 3], ids=["fmi2", "fmi3"])
+def slope_fmu(request, fmus) -> Fmu:
+    """The coupled slope in both versions."""
+    return fmus[f"coupled_slope_fmi{request.param}.fmu"]
+
+
+@pytest.fixture
+def opened():
+    """Makes instances that end with the test."""
+    instances = []
+
+    def make(fmu: Fmu, **options) -> Instance:
+        instances.append(Instance(fmu, **options))
+        return instances[-1]
+
+    yield make
+    for instance in instances:
+        instance.free()
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,8 @@ use crate::house::{self, House};
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
 const REQUIREMENTS: &str = "python_tests/requirements.txt";
+/// Cases that the Python tests have as FMUs of both versions.
+const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 /// Folder of the package `enmm`.
 const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
@@ -25,13 +27,27 @@ pub fn test(house: &House) -> Result<Counts, String> {
     house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = command(house)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
-    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm());
+    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm()).env("ENMM_FMUS", pack(house)?);
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
         return Err("pytest failed without a failed test".to_owned());
     }
     Ok(counts)
+}
+
+/// Packs the FMUs of the tests; returns their folder.
+fn pack(house: &House) -> Result<PathBuf, String> {
+    let folder = house.target.join("fmus");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for case in FMUS {
+        for version in ["2", "3"] {
+            let mut enmm = house.command(house.enmm());
+            enmm.arg("fmu").arg(format!("examples/cases/{case}.toml")).args(["--fmi", version, "-o"]);
+            house::run(enmm.arg(folder.join(format!("{case}_fmi{version}.fmu"))))?;
+        }
+    }
+    Ok(folder)
 }
 
 /// The C library as `cargo build --release` leaves it.

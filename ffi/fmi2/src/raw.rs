@@ -3,7 +3,7 @@
 use std::ffi::{CStr, CString, c_char};
 
 /// Reason of a call that lacks an argument.
-pub const MISSING: &str = "a pointer is NULL or misaligned; give one for every array that is not empty";
+pub const MISSING: &str = "a pointer is NULL or misaligned, or a count too large; give an array for every count but 0";
 
 /// The array of `n` values at a pointer; empty for `n` = 0, whatever the pointer is.
 ///
@@ -12,7 +12,7 @@ pub const MISSING: &str = "a pointer is NULL or misaligned; give one for every a
 pub unsafe fn slice<'a, T>(pointer: *const T, n: usize) -> Option<&'a [T]> {
     match n {
         0 => Some(&[]),
-        _ if pointer.is_null() || !pointer.is_aligned() => None,
+        _ if pointer.is_null() || !pointer.is_aligned() || !fits::<T>(n) => None,
         // SAFETY: by the contract of this function.
         _ => Some(unsafe { std::slice::from_raw_parts(pointer, n) }),
     }
@@ -25,10 +25,15 @@ pub unsafe fn slice<'a, T>(pointer: *const T, n: usize) -> Option<&'a [T]> {
 pub unsafe fn slice_mut<'a, T>(pointer: *mut T, n: usize) -> Option<&'a mut [T]> {
     match n {
         0 => Some(&mut []),
-        _ if pointer.is_null() || !pointer.is_aligned() => None,
+        _ if pointer.is_null() || !pointer.is_aligned() || !fits::<T>(n) => None,
         // SAFETY: by the contract of this function.
         _ => Some(unsafe { std::slice::from_raw_parts_mut(pointer, n) }),
     }
+}
+
+/// Whether so many values can lie in memory at all: a slice must not be longer.
+fn fits<T>(n: usize) -> bool {
+    n.checked_mul(size_of::<T>()).is_some_and(|bytes| isize::try_from(bytes).is_ok())
 }
 
 /// Writes a value to a pointer; false when it is missing.

@@ -37,6 +37,10 @@ unsafe fn get_whole(
         // SAFETY: by the contract of this function.
         match unsafe { (raw::slice(references, n), raw::slice_mut(values, n)) } {
             (Some(references), Some(values)) => {
+                let status = instance.expects(Call::Get, references, kind, n);
+                if status != Status::Ok {
+                    return status;
+                }
                 let mut numbers = vec![0.0; n];
                 let status = instance.get(references, kind, &mut numbers);
                 if status == Status::Ok {

@@ -54,6 +54,10 @@ unsafe fn get_as<T>(
         // SAFETY: by the contract of this function.
         match unsafe { (raw::slice(references, n), raw::slice_mut(values, n_values)) } {
             (Some(references), Some(values)) => {
+                let status = instance.expects(Call::Get, references, kind, n_values);
+                if status != Status::Ok {
+                    return status;
+                }
                 let mut numbers = vec![0.0; n_values];
                 let status = instance.get(references, kind, &mut numbers);
                 if status == Status::Ok {
@@ -80,6 +84,10 @@ unsafe fn set_as<T: Copy>(
         // SAFETY: by the contract of this function.
         match unsafe { (raw::slice(references, n), raw::slice(values, n_values)) } {
             (Some(references), Some(values)) => {
+                let status = instance.expects(Call::Set, references, kind, n_values);
+                if status != Status::Ok {
+                    return status;
+                }
                 let numbers: Vec<f64> = values.iter().map(|&value| number(value)).collect();
                 instance.set(references, kind, &numbers)
             }
