@@ -111,7 +111,8 @@ with enmm.Model.from_file(sys.argv[2]) as model, open(sys.argv[3], "rb") as file
 """
 
 
-def test_a_state_goes_to_another_process(slope, case, tmp_path):
+def test_a_state_goes_to_another_process(package, slope, case, tmp_path):
+    slope.interpolation = package.Interpolation.LINEAR
     act(slope, 0, 5)
     file = tmp_path / "state.bin"
     file.write_bytes(slope.serialize())

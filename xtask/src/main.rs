@@ -14,6 +14,7 @@ usage: cargo xtask TASK
 
   test [--quick]   format, lints, build, tests, documentation, header, schema, Python;
                    --quick leaves out the last four
+  python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   schema           writes docs/case.schema.json
   header           writes include/enmm.h
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
     let done = house::House::find().and_then(|house| match words[..] {
         ["test"] => Ok(tasks::test(&house, tasks::Extent::Full)),
         ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
+        ["python"] => Ok(tasks::python(&house)),
         ["long"] => Ok(tasks::long(&house)),
         ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),

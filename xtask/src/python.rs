@@ -63,7 +63,8 @@ fn library(house: &House) -> PathBuf {
 pub fn command(house: &House) -> Result<Command, String> {
     let mut python = house.command(environment(house)?);
     python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(house));
-    python.env("PYTHONPATH", house.root.join(PACKAGES));
+    // Cargo names folders with our library here, which would hide that a search does not find it.
+    python.env("PYTHONPATH", house.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
     Ok(python)
 }
 

@@ -50,6 +50,16 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
     steps.close()
 }
 
+/// Builds and runs the Python tests alone.
+pub fn python(house: &House) -> ExitCode {
+    let mut steps = Steps::default();
+    let build = ["build", "--release", "--workspace", "--examples"];
+    if steps.take("build", || house::run(&mut house.cargo(&build)).map(|()| Counts::default())) {
+        steps.take("python", || python::test(house));
+    }
+    steps.close()
+}
+
 /// Runs the long campaigns; it fails when one failed, or there is none.
 pub fn long(house: &House) -> ExitCode {
     let mut steps = Steps::default();
