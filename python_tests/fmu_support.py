@@ -7,7 +7,20 @@ import shutil
 import struct
 import zipfile
 from contextlib import contextmanager
-from ctypes import POINTER, byref, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint8, c_uint32, c_void_p
+from ctypes import (
+    POINTER,
+    byref,
+    c_bool,
+    c_char,
+    c_char_p,
+    c_double,
+    c_int,
+    c_int32,
+    c_size_t,
+    c_uint8,
+    c_uint32,
+    c_void_p,
+)
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,8 +30,14 @@ OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 CO_SIMULATION = 1
 
 ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
-TYPES = {2: {"Real": "Real", "Integer": "Integer", "Boolean": "Boolean"}, 3: {"Float64": "Float64", "Int32": "Int32", "Boolean": "Boolean"}}
-C_TYPES = {2: {"Real": c_double, "Integer": c_int, "Boolean": c_int}, 3: {"Float64": c_double, "Int32": c_int32, "Boolean": c_bool}}
+TYPES = {
+    2: {"Real": "Real", "Integer": "Integer", "Boolean": "Boolean"},
+    3: {"Float64": "Float64", "Int32": "Int32", "Boolean": "Boolean"},
+}
+C_TYPES = {
+    2: {"Real": c_double, "Integer": c_int, "Boolean": c_int},
+    3: {"Float64": c_double, "Int32": c_int32, "Boolean": c_bool},
+}
 
 LOGGER_2 = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)
 LOGGER_3 = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)

@@ -21,8 +21,8 @@ TOLERANCE = 1.0  # N/m, of some 1e6
 class Wall:
     """A mass behind a pad, held by an anchor: m·w'' = k_pad·(u − w) − k·w − c·w' − loss, from rest.
 
-    The force on the toe is the preload less that of the pad. The displacement u of the toe is linear over a step, so that
-    the step is exact.
+    The force on the toe is the preload less that of the pad. The displacement u of the toe is linear over a step, so
+    that the step is exact.
     """
 
     pad: float = 2e9
@@ -169,7 +169,7 @@ def test_wall_alone_swings_as_theory_says():
     wall = replace(Wall(), damping=0.0)
     stiffness = wall.pad + wall.anchor
     half = numpy.pi * (wall.mass / stiffness) ** 0.5
-    for k in range(7):
+    for _ in range(7):
         wall = wall.step(numpy.zeros(2), half / 7)
     assert wall.state[0] == pytest.approx(-2.0 * LOSS * PRELOAD / stiffness, rel=1e-9)
     assert wall.state[1] == pytest.approx(0.0, abs=1e-9)

@@ -1,5 +1,6 @@
 """What the FMUs say of themselves: valid, consistent, and true to what their libraries do."""
 
+import ctypes
 import re
 import subprocess
 import xml.etree.ElementTree
@@ -63,7 +64,11 @@ def test_capabilities(fmu):
     for name in ("needsExecutionTool", "canBeInstantiatedOnlyOncePerProcess"):
         assert co[name] == "false"
     if fmu.version == 3:
-        for name in ("providesIntermediateUpdate", "mightReturnEarlyFromDoStep", "canReturnEarlyAfterIntermediateUpdate"):
+        for name in (
+            "providesIntermediateUpdate",
+            "mightReturnEarlyFromDoStep",
+            "canReturnEarlyAfterIntermediateUpdate",
+        ):
             assert co[name] == "true"
         assert co["hasEventMode"] == "false"
 
@@ -101,7 +106,14 @@ def test_every_variable_is_described_with_a_unit_that_is_defined(fmu):
 
 @pytest.mark.parametrize(
     ("unit", "exponents"),
-    [("m", (0, 1, 0)), ("m/s", (0, 1, -1)), ("N/m", (1, 0, -2)), ("Pa", (1, -1, -2)), ("J/m", (1, 1, -2)), ("s", (0, 0, 1))],
+    [
+        ("m", (0, 1, 0)),
+        ("m/s", (0, 1, -1)),
+        ("N/m", (1, 0, -2)),
+        ("Pa", (1, -1, -2)),
+        ("J/m", (1, 1, -2)),
+        ("s", (0, 0, 1)),
+    ],
 )
 def test_units_have_their_dimensions(fmu, unit, exponents):
     (found,) = [u for u in fmu.description.unitDefinitions if u.name == unit]
@@ -135,7 +147,9 @@ def test_structure_lists_all_outputs_in_order(fmu):
         found, initial = listed("Outputs"), listed("InitialUnknowns")
     else:
         by_reference = {v.valueReference: v.name for v in fmu.description.modelVariables}
-        listed = lambda name: [by_reference[int(e.get("valueReference"))] for e in root.findall(f"ModelStructure/{name}")]
+        listed = lambda name: [
+            by_reference[int(e.get("valueReference"))] for e in root.findall(f"ModelStructure/{name}")
+        ]
         found, initial = listed("Output"), listed("InitialUnknown")
     assert found == [v.name for v in outputs]
     assert initial == [v.name for v in outputs if v.initial in ("calculated", "approx")]
@@ -279,7 +293,9 @@ def test_arrays_cover_all_blocks(fmus):
             continue
         blocks = {"block_on_incline": 2, "coupled_slope": 13}[fmu.case]
         assert {size(v) for v in arrays} == {blocks}
-        assert {"block_force_x", "block_moment", "block_displacement_x", "block_contact_count"} <= {v.name for v in arrays}
+        assert {"block_force_x", "block_moment", "block_displacement_x", "block_contact_count"} <= {
+            v.name for v in arrays
+        }
 
 
 def test_terminals_hold_all_variables_of_their_port(fmu):
@@ -341,7 +357,15 @@ def test_exactly_the_functions_of_the_standard_are_exported(fmu):
 def test_library_needs_only_the_system(fmu):
     output = subprocess.run(["readelf", "-d", str(fmu.library)], capture_output=True, text=True, check=True).stdout
     needed = set(re.findall(r"\(NEEDED\).*\[(.+)\]", output))
-    allowed = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "libdl.so.2", "libpthread.so.0", "librt.so.1", "ld-linux-x86-64.so.2"}
+    allowed = {
+        "libc.so.6",
+        "libm.so.6",
+        "libgcc_s.so.1",
+        "libdl.so.2",
+        "libpthread.so.0",
+        "librt.so.1",
+        "ld-linux-x86-64.so.2",
+    }
     assert needed <= allowed
     assert "RUNPATH" not in output and "RPATH" not in output
 
@@ -349,8 +373,6 @@ def test_library_needs_only_the_system(fmu):
 def test_version_and_platform(fmu):
     library = fmu.load()
     version = getattr(library, f"fmi{fmu.version}GetVersion")
-    import ctypes
-
     version.restype = ctypes.c_char_p
     assert version().decode() == f"{fmu.version}.0"
     if fmu.version == 2:

@@ -6,6 +6,7 @@ from ctypes import byref, c_bool, c_double, c_size_t, c_uint32, c_void_p
 import pytest
 from fmpy import simulate_fmu
 from fmpy.fmi3 import FMU3Slave
+import fmu_support
 from fmu_support import ERROR, OK, bits, size
 
 H = 0.01
@@ -213,7 +214,9 @@ def test_arrays_and_scalars_in_one_call(three, opened):
     count = sum(size(three.variables[name]) for name in names)
     status, values = instance.get_raw("Float64", references, count)
     assert status == OK and values == instance.get(*names)
-    status, values = instance.get_raw("Int32", [three.variables["block_contact_count"].valueReference], size(three.variables["block_contact_count"]))
+    status, values = instance.get_raw(
+        "Int32", [three.variables["block_contact_count"].valueReference], size(three.variables["block_contact_count"])
+    )
     assert status == OK and sum(values) > 0
 
 
@@ -292,8 +295,6 @@ def test_step_needs_its_four_pointers(three, opened):
 
 def test_required_intermediate_variables(three):
     """Known references are taken, unknown ones refused."""
-    import fmu_support
-
     heard = []
     logger = fmu_support.LOGGER_3(lambda _environment, status, _category, text: heard.append((status, text)))
     with fmu_support.Instance(three):  # Sets the types of the function.

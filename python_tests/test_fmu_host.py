@@ -22,7 +22,9 @@ def test_odd_folders(fmu, tmp_path, folder):
         instance.initialize().run(1, H)
 
 
-@pytest.mark.parametrize("form", ["file:{path}", "file://{path}", "file://localhost{path}", "file://{path}/", "FILE://{path}"])
+@pytest.mark.parametrize(
+    "form", ["file:{path}", "file://{path}", "file://localhost{path}", "file://{path}/", "FILE://{path}"]
+)
 def test_forms_of_the_resource_location(fmus, form):
     fmu = fmus["block_on_incline_fmi2.fmu"]
     path = fmu.resources.as_uri().removeprefix("file://")

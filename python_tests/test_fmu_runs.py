@@ -49,7 +49,9 @@ def test_c1_block_slides_by_the_closed_form(incline_fmu):
     assert way(result[names[0]][-1], result[names[1]][-1]) == pytest.approx(0.906407, abs=1e-4)
 
 
-@pytest.mark.parametrize(("friction_deg", "exact"), [(0, 2.452500), (10, 1.703489), (15, 1.314291), (25, 0.471693), (35, 0.0)])
+@pytest.mark.parametrize(
+    ("friction_deg", "exact"), [(0, 2.452500), (10, 1.703489), (15, 1.314291), (25, 0.471693), (35, 0.0)]
+)
 def test_c1_friction_is_a_parameter(incline_fmu, friction_deg, exact):
     names = ["block.displacement_x", "block.displacement_y"]
     result = simulate_fmu(
@@ -382,17 +384,26 @@ def test_derivatives_are_the_velocities(fmu, opened):
             told += 1
     assert told >= 5
     state = instance.save()
-    for name, order in ((fmu.block_outputs()[0], 2), (fmu.block_outputs()[0], 0), ("kinetic_energy", 1), ("gravity_x", 1)):
+    for name, order in (
+        (fmu.block_outputs()[0], 2),
+        (fmu.block_outputs()[0], 0),
+        ("kinetic_energy", 1),
+        ("gravity_x", 1),
+    ):
         assert instance.derivative(name, order)[0] == ERROR
         instance.check(instance.restore(state))
 
 
 def test_energies_close(incline_fmu, opened):
     instance = run_of(opened(incline_fmu).initialize(), H, 1.0)
-    kinetic, heat, potential, residual = instance.get("kinetic_energy", "friction_heat", "potential_energy", "energy_residual")
+    kinetic, heat, potential, residual = instance.get(
+        "kinetic_energy", "friction_heat", "potential_energy", "energy_residual"
+    )
     assert abs(residual) < 2e-3 * max(kinetic, heat, abs(potential))
     assert kinetic == pytest.approx(0.5 * 2650.0 * (2.0 * slide(20.0)) ** 2, rel=1e-3)
-    assert heat == pytest.approx(2650.0 * G * math.cos(math.radians(30)) * math.tan(math.radians(20)) * slide(20.0), rel=2e-3)
+    assert heat == pytest.approx(
+        2650.0 * G * math.cos(math.radians(30)) * math.tan(math.radians(20)) * slide(20.0), rel=2e-3
+    )
 
 
 def test_events_are_counted(incline_fmu, opened):

@@ -1,5 +1,6 @@
 """Saved states of the FMUs: rollback, serialization, damage, foreign states, reset; always to the last bit."""
 
+import ctypes
 import json
 import subprocess
 import sys
@@ -8,7 +9,7 @@ from pathlib import Path
 import pytest
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
-from fmu_support import ERROR, OK, Instance, bits, c_void_p
+from fmu_support import ERROR, OK, bits, c_void_p
 
 H = 0.01
 PUSH = {"block_on_incline": {"block.force_x": 3e3}, "coupled_slope": {"toe.force_x": 0.7e6, "water_level": 7.0}}
@@ -61,8 +62,6 @@ def test_saving_over_a_state_replaces_it(fmu, opened):
     number = state.value
     here = instance.run(2, H).everything()
     name = "GetFMUstate" if fmu.version == 2 else "GetFMUState"
-    import ctypes
-
     instance.check(instance.call(name, ctypes.byref(state)))
     assert state.value == number
     instance.run(1, H, first=2)
@@ -186,8 +185,6 @@ def test_states_of_other_instances_freed_ones_and_none_are_refused(fmu, opened):
 
 
 def test_wrong_sizes_are_refused(fmu, opened):
-    import ctypes
-
     instance = opened(fmu).initialize()
     state = instance.save()
     data = instance.serialize(state)
