@@ -103,7 +103,7 @@ damping = 0.1
 """
 
 
-@pytest.mark.parametrize("begin", [0.1])
+@pytest.mark.parametrize("begin", [0.0, 0.1])
 @pytest.mark.parametrize("version", [2, 3])
 def test_c4_base_pulse_slips_by_newmark(enmm, tmp_path, version, begin):
     (tmp_path / "base.toml").write_text(BLOCK_ON_BASE)

@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::Vector;
 use crate::io::{LoadedCase, RestPlan};
 use crate::model::case::{Case, StageKind};
 use crate::model::{BlockState, Simulation};
@@ -163,8 +164,11 @@ impl Cosimulation {
         }
         self.simulation.drive().arrive();
         let before = self.save();
+        let shaking = self.calm();
         match self.run_initial_stages() {
             Ok(()) => {
+                let drive = self.simulation.drive();
+                (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
                 self.standing.origin = self.simulation.state().step;
                 self.standing.started = true;
                 self.standing.changed = false;
@@ -175,6 +179,17 @@ impl Cosimulation {
                 Err(error)
             }
         }
+    }
+
+    /// Takes the acceleration of the base, which is no part of the initial equilibrium, out of the inputs; returns it.
+    fn calm(&mut self) -> Vector {
+        let has_rest = initial_stages(self.case()) > 0;
+        let drive = self.simulation.drive();
+        let shaking = drive.to.base_acceleration;
+        if has_rest {
+            (drive.from.base_acceleration, drive.to.base_acceleration) = (Vector::zeros(), Vector::zeros());
+        }
+        shaking
     }
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
