@@ -587,3 +587,47 @@ def test_references_are_read_as_unsigned(running):
     name = "GetReal" if instance.version == 2 else "GetFloat64"
     assert instance.call(name, ctypes.byref(time_like), c_size_t(1), values, c_size_t(1)) == ERROR
     assert str(2**32 - 1) in instance.log[-1][2]
+
+
+ABSURD = {"block_on_incline": {"block.force_x": 1e15}, "coupled_slope": {"toe.moment": 1e15}}
+
+
+def test_a_step_that_fails_is_discarded_and_told(running):
+    """A force that no contact can bear: the model stands where it stood, and a sound input lets it go on."""
+    instance, state, expected = running
+    instance.check(instance.set(ABSURD[instance.fmu.case]))
+    before = instance.everything()
+    with instance.complaint("discarded"):
+        assert instance.step(0.02, H) == DISCARD
+    assert instance.log[-1][:2] == (DISCARD, "logStatusDiscard")
+    assert instance.everything() == before
+    if instance.version == 3:
+        assert instance.last_time == 0.02 and not instance.early
+    else:
+        time, status = c_double(), c_int()
+        assert instance.call("GetRealStatus", c_int(2), ctypes.byref(time)) == OK and time.value == 0.02
+        assert instance.call("GetStatus", c_int(0), ctypes.byref(status)) == OK and status.value == DISCARD
+    recovers(instance, state, expected)
+
+
+def test_an_equilibrium_that_does_not_exist_is_an_error(fmu, opened):
+    instance = opened(fmu)
+    instance.check(instance.set_up())
+    state = instance.save()
+    instance.check(instance.set(ABSURD[fmu.case]))
+    with instance.complaint("equilibrium"):
+        assert instance.exit_initialization() == ERROR
+    instance.check(instance.restore(state))
+    instance.check(instance.exit_initialization())
+    instance.run(1, H)
+    instance.check(instance.reset())
+    instance.initialize().run(1, H)
+
+
+@pytest.mark.parametrize("extreme", [{"gravity_y": 1e4}, {"base_acceleration_x": -1e4}, {"strength_factor": 0.0}])
+def test_extreme_inputs_give_finite_outputs(running, extreme):
+    instance, state, expected = running
+    instance.check(instance.set(extreme))
+    assert instance.step(0.02, H) in (OK, DISCARD)
+    assert all(abs(value) < INF for value in instance.get(*instance.fmu.outputs()))
+    recovers(instance, state, expected)

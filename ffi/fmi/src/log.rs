@@ -73,7 +73,7 @@ impl Message {
     }
 }
 
-/// Which messages pass. Errors always do.
+/// Which messages pass. Those of failed calls always do, discarded steps included.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Filter {
     on: [bool; LOG_CATEGORIES.len()],
@@ -100,7 +100,7 @@ impl Filter {
 
     /// Whether a message of this category passes.
     pub fn passes(&self, category: Category) -> bool {
-        matches!(category, Category::Error | Category::Fatal)
+        matches!(category, Category::Discard | Category::Error | Category::Fatal)
             || self.on[category as usize]
             || self.on[Category::All as usize]
     }
@@ -111,12 +111,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_always_pass_and_only_declared_categories_are_known() {
+    fn failures_always_pass_and_only_declared_categories_are_known() {
         let off = Filter::new(false);
-        assert!(off.passes(Category::Error) && off.passes(Category::Fatal) && !off.passes(Category::Discard));
+        assert!(off.passes(Category::Error) && off.passes(Category::Fatal) && off.passes(Category::Discard));
+        assert!(!off.passes(Category::Warning) && !off.passes(Category::Events) && !off.passes(Category::All));
         let events = Filter::of(true, &["logEvents"]).unwrap();
         assert!(events.passes(Category::Events) && !events.passes(Category::Warning));
-        assert!(Filter::of(true, &["logAll"]).unwrap().passes(Category::Discard));
+        assert!(Filter::of(true, &["logAll"]).unwrap().passes(Category::Warning));
         assert!(Filter::of(true, &[]).unwrap().passes(Category::Warning));
         assert!(!Filter::of(false, &["logEvents"]).unwrap().passes(Category::Events));
         assert_eq!(Filter::of(true, &["logEvents", "logEvent"]).unwrap_err(), "logEvent");

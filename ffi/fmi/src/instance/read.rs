@@ -51,8 +51,8 @@ impl Instance {
         self.end(outcome)
     }
 
-    /// Whether a call with these variables and so many values is legal now, before an entry point makes room for them; if
-    /// not, the call has failed.
+    /// Whether a call with these variables and so many values is legal now, before an entry point makes room for them;
+    /// if not, the call has failed.
     pub fn expects(&mut self, call: Call, references: &[u32], kind: Type, given: usize) -> Status {
         let outcome = self.allow(call).and_then(|()| self.check_count(references, kind, given));
         self.end(outcome)
