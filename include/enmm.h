@@ -829,7 +829,7 @@ enmm_status enmm_set_block_forces(struct enmm_model *model,
 
 /**
  * Sets the acceleration of the base (m/s2, x to the right, y upwards). Displacements and velocities are relative to
- * the base; all rock feels the opposite acceleration.
+ * the base; all rock feels the opposite acceleration. It is no part of the initial equilibrium and begins at time 0.
  *
  * Acts as enmm_set_gravity tells.
  *

@@ -32,7 +32,7 @@ impl Cosimulation {
     }
 
     /// Sets the acceleration of the base (m/s²). Displacements and velocities are relative to the base, and all rock
-    /// feels the opposite acceleration.
+    /// feels the opposite acceleration. It is no part of the initial equilibrium and begins at time 0.
     ///
     /// # Errors
     /// A value that is not finite or too large.

@@ -390,7 +390,7 @@ impl Rows {
         let what = "Acceleration of gravity, y up: -9.81 on earth";
         self.input("gravity_y", what, "m/s2", case.gravity.y, Quantity::Gravity(Axis::Y));
         for (axis, letter) in AXES {
-            let what = format!("Acceleration of the base, {letter}; rock feels the opposite");
+            let what = format!("Acceleration of the base, {letter}; rock feels the opposite; begins at time 0");
             let quantity = Quantity::BaseAcceleration(axis);
             self.input(&format!("base_acceleration_{letter}"), &what, "m/s2", 0.0, quantity);
         }

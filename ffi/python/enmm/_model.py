@@ -220,6 +220,7 @@ class Model:
         """Sets the acceleration of the base (m/s2).
 
         Displacements and velocities are relative to the base; all rock feels the opposite acceleration.
+        It is no part of the initial equilibrium and begins at time 0.
         """
         self._core.call("enmm_set_base_acceleration", number(ax), number(ay))
 

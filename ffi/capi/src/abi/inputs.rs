@@ -62,7 +62,7 @@ pub unsafe extern "C" fn enmm_set_block_forces(
 }
 
 /// Sets the acceleration of the base (m/s2, x to the right, y upwards). Displacements and velocities are relative to
-/// the base; all rock feels the opposite acceleration.
+/// the base; all rock feels the opposite acceleration. It is no part of the initial equilibrium and begins at time 0.
 ///
 /// Acts as enmm_set_gravity tells.
 ///
