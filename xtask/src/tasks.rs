@@ -130,7 +130,9 @@ fn schema(house: &House) -> Result<Vec<u8>, String> {
 /// # Errors
 /// When its program does not build or run, or the file cannot be written.
 pub fn write_header(house: &House) -> Result<(), String> {
-    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))
+    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))?;
+    println!("wrote the header of the C ABI");
+    Ok(())
 }
 
 fn compare_schema(house: &House) -> Result<(), String> {
