@@ -13,11 +13,10 @@ use crate::types::{enmm_model, enmm_state, enmm_status};
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut enmm_state) -> enmm_status {
+    // SAFETY: promised by the host. Without a model there is no state either; a NULL is told below.
+    let _ = unsafe { pointers::write_handle("out", out, 0) };
     // SAFETY: promised by the host.
-    with_model(model.addr(), |model| unsafe {
-        pointers::write_handle("out", out, 0)?;
-        pointers::write_handle("out", out, model.save()?)
-    })
+    with_model(model.addr(), |model| unsafe { pointers::write_handle("out", out, model.save()?) })
 }
 
 /// Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
@@ -69,9 +68,10 @@ pub unsafe extern "C" fn enmm_state_deserialize(
     size: usize,
     out: *mut *mut enmm_state,
 ) -> enmm_status {
+    // SAFETY: promised by the host. Without a model there is no state either; a NULL is told below.
+    let _ = unsafe { pointers::write_handle("out", out, 0) };
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe {
-        pointers::write_handle("out", out, 0)?;
         let bytes = pointers::slice("bytes", bytes, size)?;
         pointers::write_handle("out", out, model.deserialize(bytes)?)
     })

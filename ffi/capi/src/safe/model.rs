@@ -161,11 +161,8 @@ impl Model {
         let result = self.inner.start().map_err(Failure::from);
         if let Err(failure) = &result {
             self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone());
-        } else if !was_started {
-            let steps = self.inner.simulation().state().step;
-            let message = || format!("the initial equilibrium was sought in {steps} steps");
-            self.log.write(enmm_log_level::ENMM_LOG_INFO, message);
         }
+        self.log_start(was_started);
         result
     }
 
@@ -174,7 +171,9 @@ impl Model {
     /// # Errors
     /// Times that do not fit, or a numerical failure.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<enmm_step_info, Failure> {
+        let was_started = self.inner.is_started();
         let result = self.inner.do_step(t, h).map_err(Failure::from);
+        self.log_start(was_started);
         match &result {
             Ok(info) => self.log_step(info),
             Err(failure) => self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone()),
@@ -190,6 +189,25 @@ impl Model {
             halved: info.halved,
             unsettled: info.unsettled,
         })
+    }
+
+    /// Tells of the initial equilibrium when the call has sought it.
+    fn log_start(&mut self, was_started: bool) {
+        if was_started || !self.inner.is_started() {
+            return;
+        }
+        let steps = self.inner.simulation().state().step;
+        let message = || format!("the initial equilibrium was sought in {steps} steps");
+        self.log.write(enmm_log_level::ENMM_LOG_INFO, message);
+        if let Some(ratio) = self.inner.unrest() {
+            let message = || {
+                format!(
+                    "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static \
+                     stage needs a longer duration"
+                )
+            };
+            self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
+        }
     }
 
     fn log_step(&mut self, info: &StepInfo) {

@@ -56,6 +56,11 @@ static void dead_handles(const char *path)
     CHECK(enmm_state_free(state) == ENMM_DEAD_HANDLE);
     CHECK(enmm_state_restore(model, state) == ENMM_DEAD_HANDLE);
     CHECK(enmm_state_restore(model, NULL) == ENMM_NULL_ARGUMENT);
+    state = (enmm_state *)made_up;
+    CHECK(enmm_state_save(NULL, &state) == ENMM_NULL_ARGUMENT && state == NULL);
+    state = (enmm_state *)made_up;
+    CHECK(enmm_state_deserialize(old, (const uint8_t *)"abc", 3, &state) == ENMM_DEAD_HANDLE && state == NULL);
+    CHECK(enmm_state_save(model, NULL) == ENMM_NULL_ARGUMENT);
     OK(enmm_state_free(NULL));
     enmm_destroy(model);
 }
