@@ -123,7 +123,8 @@ impl Instance {
 
     fn check_whole(&self, state: &Whole) -> Result<Phase, Failure> {
         let fits = state.values.len() == self.values.all.len() && state.built.len() == self.built.len();
-        let phase = Phase::of(state.phase).filter(|&phase| fits && phase != Phase::Intermediate);
+        let phase =
+            Phase::of(state.phase).filter(|phase| fits && !matches!(phase, Phase::Intermediate | Phase::Stepping));
         phase.ok_or_else(|| "the saved state is of another FMU: use one of this".to_owned())
     }
 

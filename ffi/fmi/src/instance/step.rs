@@ -66,6 +66,7 @@ impl Instance {
         }
         let interval = self.model.begin(t - self.experiment.start, h).map_err(|error| error.to_string())?;
         self.cache.clear();
+        self.phase = Phase::Stepping;
         Ok(Step {
             interval,
             begin: self.time,
@@ -174,23 +175,22 @@ impl Instance {
     }
 
     /// Enters intermediate update mode.
-    pub fn enter_update(&mut self) -> Update {
+    pub fn enter_update(&mut self, step: &Step) -> Update {
         self.phase = Phase::Intermediate;
-        let time = self.time_of_model();
-        self.time = time;
-        Update { time, can_return_early: self.early_return }
+        if !step.done {
+            self.time = self.time_of_model();
+        }
+        Update { time: self.time, can_return_early: self.early_return && !step.done }
     }
 
     /// Leaves intermediate update mode; `wanted` is the time (s) of an early return.
     pub fn leave_update(&mut self, step: &mut Step, wanted: Option<f64>) -> Status {
-        self.phase = Phase::Step;
+        self.phase = if step.done { Phase::Step } else { Phase::Stepping };
         if std::mem::take(&mut self.spoiled) {
-            self.model.leave(step.interval.clone());
-            step.done = true;
+            if !step.done {
+                self.leave(step);
+            }
             return self.fail("an illegal call within intermediate update mode has ended the step".to_owned());
-        }
-        if step.done && !step.early {
-            self.time = step.end;
         }
         if let Some(wanted) = wanted.filter(|_| self.early_return && !step.shortened) {
             let now = self.model.time();
