@@ -208,6 +208,28 @@ fn bad_steps_are_errors_and_the_stop_time_holds() {
 }
 
 #[test]
+fn a_start_far_from_time_0_changes_no_motion() {
+    let fmu = Fmu::boxed();
+    let plain = fmu.started();
+    plain.run(0.01, 0.1);
+    for start in [1e7, -1e7, 1e9] {
+        let instance = fmu.instance();
+        assert_eq!(fmi3EnterInitializationMode(instance.pointer, false, 0.0, start, false, 0.0), OK);
+        assert_eq!(fmi3ExitInitializationMode(instance.pointer), OK);
+        // Half of the steps begin where the last one ended, half on the grid of the importer.
+        for k in 0..10 {
+            let sum = start + 0.01 * f64::from(k);
+            let t = if k % 2 == 0 { sum } else { instance.get("time")[0] };
+            assert_eq!(instance.step(t, 0.01), (OK, false, t + 0.01), "{}", instance.last_line());
+        }
+        assert_eq!(instance.get("block_y"), plain.get("block_y"), "{start}");
+        assert_eq!(instance.get("block_velocity_x"), plain.get("block_velocity_x"), "{start}");
+        assert_eq!(instance.step(start, 0.01).0, ERROR, "a time that is over");
+        assert!(instance.last_line().contains("must be the time"), "{}", instance.last_line());
+    }
+}
+
+#[test]
 fn an_event_ends_a_step_early_where_that_is_allowed() {
     let fmu = Fmu::boxed();
     let lift = |early_return| {
