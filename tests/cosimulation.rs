@@ -196,24 +196,10 @@ fn a_block_that_is_pulled_off_detaches() {
 
 #[test]
 fn a_linear_input_arrives_at_the_end_of_the_step_and_a_held_one_jumps() {
-    // A free block of 1000 kg/m under a force: linear from 500 to 1000 N/m gives v = 0.75·h, held v = h.
-    let text = r#"
-title = "Free block"
-domain.outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
-mesh.size = 0.5
-gravity.y = 0.0
-rock.r = { density = 1000, young = 1e8, poisson = 0.2 }
-solver.communication_step = 0.01
-[[stage]]
-name = "fly"
-kind = "dynamic"
-duration = 1.0
-damping = 0.0
-"#;
-    let loaded = parse_case(text, "free.toml", Path::new("")).unwrap();
+    // Linear from 500 to 1000 N/m on 1000 kg/m gives v = 0.75·h, held v = h.
     let h = 0.5;
     for (interpolation, share) in [(Interpolation::Hold, 1.0), (Interpolation::Linear, 0.75)] {
-        let mut model = Cosimulation::new(&loaded).unwrap();
+        let mut model = free_block();
         model.set_interpolation(interpolation);
         model.set_block_force(0, Vector::new(-700.0, 0.0), 0.0).unwrap();
         model.set_block_force(0, Vector::new(500.0, 0.0), 0.0).unwrap();
@@ -273,21 +259,185 @@ fn parameters_change_what_counts_at_time_zero() {
 
 #[test]
 fn threads_do_not_change_the_bits() {
-    let mut serial = model("fractured_slope");
-    let mut parallel = model("fractured_slope");
+    let text = std::fs::read_to_string("examples/cases/fractured_slope.toml").unwrap();
+    let settle = text.find("[[stage]]").unwrap()..text.find("[[stage]]\nname = \"failure\"").unwrap();
+    let loaded = parse_case(&text.replace(&text[settle], ""), "failing.toml", Path::new("")).unwrap();
+    let mut serial = Cosimulation::new(&loaded).unwrap();
+    let mut parallel = Cosimulation::new(&loaded).unwrap();
     assert!(parallel.set_threads(0).is_err() && parallel.set_threads(100_000).is_err());
     parallel.set_threads(3).unwrap();
-    for model in [&mut serial, &mut parallel] {
+    let h = 20.0 * serial.internal_step();
+    serial.do_step(0.0, h).unwrap();
+    parallel.do_step(0.0, h).unwrap();
+    assert_eq!(states(&serial), states(&parallel));
+}
+
+/// A block of 1000 kg/m in empty space.
+fn free_block() -> Cosimulation {
+    let text = r#"
+title = "Free block"
+domain.outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
+mesh.size = 0.5
+gravity.y = 0.0
+rock.r = { density = 1000, young = 1e8, poisson = 0.2 }
+solver.communication_step = 0.01
+[[stage]]
+name = "fly"
+kind = "dynamic"
+duration = 1.0
+damping = 0.0
+"#;
+    Cosimulation::new(&parse_case(text, "free.toml", Path::new("")).unwrap()).unwrap()
+}
+
+fn push(model: &mut Cosimulation, force: f64) {
+    model.set_block_force(0, Vector::new(force, 0.0), 0.0).unwrap();
+}
+
+fn speed(model: &Cosimulation) -> f64 {
+    states(model)[0].velocity.x
+}
+
+#[test]
+fn a_linear_input_goes_on_after_an_early_end_whatever_else_is_set() {
+    // From 0 to 1000 N/m over 0.4 s, left at 0.1 s: v = ∫F/m = ½·0.1·0.25; then on to 1000 over 0.3 s: + 0.3·0.625.
+    for left_by_shortening in [false, true] {
+        let mut model = free_block();
         model.set_interpolation(Interpolation::Linear);
-        let state = model.save();
-        model.restore(&state).unwrap();
+        model.start().unwrap();
+        push(&mut model, 1000.0);
+        let mut interval = model.begin(0.0, 0.4).unwrap();
+        if left_by_shortening {
+            model.shorten(&mut interval, 0.1);
+            while model.advance(&mut interval).unwrap() {}
+        } else {
+            while model.time() < 0.1 - 1e-9 {
+                assert!(model.advance(&mut interval).unwrap());
+            }
+            model.leave(interval);
+        }
+        assert!((model.time() - 0.1).abs() < 1e-9);
+        assert!((speed(&model) - 0.0125).abs() < 2e-4, "{}", speed(&model));
+        model.set_strength_factor(0.5).unwrap();
+        model.do_step(0.1, 0.3).unwrap();
+        assert!((speed(&model) - 0.0125 - 0.1875).abs() < 4e-4, "{}", speed(&model));
     }
-    let steps = |model: &mut Cosimulation| {
-        let mut interval = model.simulation().clone();
-        (0..30).for_each(|_| {
-            interval.advance(false).unwrap();
-        });
-        interval.block_states()
+}
+
+#[test]
+fn an_interval_that_is_over_moves_nothing() {
+    let mut model = model("block_on_incline");
+    model.do_step(0.0, 0.0105).unwrap();
+    let (before, saved) = (states(&model), model.save());
+    let interval = model.begin(0.0105, 0.01).unwrap();
+    let info = model.leave(interval);
+    assert_eq!((info.steps, info.time, model.time()), (0, 0.0105, 0.0105), "nothing was done, nothing is lost");
+    assert_eq!(states(&model), before);
+
+    let mut first = model.begin(0.0105, 0.01).unwrap();
+    model.advance(&mut first).unwrap();
+    model.restore(&saved).unwrap();
+    assert!(matches!(model.advance(&mut first), Err(CosimulationError::Stale)));
+    let mut second = model.begin(0.0105, 0.01).unwrap();
+    assert!(matches!(model.advance(&mut first), Err(CosimulationError::Stale)));
+    while model.advance(&mut second).unwrap() {}
+    assert!(matches!(model.advance(&mut second), Err(CosimulationError::Stale)));
+    assert_eq!(model.time(), 0.0105 + 0.01);
+}
+
+#[test]
+fn divisions_after_an_input_between_grid_points_give_the_same_bits() {
+    let run = |ends: &[f64]| {
+        let mut model = model("block_on_incline");
+        let dt = model.internal_step();
+        model.do_step(0.0, 3.3 * dt).unwrap();
+        model.set_block_force(1, Vector::new(2e4, 0.0), 0.0).unwrap();
+        for end in ends {
+            let t = model.time();
+            model.do_step(t, end * dt - t).unwrap();
+        }
+        states(&model)
     };
-    assert_eq!(steps(&mut serial), steps(&mut parallel));
+    let whole = run(&[40.0]);
+    assert_eq!(run(&[3.5, 3.7, 3.9, 40.0]), whole);
+    assert_eq!(run(&[3.6, 9.1, 9.2, 20.0, 40.0]), whole);
+}
+
+#[test]
+fn divisions_of_what_follows_a_linear_input_give_the_same_bits() {
+    let run = |ends: &[f64]| {
+        let mut model = model("block_on_incline");
+        model.set_interpolation(Interpolation::Linear);
+        let dt = model.internal_step();
+        model.do_step(0.0, 5.0 * dt).unwrap();
+        model.set_block_force(1, Vector::new(2e4, 0.0), 0.0).unwrap();
+        for end in [10.4].iter().chain(ends) {
+            let t = model.time();
+            model.do_step(t, end * dt - t).unwrap();
+        }
+        states(&model)
+    };
+    assert_eq!(run(&[12.0, 15.5, 15.6, 40.0]), run(&[40.0]));
+}
+
+#[test]
+fn times_of_events_do_not_change_and_errors_tell_the_time_of_the_host() {
+    let mut model = model("block_on_incline");
+    model.do_step(0.0, 0.3).unwrap();
+    let first = model.events().next().unwrap();
+    for k in 0..20 {
+        let t = model.time();
+        model.do_step(t, 0.0103).unwrap();
+        assert_eq!(model.events().next().unwrap(), first, "{k}");
+    }
+    model.set_block_force(1, Vector::new(1e15, 1e15), 0.0).unwrap();
+    let t = model.time();
+    match model.do_step(t, 0.01) {
+        Err(CosimulationError::Step(error)) => assert!((error.time - t).abs() < 0.01, "{}", error.time),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn stages_of_odd_lengths_change_at_their_own_times() {
+    let mut loaded = example("block_on_incline");
+    let (mut slide, mut calm) = (loaded.case.stages[1].clone(), loaded.case.stages[0].clone());
+    slide.duration = 0.05003;
+    (calm.name, calm.duration, calm.ramp) = ("calm".into(), 0.01011, None);
+    let mut last = slide.clone();
+    last.name = "again".into();
+    loaded.case.stages.truncate(1);
+    loaded.case.stages.extend([slide, calm, last]);
+    let loaded = LoadedCase::of(loaded.case, "stages").unwrap();
+    let run = |h: f64| {
+        let mut model = Cosimulation::new(&loaded).unwrap();
+        run(&mut model, h, 0.1);
+        let t = model.time();
+        model.do_step(t, 0.12 - t).unwrap();
+        assert_eq!(model.simulation().state().stage, 3);
+        states(&model)
+    };
+    let plain = run(0.01);
+    assert_eq!(run(0.0123), plain);
+    assert_eq!(run(0.1), plain);
+}
+
+#[test]
+fn an_equilibrium_that_is_not_found_leaves_the_model_as_it_was() {
+    let mut model = model("block_on_incline");
+    let before = model.save();
+    model.set_block_force(1, Vector::new(1e15, 1e15), 0.0).unwrap();
+    let with_force = model.save();
+    assert!(matches!(model.start(), Err(CosimulationError::Step(_))));
+    assert!(!model.is_started() && model.time() == 0.0);
+    assert_eq!(model.inputs(), &{
+        let mut same = self::model("block_on_incline");
+        same.restore(&with_force).unwrap();
+        same.inputs().clone()
+    });
+    model.restore(&before).unwrap();
+    model.start().unwrap();
+    let mut plain = self::model("block_on_incline");
+    plain.start().unwrap();
+    assert_eq!(states(&model), states(&plain));
 }

@@ -43,6 +43,16 @@ impl Near {
                 .any(|(&p, old)| (place[p as usize] - old).norm_squared() > slack * slack)
     }
 
+    /// Whether all indices are those of a boundary.
+    pub fn fits(&self, boundary: &Boundary) -> bool {
+        let (nodes, sides, edges) = (boundary.node_count(), boundary.side_first.len(), boundary.len());
+        let within = |index: u32, count: usize| (index as usize) < count;
+        let candidates = self.candidates.iter();
+        candidates.clone().all(|c| within(c.node, nodes) && within(c.side, sides) && within(c.edge, edges))
+            && self.behind.iter().all(|[node, side]| within(*node, nodes) && within(*side, sides))
+            && (self.found_at.is_empty() || self.found_at.len() == nodes)
+    }
+
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.candidates.clone_from(&other.candidates);

@@ -9,16 +9,8 @@ use std::fmt::Display;
 use crate::geometry::Vector;
 use crate::state::{Inputs, PortKind};
 
+use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX};
 use super::{Cosimulation, CosimulationError};
-
-/// Largest magnitude of any input, far beyond all physics: sums of such values stay finite.
-const VALUE_MAX: f64 = 1e15;
-/// Largest acceleration (m/s²).
-const ACCELERATION_MAX: f64 = 1e4;
-/// Largest height of water (m).
-const LEVEL_MAX: f64 = 1e9;
-/// Largest strength factor.
-const FACTOR_MAX: f64 = 1e6;
 
 impl Cosimulation {
     /// Sets gravity (m/s², y up: the standard is (0, −9.81)).
@@ -63,7 +55,8 @@ impl Cosimulation {
     pub fn set_strength_factor(&mut self, factor: f64) -> Result<(), CosimulationError> {
         if !(0.0..=FACTOR_MAX).contains(&factor) {
             let remedy = "1 leaves the strength as in the case";
-            return Err(CosimulationError::value("strength_factor", factor, "at least 0 and at most 1e6", remedy));
+            let limit = format!("at least 0 and at most {FACTOR_MAX:e}");
+            return Err(CosimulationError::value("strength_factor", factor, &limit, remedy));
         }
         self.set(|inputs| replace(&mut inputs.strength_factor, factor));
         Ok(())
@@ -148,15 +141,12 @@ impl Cosimulation {
     /// Sets inputs; `change` tells whether one is new.
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
-        let was_moving = drive.is_moving();
-        if was_moving {
-            drive.arrive();
-        }
-        self.standing.changed |= change(&mut drive.to) || was_moving;
+        let changed = change(&mut drive.to);
+        self.standing.changed |= changed;
     }
 }
 
-/// Replaces a value and tells whether its bits are new.
+/// Replaces a value and tells whether it is another.
 fn replace<T: Copy + PartialEq>(old: &mut T, new: T) -> bool {
     let changed = *old != new;
     *old = new;

@@ -1,10 +1,10 @@
 //! Communication steps: exactly [t, t + h], all or nothing, on a grid of internal steps that no host can shift.
 //!
 //! The grid is time 0 plus whole internal steps. A communication step that ends between two grid points takes a part of
-//! an internal step to get there and keeps the state of the grid point before; the next step goes on from that grid
-//! point as if nothing had been asked in between, unless an input has changed, which then acts from this very time.
+//! an internal step to get there and keeps the state from which that part was taken; the next step goes on from that
+//! state as if nothing had been asked in between, unless an input has changed, which then acts from this very time.
 
-use crate::state::Event;
+use crate::state::{Counters, Event};
 
 use super::{Cosimulation, CosimulationError, Interpolation};
 
@@ -21,6 +21,9 @@ pub struct Interval {
     end: f64,
     info: StepInfo,
     events_before: usize,
+    before: Counters,
+    /// Number of the interval; a model has one in progress at most.
+    serial: u64,
 }
 
 impl Interval {
@@ -63,51 +66,69 @@ impl Cosimulation {
         Ok(interval.info)
     }
 
-    /// Begins a communication step that [`Cosimulation::advance`] then covers; it may be left early at any time.
+    /// Begins a communication step that [`Cosimulation::advance`] then covers. Until it has ended, by its last advance
+    /// or by [`Cosimulation::leave`], nothing else may be asked of the model but what it looks like.
     ///
     /// # Errors
     /// Times that do not fit, or a failure of [`Cosimulation::start`].
     pub fn begin(&mut self, t: f64, h: f64) -> Result<Interval, CosimulationError> {
         let end = self.check_times(t, h)?;
         self.start()?;
-        self.keep_backup();
-        self.return_to_grid();
-        self.set_drive(end);
+        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.standing);
+        if self.standing.changed {
+            self.grid = None;
+            self.set_drive(end);
+        } else if let Some(kept) = self.grid.take() {
+            self.simulation.restore(*kept);
+        }
+        self.serial += 1;
         let state = self.simulation.state();
         let info = StepInfo { time: self.time(), ..StepInfo::default() };
-        let (halved, unsettled) = (state.counters.halved, state.counters.unsettled);
-        let info = StepInfo { halved, unsettled, ..info };
-        Ok(Interval { end, info, events_before: state.events.list.len() })
+        let (events_before, before) = (state.events.list.len(), state.counters);
+        Ok(Interval { end, info, events_before, before, serial: self.serial })
     }
 
     /// Takes one internal step of an interval; false when its end is reached.
     ///
     /// # Errors
-    /// A numerical failure; the model is then as it was when the interval began.
+    /// A numerical failure; the model is then as it was when the interval began. An interval that is over, or that the
+    /// model has left by going back to a saved state or by beginning another.
     pub fn advance(&mut self, interval: &mut Interval) -> Result<bool, CosimulationError> {
-        let left = interval.end - self.grid_time();
+        if interval.serial != self.serial {
+            return Err(CosimulationError::Stale);
+        }
         let same = self.same_time(interval.end);
-        if left <= same {
-            self.arrive(interval);
-            return Ok(false);
+        let left = interval.end - self.grid_time();
+        if left > same {
+            let dt = self.internal(left, same).map_err(|error| self.fail(error))?;
+            interval.info.steps += 1;
+            interval.info.dt = interval.info.dt.max(dt);
+            self.note(interval);
         }
-        match self.internal(left, same) {
-            Ok(dt) => {
-                interval.info.steps += 1;
-                interval.info.dt = interval.info.dt.max(dt);
-                interval.info.time = self.grid_time();
-                self.note_events(interval);
-                let more = interval.end - self.grid_time() > same;
-                if !more {
-                    self.arrive(interval);
-                }
-                Ok(more)
-            }
-            Err(error) => {
+        let more = interval.end - self.grid_time() > same;
+        if !more {
+            self.standing.told = interval.end;
+            self.end(interval);
+        }
+        Ok(more)
+    }
+
+    /// Makes an interval end earlier; inputs on their linear way will not have arrived then.
+    pub fn shorten(&self, interval: &mut Interval, end: f64) {
+        interval.end = end.min(interval.end);
+    }
+
+    /// Ends an interval before its end, where the model stands; one that has not moved yet changes nothing. Inputs on
+    /// their linear way go on from here in the next one.
+    pub fn leave(&mut self, mut interval: Interval) -> StepInfo {
+        if interval.serial == self.serial {
+            if interval.info.steps == 0 {
                 self.roll_back();
-                Err(error)
+            } else {
+                self.end(&mut interval);
             }
         }
+        interval.info
     }
 
     /// One internal step, or the part of it that is `left` (s); returns its length. Times within `same` are the same.
@@ -115,51 +136,57 @@ impl Cosimulation {
         if self.simulation.stage_is_over(None) {
             self.next_stage()?;
         }
-        let dt = self.internal_step();
-        let rest = dt - self.simulation.state().part;
+        let rest = self.internal_step() - self.simulation.state().part;
         if left >= rest - same {
             self.step(None, false)?;
             self.grid = None;
             return Ok(rest);
         }
-        if self.simulation.state().part == 0.0 {
+        if self.grid.is_none() {
             self.grid = Some(Box::new(self.simulation.state().clone()));
         }
         self.step(Some(left), false)?;
         Ok(left)
     }
 
-    fn note_events(&self, interval: &mut Interval) {
+    /// Notes what an internal step has brought.
+    fn note(&self, interval: &mut Interval) {
         let known = interval.events_before + interval.info.events.len();
-        if self.simulation.state().events.list.len() > known {
+        let state = self.simulation.state();
+        if state.events.list.len() > known {
             interval.info.events.extend(self.events().skip(known));
         }
+        interval.info.time = self.grid_time();
+        interval.info.halved = state.counters.halved - interval.before.halved;
+        interval.info.unsettled = state.counters.unsettled - interval.before.unsettled;
     }
 
-    /// Ends an interval at its end.
-    fn arrive(&mut self, interval: &mut Interval) {
-        self.standing.told = interval.end;
-        self.finish(interval);
-    }
-
-    fn finish(&mut self, interval: &mut Interval) {
-        let counters = &self.simulation.state().counters;
+    /// Ends an interval where the model stands.
+    fn end(&mut self, interval: &mut Interval) {
+        self.serial += 1;
         interval.info.time = self.time();
-        interval.info.halved = counters.halved.saturating_sub(interval.info.halved);
-        interval.info.unsettled = counters.unsettled.saturating_sub(interval.info.unsettled);
-        self.standing.changed = false;
+        let (now, same) = (self.simulation.time(), self.same_time(interval.end));
+        let drive = self.simulation.drive();
+        // A way that is not over goes on in the next interval.
+        self.standing.changed = drive.until - now > same;
+        if self.standing.changed {
+            drive.pass(now);
+        } else {
+            drive.arrive();
+        }
     }
 
-    /// Ends an interval before its end; inputs that were on their way go on from here in the next one.
-    pub fn leave(&mut self, mut interval: Interval) -> StepInfo {
-        self.finish(&mut interval);
-        let now = self.simulation.time();
-        let drive = self.simulation.drive();
-        if drive.until > now {
-            drive.pass(now);
-            self.standing.changed = true;
+    /// Rolls back and tells times as hosts count them.
+    fn fail(&mut self, error: CosimulationError) -> CosimulationError {
+        let start = self.standing.start;
+        self.roll_back();
+        match error {
+            CosimulationError::Step(mut error) => {
+                error.time -= start;
+                error.into()
+            }
+            other => other,
         }
-        interval.info
     }
 
     /// The end of a step from `t` over `h`.
@@ -182,31 +209,16 @@ impl Cosimulation {
         (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt)
     }
 
-    /// Goes back to the grid point before, unless an input has changed since.
-    fn return_to_grid(&mut self) {
-        if let Some(grid) = self.grid.take()
-            && !self.standing.changed
-            && !self.simulation.state().drive.is_moving()
-        {
-            self.simulation.restore(*grid);
-        }
-    }
-
-    /// Lets inputs jump or move to their new values.
+    /// Lets inputs that have changed jump or move to their new values.
     fn set_drive(&mut self, end: f64) {
-        let (start, now) = (self.start_time(), self.simulation.time());
-        let linear = self.standing.interpolation == Interpolation::Linear && self.standing.changed;
+        let (start, now) = (self.standing.start, self.simulation.time());
+        let linear = self.standing.interpolation == Interpolation::Linear;
         let drive = self.simulation.drive();
         if linear {
             (drive.since, drive.until) = (now, start + end);
         } else {
-            drive.from.copy_from(&drive.to);
-            (drive.since, drive.until) = (now, now);
+            drive.arrive();
         }
-    }
-
-    fn keep_backup(&mut self) {
-        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.standing);
     }
 
     fn roll_back(&mut self) {

@@ -21,13 +21,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Vector;
 use crate::io::{LoadedCase, RestPlan};
+pub use crate::model::case::limits;
 use crate::model::case::{Case, StageKind};
 use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepError, StepReport};
-
-/// Most threads of a model.
-const THREADS_MAX: usize = 1024;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,6 +42,8 @@ pub enum Interpolation {
 struct Standing {
     /// Steps of all stages before time 0.
     origin: u64,
+    /// Simulated time of the model at time 0 (s).
+    start: f64,
     /// Whether the initial equilibrium has been sought.
     started: bool,
     /// Whether an input has changed since the last step ended.
@@ -67,6 +67,8 @@ pub struct Cosimulation {
     standing: Standing,
     /// What a failed step falls back to.
     backup: Saved,
+    /// Number of the interval in progress; one with another number is over.
+    serial: u64,
     /// Threads of steps, when there is more than the caller's own.
     pool: Option<Arc<rayon::ThreadPool>>,
 }
@@ -80,13 +82,14 @@ impl Cosimulation {
         let mut simulation = Simulation::new(loaded.case.clone())
             .map_err(|invalid| CosimulationError::Case(loaded.source.locate(&invalid.key, &invalid.message)))?;
         simulation.set_serial(true);
-        let backup = Saved::of(simulation.state());
+        let backup = Saved::of(simulation.state(), &loaded.hash);
         Ok(Self {
             simulation,
             hash: loaded.hash.clone(),
             grid: None,
             standing: Standing::default(),
             backup,
+            serial: 0,
             pool: None,
         })
     }
@@ -145,7 +148,7 @@ impl Cosimulation {
 
     /// Events so far, in order; their times count as [`Cosimulation::time`] does.
     pub fn events(&self) -> impl ExactSizeIterator<Item = Event> + '_ {
-        let start = self.start_time();
+        let start = self.standing.start;
         self.simulation.state().events.list.iter().map(move |event| Event { time: event.time - start, ..*event })
     }
 
@@ -170,6 +173,7 @@ impl Cosimulation {
                 let drive = self.simulation.drive();
                 (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
                 self.standing.origin = self.simulation.state().step;
+                self.standing.start = self.simulation.time();
                 self.standing.started = true;
                 self.standing.changed = false;
                 Ok(())
@@ -237,8 +241,8 @@ impl Cosimulation {
     /// No thread at all, more than 1024, or threads that the system refuses.
     pub fn set_threads(&mut self, threads: usize) -> Result<(), CosimulationError> {
         let refuse = |limit: &str| CosimulationError::value("threads", threads, limit, "1 suits all small models");
-        if !(1..=THREADS_MAX).contains(&threads) {
-            return Err(refuse("at least 1 and at most 1024"));
+        if !(1..=limits::THREADS_MAX).contains(&threads) {
+            return Err(refuse(&format!("at least 1 and at most {}", limits::THREADS_MAX)));
         }
         self.pool = match threads {
             1 => None,
@@ -262,11 +266,6 @@ impl Cosimulation {
             Some(pool) => pool.install(act),
             None => act(),
         }
-    }
-
-    /// Simulated time (s) at time 0.
-    fn start_time(&self) -> f64 {
-        self.simulation.time() - self.grid_time()
     }
 }
 

@@ -59,6 +59,9 @@ pub struct Totals {
 
 impl Cosimulation {
     /// State of a port; see [`Cosimulation::ports`] for their number.
+    ///
+    /// # Panics
+    /// When there is no such port.
     pub fn port_state(&self, port: usize) -> PortState {
         let port = &self.ports()[port];
         match port.kind {

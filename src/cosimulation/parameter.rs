@@ -58,9 +58,6 @@ pub struct ParameterError {
     limit: String,
 }
 
-/// Damping ratio of a stage that names none.
-const DAMPING: f64 = 0.1;
-
 /// All parameters of a case, rocks first, by name.
 pub fn parameters(case: &Case) -> Vec<Parameter> {
     let mut list = Vec::new();
@@ -72,8 +69,8 @@ pub fn parameters(case: &Case) -> Vec<Parameter> {
     }
     let damping = case.stages.iter().find(|stage| stage.kind == StageKind::Dynamic);
     if let Some(stage) = damping {
-        let start = stage.damping.unwrap_or(DAMPING);
         let what = "Damping ratio of the deformation of blocks in dynamic stages";
+        let start = stage.damping_ratio();
         list.push(parameter("damping".into(), "", what.into(), start, (0.0, 1.0), Place::Damping));
     }
     let what = "Relative change of contact forces at which the open-close iteration has settled";

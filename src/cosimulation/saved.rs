@@ -10,20 +10,25 @@ use super::{Cosimulation, CosimulationError, Standing};
 /// The state of a model at one instant, with the inputs that hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
+    /// Hash of the model.
+    hash: String,
     state: State,
     grid: Option<Box<State>>,
     standing: Standing,
 }
 
 impl Saved {
-    pub(super) fn of(state: &State) -> Self {
-        Self { state: state.clone(), grid: None, standing: Standing::default() }
+    pub(super) fn of(state: &State, hash: &str) -> Self {
+        Self { hash: hash.to_owned(), state: state.clone(), grid: None, standing: Standing::default() }
     }
 
-    /// Takes another state of the same model without allocating.
+    /// Takes another state of the same model, into the memory of the old one.
     pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, standing: Standing) {
         self.state.copy_from(state);
-        self.grid = grid.cloned().map(Box::new);
+        match (&mut self.grid, grid) {
+            (Some(own), Some(grid)) => own.copy_from(grid),
+            (own, grid) => *own = grid.cloned().map(Box::new),
+        }
         self.standing = standing;
     }
 }
@@ -31,7 +36,8 @@ impl Saved {
 impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
-        Saved { state: self.simulation.state().clone(), grid: self.grid.clone(), standing: self.standing }
+        let (state, grid) = (self.simulation.state().clone(), self.grid.clone());
+        Saved { hash: self.hash.clone(), state, grid, standing: self.standing }
     }
 
     /// Goes back to a saved state of this model.
@@ -39,8 +45,10 @@ impl Cosimulation {
     /// # Errors
     /// The state is of another model.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), CosimulationError> {
-        let grid_fits = saved.grid.as_ref().is_none_or(|grid| self.simulation.fits(grid));
-        if !self.simulation.fits(&saved.state) || !grid_fits {
+        if saved.hash != self.hash {
+            return Err(CheckpointError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() }.into());
+        }
+        if !self.fits(saved) {
             let damage = "its state does not fit the model";
             return Err(CheckpointError::Damaged(damage.to_owned()).into());
         }
@@ -48,7 +56,18 @@ impl Cosimulation {
         Ok(())
     }
 
+    /// Whether every index and time of a saved state makes sense for this model.
+    fn fits(&self, saved: &Saved) -> bool {
+        let Saved { state, grid, standing, .. } = saved;
+        let dt = self.internal_step();
+        let on_grid = |state: &State| (0.0..dt).contains(&state.part) && standing.origin <= state.step;
+        standing.told.is_finite()
+            && standing.start.is_finite()
+            && std::iter::once(state).chain(grid.as_deref()).all(|state| on_grid(state) && self.simulation.fits(state))
+    }
+
     pub(super) fn take(&mut self, saved: Saved) {
+        self.serial += 1;
         self.simulation.restore(saved.state);
         self.grid = saved.grid;
         self.standing = saved.standing;

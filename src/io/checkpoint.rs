@@ -102,7 +102,11 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, C
     if crc32fast::hash(payload) != checksum {
         return Err(CheckpointError::Damaged("its checksum does not match".to_owned()));
     }
-    postcard::from_bytes(payload).map_err(|error| CheckpointError::Damaged(error.to_string()))
+    match postcard::take_from_bytes(payload) {
+        Ok((value, [])) => Ok(value),
+        Ok(_) => Err(CheckpointError::Damaged("it holds something else".to_owned())),
+        Err(error) => Err(CheckpointError::Damaged(error.to_string())),
+    }
 }
 
 /// Writes a checkpoint, whole or not at all.

@@ -2,6 +2,7 @@
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `build`.
 
 pub mod key;
+pub mod limits;
 mod validate;
 
 use std::collections::BTreeMap;
@@ -488,6 +489,13 @@ pub struct Stage {
     /// Fixities by name that let go.
     #[serde(default)]
     pub free: Vec<String>,
+}
+
+impl Stage {
+    /// Damping ratio of a dynamic stage: 0.1 when it names none.
+    pub fn damping_ratio(&self) -> f64 {
+        self.damping.unwrap_or(0.1)
+    }
 }
 
 /// New values of one joint law; what is not given stays.

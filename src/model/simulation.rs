@@ -8,8 +8,6 @@ use crate::step::{self, Regime, StepError, StepReport};
 use super::build::{Built, build, index_of};
 use super::case::{Case, Invalid, Stage, StageKind};
 
-/// Damping ratio ξ of a dynamic stage that names none.
-const DAMPING: f64 = 0.1;
 /// Unbalanced ratio at which a static stage that names none ends.
 const CONVERGENCE: f64 = 1e-4;
 /// Kinetic over potential or strain energy below which a static stage counts as at rest.
@@ -152,6 +150,8 @@ impl Simulation {
             && state.laws.len() == own.laws.len()
             && state.law_switch.len() == own.law_switch.len()
             && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
+            && [state.stage_start, state.dt_last, state.part].iter().all(|t| t.is_finite() && *t >= 0.0)
+            && state.near.fits(boundary)
             && inputs_fit(&state.drive.from)
             && inputs_fit(&state.drive.to)
             && state.events.fit(own.removed.len(), slope.trace_law.len())
@@ -186,7 +186,7 @@ impl Simulation {
     fn regime_of(&self, stage: usize) -> Regime {
         let stage_case = &self.case.stages[stage];
         match stage_case.kind {
-            StageKind::Dynamic => Regime::Dynamic { damping: stage_case.damping.unwrap_or(DAMPING) },
+            StageKind::Dynamic => Regime::Dynamic { damping: stage_case.damping_ratio() },
             StageKind::Static => {
                 let default = if stage == 0 { self.default_ramp() } else { 0.0 };
                 Regime::Static { ramp: stage_case.ramp.unwrap_or(default) }

@@ -61,7 +61,7 @@ impl From<CosimulationError> for Failure {
             CosimulationError::Case(case) => return case.into(),
             CosimulationError::Stage(_) => enmm_status::ENMM_INVALID_CASE,
             CosimulationError::Value { .. } => enmm_status::ENMM_INVALID_ARGUMENT,
-            CosimulationError::Time { .. } => enmm_status::ENMM_WRONG_TIME,
+            CosimulationError::Time { .. } | CosimulationError::Stale => enmm_status::ENMM_WRONG_TIME,
             CosimulationError::Step(_) => enmm_status::ENMM_NUMERICAL_FAILURE,
             CosimulationError::State(_) => enmm_status::ENMM_WRONG_STATE,
         };

@@ -2,6 +2,7 @@
 
 use super::checks::{COORDINATE_MAX, Check, Range, fail, number, point, segment, unique};
 use crate::model::case::key::{Key, list};
+use crate::model::case::limits::VALUE_MAX;
 use crate::model::case::{Port, Water};
 
 /// Checks the water of a case.
@@ -63,7 +64,7 @@ fn validate_start(key: &Key, port: &Port, kind: &str) -> Check {
         ("pressure", [port.pressure, 0.0], "Pa", ["boundary", "joint"]),
     ];
     for (name, value, unit, kinds) in values {
-        value.iter().try_for_each(|v| number(key, name, *v, Range::within(1e15), unit, hint))?;
+        value.iter().try_for_each(|v| number(key, name, *v, Range::within(VALUE_MAX), unit, hint))?;
         if value != [0.0; 2] && !kinds.contains(&kind) {
             let message = format!("a port of kind `{kind}` takes no {name}; remove it, or use `{}`", kinds[0]);
             return fail(&key.field(name), message);

@@ -1,0 +1,13 @@
+//! Greatest values of what acts on a model, far beyond all physics, so that sums of them stay finite. Cases, hosts and
+//! FMUs share them.
+
+/// Magnitude of an acceleration (m/s²).
+pub const ACCELERATION_MAX: f64 = 1e4;
+/// Magnitude of a height (m).
+pub const LEVEL_MAX: f64 = 1e9;
+/// Factor on the strength of joints.
+pub const FACTOR_MAX: f64 = 1e6;
+/// Magnitude of a force (N/m), a moment (N·m/m), a traction or a pressure (Pa).
+pub const VALUE_MAX: f64 = 1e15;
+/// Threads of a model.
+pub const THREADS_MAX: usize = 1024;
