@@ -237,6 +237,29 @@ fn wrong_references_types_counts_and_pointers_are_errors() {
 }
 
 #[test]
+fn a_getter_that_fails_writes_nothing_and_one_that_works_needs_no_values_before() {
+    use std::mem::MaybeUninit;
+    let fmu = Fmu::boxed();
+    let (real, other, array) = (fmu.reference("box.displacement_x"), fmu.reference("time"), fmu.reference("block_x"));
+    let instance = fmu.started();
+    let blocks = instance.get("block_x").len();
+    let mut room = vec![MaybeUninit::<f64>::uninit(); blocks];
+    let status = unsafe { fmi3GetFloat64(instance.pointer, &array, 1, room.as_mut_ptr().cast::<f64>(), room.len()) };
+    assert_eq!(status, OK);
+    let values: Vec<f64> = room.iter().map(|value| unsafe { value.assume_init() }).collect();
+    assert_eq!(values, instance.get("block_x"));
+    let mut values = [7.0; 2];
+    let (references, out) = ([real, other], values.as_mut_ptr());
+    unsafe {
+        let orders = [1, 1];
+        let status = fmi3GetOutputDerivatives(instance.pointer, references.as_ptr(), 2, orders.as_ptr(), out, 2);
+        assert_eq!(status, ERROR, "time has no derivative that could be asked for");
+        assert_eq!(fmi3GetFloat64(instance.pointer, [real, 9999].as_ptr(), 2, out, 2), ERROR);
+    }
+    assert_eq!(values, [7.0; 2]);
+}
+
+#[test]
 fn derivatives_of_motions_are_their_velocities() {
     let fmu = Fmu::boxed();
     let instance = fmu.started();
