@@ -332,12 +332,12 @@ impl Instance {
         let values = Values::of(&self.table);
         let start = values.parameters(&self.table);
         if same_bits(&start, &self.built) {
+            self.use_threads(1)?;
             self.model.restore(&self.initial).map_err(|error| error.to_string())?;
         } else {
             let model = self.model_of(&start)?;
             self.take_model(model, start);
         }
-        self.use_threads(1)?;
         self.cache.clear();
         self.values = values;
         self.experiment = Experiment { start: 0.0, stop: None };
