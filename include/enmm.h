@@ -12,8 +12,8 @@
  * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
  * function says.
  *
- * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model; any
- * other gets ENMM_BUSY. A state may be used by many.
+ * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
+ * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header go on. Members that the library does not
@@ -319,7 +319,9 @@ typedef struct enmm_step_info {
 
 /**
  * Takes the messages of a model. It is called on the thread of a call to the model, when that call is otherwise done,
- * so that it may call any function. `message` is valid during the call. It must return: no longjmp, no exception.
+ * so that it may call any function: it may step the model, set another callback, or destroy the model, after which no
+ * further message comes. Until it returns, the model is this thread's, and other threads get ENMM_BUSY. `message` is
+ * valid during the call. It must return: no longjmp, no exception.
  */
 typedef void (*enmm_log_callback)(void *user, enmm_log_level level, const char *message);
 
@@ -713,6 +715,10 @@ enmm_status enmm_create_from_string(const char *toml, const char *base_dir, stru
 /**
  * Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
  * model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+ *
+ * It never waits. The log callback begins no further message once this has returned on the thread that the callback is
+ * called on; when another thread is in a call with the model, the callback may be at work there, or just begin, and
+ * its `user` must not be freed until that call has returned.
  */
 void enmm_destroy(struct enmm_model *model);
 
@@ -777,7 +783,12 @@ enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
  * Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
  * warnings of the case at once; later messages come at the end of the calls that they are about.
  *
- * `user` is handed to the callback as it is.
+ * `user` is handed to the callback as it is. It is no longer used when this function has replaced the callback, but by
+ * a message that is just being delivered: that is so when a callback replaces itself, never when another thread
+ * delivers, for then this answers ENMM_BUSY. Messages that have not gone out yet go to the new callback. For the end
+ * of the model see enmm_destroy.
+ *
+ * Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
  */
 enmm_status enmm_set_log_callback(struct enmm_model *model, enmm_log_callback callback, void *user);
 
@@ -944,7 +955,7 @@ enmm_status enmm_get_contacts(struct enmm_model *model, struct enmm_contact *out
 
 /**
  * Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
- * goes back to its events.
+ * goes back to its events. An event does not change between reads, its time included.
  *
  * Buffer and errors as enmm_get_block_states.
  */

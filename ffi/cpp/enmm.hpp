@@ -10,6 +10,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -119,7 +120,10 @@ private:
     enmm_state *handle_;
 };
 
-/** A model. It can be moved, not copied; a model that was moved from can only be assigned to or destroyed. */
+/**
+ * A model. It can be moved, not copied; a model that was moved from can only be assigned to or destroyed. Its log may
+ * use it, set another log, move it and destroy it. While one thread is in a call, others must not move or destroy it.
+ */
 class Model {
 public:
     using Log = std::function<void(enmm_log_level, const std::string &)>;
@@ -127,25 +131,25 @@ public:
     /** Builds the model of a case file. */
     static Model from_file(const std::string &path)
     {
-        enmm_model *handle = nullptr;
-        detail::check(enmm_create_from_file(path.c_str(), &handle));
-        return Model(handle);
+        Model model;
+        detail::check(enmm_create_from_file(path.c_str(), &model.handle_));
+        return model;
     }
 
     /** Builds the model of a case in TOML; files that it names are sought in `base_dir`. */
     static Model from_string(const std::string &toml, const std::string &base_dir = ".")
     {
-        enmm_model *handle = nullptr;
-        detail::check(enmm_create_from_string(toml.c_str(), base_dir.c_str(), &handle));
-        return Model(handle);
+        Model model;
+        detail::check(enmm_create_from_string(toml.c_str(), base_dir.c_str(), &model.handle_));
+        return model;
     }
 
-    Model(Model &&other) noexcept : handle_(std::exchange(other.handle_, nullptr)), log_(std::move(other.log_)) {}
+    Model(Model &&other) noexcept : handle_(std::exchange(other.handle_, nullptr)), desk_(std::move(other.desk_)) {}
 
     Model &operator=(Model &&other) noexcept
     {
         std::swap(handle_, other.handle_);
-        std::swap(log_, other.log_);
+        std::swap(desk_, other.desk_);
         return *this;
     }
 
@@ -159,12 +163,12 @@ public:
 
     // Time.
 
-    void start() { call([&] { return enmm_start(handle_); }); }
+    void start() { call([&](Frame &) { return enmm_start(handle_); }); }
 
     StepInfo do_step(double t, double h)
     {
         auto info = detail::sized<StepInfo>();
-        call([&] { return enmm_do_step(handle_, t, h, &info); });
+        call([&](Frame &) { return enmm_do_step(handle_, t, h, &info); });
         return info;
     }
 
@@ -334,47 +338,98 @@ public:
         return State(state);
     }
 
-    /** Sets where messages go; an empty function stops them. What it throws comes out of the call that it speaks in. */
+    /**
+     * Sets where messages go; an empty function stops them. What it throws comes out of the call of this object that it
+     * speaks in.
+     */
     void set_log(Log log)
     {
-        auto fresh = log ? std::make_unique<Listener>(Listener{std::move(log), nullptr}) : nullptr;
-        Listener *listener = fresh.get();
-        detail::check(enmm_set_log_callback(handle_, listener ? speak : nullptr, listener));
-        log_ = std::move(fresh);
-        rethrow();
+        const enmm_log_callback callback = log ? speak : nullptr;
+        auto fresh = std::make_shared<const Log>(std::move(log));
+        call([&](Frame &frame) {
+            frame.fresh = std::move(fresh);
+            const enmm_status status = enmm_set_log_callback(handle_, callback, frame.desk.get());
+            if (status == ENMM_OK)
+                frame.settle();
+            return status;
+        });
     }
 
 private:
-    struct Listener {
-        Log log;
+    /**
+     * Where the library finds the log of a model: one place from the first to the last, so that the library never holds
+     * a pointer to a log that was replaced. A log that speaks is held by its message.
+     */
+    struct Desk : std::enable_shared_from_this<Desk> {
+        std::mutex mutex;
+        std::shared_ptr<const Log> log;
+
+        std::shared_ptr<const Log> current()
+        {
+            const std::lock_guard<std::mutex> guard(mutex);
+            return log;
+        }
+    };
+
+    /** A call that messages can come in, the innermost of its thread. It holds the desk even when the model goes. */
+    struct Frame {
+        explicit Frame(std::shared_ptr<Desk> at) : desk(std::move(at)), outer(std::exchange(innermost(), this)) {}
+        Frame(const Frame &) = delete;
+        Frame &operator=(const Frame &) = delete;
+        ~Frame() { innermost() = outer; }
+
+        static Frame *&innermost() noexcept
+        {
+            thread_local Frame *frame = nullptr;
+            return frame;
+        }
+
+        /** Puts a log that is being set in its place; the library has taken it. */
+        void settle()
+        {
+            if (!fresh)
+                return;
+            {
+                const std::lock_guard<std::mutex> guard(desk->mutex);
+                desk->log.swap(fresh);
+            }
+            fresh.reset(); // the old one, which may call anything when it goes
+        }
+
+        std::shared_ptr<Desk> desk;
+        Frame *outer;
+        std::shared_ptr<const Log> fresh;
         std::exception_ptr thrown;
     };
 
-    explicit Model(enmm_model *handle) noexcept : handle_(handle) {}
+    Model() : desk_(std::make_shared<Desk>()) {}
 
-    /** No exception may pass the library: it waits here until the call is over. */
+    /** No exception may pass the library: it waits in the frame until the call is over. */
     static void speak(void *user, enmm_log_level level, const char *message) noexcept
     {
-        auto *listener = static_cast<Listener *>(user);
+        const auto desk = static_cast<Desk *>(user)->shared_from_this();
+        Frame *const frame = Frame::innermost();
+        const bool ours = frame && frame->desk == desk;
         try {
-            listener->log(level, message);
+            if (ours)
+                frame->settle();
+            if (const auto log = desk->current(); log && *log)
+                (*log)(level, message);
         } catch (...) {
-            listener->thrown = std::current_exception();
+            if (ours)
+                frame->thrown = std::current_exception();
         }
     }
 
-    void rethrow()
-    {
-        if (log_ && log_->thrown)
-            std::rethrow_exception(std::exchange(log_->thrown, nullptr));
-    }
-
+    /** What it calls may destroy the model: nothing of this object is touched behind it. */
     template <class Call>
     void call(Call what)
     {
-        const enmm_status status = what();
+        Frame frame(desk_);
+        const enmm_status status = what(frame);
         const std::string message = status == ENMM_OK ? "" : enmm_last_error();
-        rethrow();
+        if (frame.thrown)
+            std::rethrow_exception(frame.thrown);
         if (status != ENMM_OK)
             throw Error(status, message);
     }
@@ -408,8 +463,8 @@ private:
         return points;
     }
 
-    enmm_model *handle_;
-    std::unique_ptr<Listener> log_;
+    enmm_model *handle_ = nullptr;
+    std::shared_ptr<Desk> desk_;
 };
 
 } // namespace enmm

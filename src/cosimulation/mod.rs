@@ -46,6 +46,8 @@ struct Standing {
     start: f64,
     /// Whether the initial equilibrium has been sought.
     started: bool,
+    /// Net over applied force at the end of an initial stage that did not come to rest; 0 when all did.
+    unrest: f64,
     /// Whether an input has changed since the last step ended.
     changed: bool,
     interpolation: Interpolation,
@@ -157,6 +159,12 @@ impl Cosimulation {
         self.standing.started
     }
 
+    /// Net over applied force of the initial equilibrium, when its stage was over before the model came to rest: the
+    /// slope moves, or the stage needs a longer duration.
+    pub fn unrest(&self) -> Option<f64> {
+        Some(self.standing.unrest).filter(|ratio| *ratio > 0.0)
+    }
+
     /// Seeks the initial equilibrium: runs the static stages before the first dynamic one. Does nothing later.
     ///
     /// # Errors
@@ -204,6 +212,10 @@ impl Cosimulation {
                 let wanted = plan.report_due(self.simulation.state().stage_step);
                 let report = self.step(None, wanted)?;
                 last = wanted.then_some(report);
+            }
+            let report = last.unwrap_or_else(|| self.simulation.report());
+            if !self.simulation.at_rest(&report) {
+                self.standing.unrest = report.unbalanced;
             }
             self.next_stage()?;
         }

@@ -54,7 +54,8 @@ impl Step<'_> {
             let speed = self.state.velocity[i].norm();
             let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
             let block = slope.covers.cover_block[i];
-            let place = slope.covers.block_centroid(block as usize);
+            let place = slope.covers.star_position[i] + self.state.displacement[i];
+            let place = if place.iter().all(|x| x.is_finite()) { place } else { slope.covers.star_position[i] };
             return Err(StepError { block, place, time: self.time, failure });
         }
         let limit = slope.penetration_limit;

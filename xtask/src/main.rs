@@ -12,8 +12,8 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  test [--quick]   format, lints, build, tests, documentation, header, schema, Python;
-                   --quick leaves out the last four
+  test [--quick]   format, lints, build, tests, documentation, schema, Python;
+                   --quick leaves out the last three
   python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   schema           writes docs/case.schema.json

@@ -9,7 +9,6 @@ use crate::house::{self, House};
 use crate::python;
 
 const SCHEMA: &str = "docs/case.schema.json";
-const HEADER: &str = "include/enmm.h";
 const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
 const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
@@ -22,7 +21,7 @@ const COUPLINGS: [&str; 2] = ["earthquake", "reservoir"];
 pub enum Extent {
     /// Everything.
     Full,
-    /// Without documentation, header, schema and Python.
+    /// Without documentation, schema and Python.
     Quick,
 }
 
@@ -43,7 +42,6 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
             let mut doc = house.cargo(&["doc", "--workspace", "--no-deps"]);
             house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
-        steps.take("header", || compare_header(house).map(|()| Counts::default()));
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
         steps.take("python", || python::test(house));
     }
@@ -132,38 +130,21 @@ fn schema(house: &House) -> Result<Vec<u8>, String> {
 /// # Errors
 /// When its program does not build or run, or the file cannot be written.
 pub fn write_header(house: &House) -> Result<(), String> {
-    make_header(house, &house.root.join(HEADER))?;
-    println!("wrote {HEADER}");
+    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))?;
+    println!("wrote the header of the C ABI");
     Ok(())
-}
-
-fn make_header(house: &House, to: &Path) -> Result<(), String> {
-    house::run(house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header", "--"]).arg(to))
-}
-
-fn compare_header(house: &House) -> Result<(), String> {
-    let own = house.target.join("enmm.h");
-    make_header(house, &own)?;
-    compare(HEADER, &read(&own)?, &read(&house.root.join(HEADER))?, "cargo xtask header")
 }
 
 fn compare_schema(house: &House) -> Result<(), String> {
     let told = schema(house)?;
-    compare(SCHEMA, &told, &read(&house.root.join(SCHEMA))?, "cargo xtask schema")
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-/// Compares a file that is `committed` with what its generator makes.
-fn compare(name: &str, made: &[u8], committed: &[u8], remedy: &str) -> Result<(), String> {
-    if made == committed {
+    let path = house.root.join(SCHEMA);
+    let committed = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    if told == committed {
         return Ok(());
     }
-    let lines = made.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n'));
+    let lines = told.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n'));
     let line = 1 + lines.take_while(|(a, b)| a == b).count();
-    Err(format!("{name} is not what the sources make from line {line} on: run `{remedy}` and commit"))
+    Err(format!("{SCHEMA} is not what the sources make from line {line} on: run `cargo xtask schema` and commit"))
 }
 
 /// Steps that have run.

@@ -116,7 +116,9 @@ pub enum enmm_log_level {
 }
 
 /// Takes the messages of a model. It is called on the thread of a call to the model, when that call is otherwise done,
-/// so that it may call any function. `message` is valid during the call. It must return: no longjmp, no exception.
+/// so that it may call any function: it may step the model, set another callback, or destroy the model, after which no
+/// further message comes. Until it returns, the model is this thread's, and other threads get ENMM_BUSY. `message` is
+/// valid during the call. It must return: no longjmp, no exception.
 pub type enmm_log_callback =
     Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
 
@@ -346,23 +348,53 @@ pub unsafe trait Growing: Copy {
     const NAME: &str;
 }
 
+const fn size_of_field<T, F>(_: fn(&T) -> &F) -> usize {
+    size_of::<F>()
+}
+
+/// Takes each type with its size in version 1 and its fields.
 macro_rules! sized {
-    ($($type:ident $size:literal)*) => { $(
-        // SAFETY: `repr(C)`, and a size equal to the sum of its fields leaves no room for padding.
+    ($($type:ident $size:literal { $($field:ident)* })*) => { $(
+        // SAFETY: `repr(C)`, and a size equal to the sum of its fields, as asserted below, leaves no room for padding.
         unsafe impl Growing for $type {
             const FIRST_SIZE: usize = $size;
             const NAME: &str = stringify!($type);
         }
-        const _: () = assert!(size_of::<$type>() >= $size);
+        const _: () = {
+            // Does not compile when a field is not listed.
+            let _: fn(&$type) = |all| { let $type { $($field: _),* } = all; };
+            assert!(size_of::<$type>() == 0 $(+ size_of_field(|all: &$type| &all.$field))*);
+            assert!(size_of::<$type>() >= $size);
+        };
     )* };
 }
 
 sized! {
-    enmm_step_info 64
-    enmm_block_state 152
-    enmm_energies 104
-    enmm_totals 72
-    enmm_contact 80
-    enmm_event 24
-    enmm_port_state 120
+    enmm_step_info 64 {
+        struct_size time steps dt event_count first_event halved unsettled
+    }
+    enmm_block_state 152 {
+        struct_size id flags centroid_x centroid_y displacement_x displacement_y rotation velocity_x velocity_y
+        angular_velocity mean_stress_xx mean_stress_yy mean_stress_xy area mass kinetic_energy strain_energy
+        contact_count reserved largest_penetration
+    }
+    enmm_energies 104 {
+        struct_size kinetic strain potential stored friction contact_work support_work damping external_work baseline
+        contact_dissipation residual
+    }
+    enmm_totals 72 {
+        struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts
+        slipping_contacts locked_contacts detached_blocks slipped_joints failed_blocks
+    }
+    enmm_contact 80 {
+        struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress
+        shear_stress
+    }
+    enmm_event 24 {
+        struct_size kind subject time
+    }
+    enmm_port_state 120 {
+        struct_size displacement_x displacement_y velocity_x velocity_y rotation angular_velocity contact_force_x
+        contact_force_y stress_xx stress_yy stress_xy normal_force shear_force slip
+    }
 }

@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 use std::process::Command;
 
-use support::{SMALL, compiler, has, host, libraries, root, run, say, succeed};
+use support::{SMALL, compiler, has, host, host_with, libraries, root, run, say, succeed};
 
 const COUPLED: &str = "examples/cases/coupled_slope.toml";
 
@@ -67,6 +67,27 @@ fn the_coupled_reservoir_holds_its_checks() {
     let refused = run(Command::new(&host).arg("absent.toml"));
     assert_eq!(refused.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("absent.toml"));
+}
+
+#[test]
+fn a_log_in_cpp_may_replace_itself_and_end_its_model() {
+    const SANITIZER: &str = "-fsanitize=address";
+    succeed(Command::new(host("ffi/capi/tests/c/relog.cpp")).arg(SMALL));
+    if sanitizes(SANITIZER) {
+        succeed(Command::new(host_with("ffi/capi/tests/c/relog.cpp", &[SANITIZER])).arg(SMALL));
+    }
+}
+
+/// Whether programs can be built with a sanitizer and run; says so when they cannot.
+fn sanitizes(flag: &str) -> bool {
+    let [source, program] = ["empty.cpp", "empty"].map(|name| Path::new(env!("CARGO_TARGET_TMPDIR")).join(name));
+    std::fs::write(&source, "int main() {}\n").expect("a file that can be written");
+    let built = run(compiler("empty.cpp").arg(flag).arg(source).arg("-o").arg(&program)).status.success();
+    let there = built && run(&mut Command::new(program)).status.success();
+    if !there {
+        say(&format!("skipped: the compiler makes no programs with {flag}"));
+    }
+    there
 }
 
 #[test]

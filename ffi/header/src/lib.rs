@@ -23,8 +23,8 @@ const INTRODUCTION: &str = "\
  * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
  * function says.
  *
- * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model; any
- * other gets ENMM_BUSY. A state may be used by many.
+ * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
+ * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header go on. Members that the library does not

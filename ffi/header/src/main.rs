@@ -1,8 +1,9 @@
-//! Writes the header to the file that is named.
+//! Writes the header to its place.
 
 use std::io::{Error, Result};
 
+use enmm_header::{HEADER, generate, root};
+
 fn main() -> Result<()> {
-    let out = std::env::args_os().nth(1).ok_or_else(|| Error::other("name the file to write"))?;
-    std::fs::write(out, enmm_header::generate().map_err(Error::other)?)
+    std::fs::write(root().join(HEADER), generate().map_err(Error::other)?)
 }

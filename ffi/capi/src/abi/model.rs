@@ -53,6 +53,10 @@ pub unsafe extern "C" fn enmm_create_from_string(
 
 /// Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
 /// model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+///
+/// It never waits. The log callback begins no further message once this has returned on the thread that the callback is
+/// called on; when another thread is in a call with the model, the callback may be at work there, or just begin, and
+/// its `user` must not be freed until that call has returned.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
     // A handle that is NULL or dead is no reason to forget the message of the last failure.
@@ -147,7 +151,12 @@ pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> en
 /// Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
 /// warnings of the case at once; later messages come at the end of the calls that they are about.
 ///
-/// `user` is handed to the callback as it is.
+/// `user` is handed to the callback as it is. It is no longer used when this function has replaced the callback, but by
+/// a message that is just being delivered: that is so when a callback replaces itself, never when another thread
+/// delivers, for then this answers ENMM_BUSY. Messages that have not gone out yet go to the new callback. For the end
+/// of the model see enmm_destroy.
+///
+/// Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_set_log_callback(
     model: *mut enmm_model,
@@ -175,7 +184,8 @@ fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_cha
     let user = User(user);
     Arc::new(move |level, message| {
         let text = CString::new(message.replace('\0', "?")).unwrap_or_default();
-        // SAFETY: the host has promised that the callback can be called with its pointer until another is set.
+        // SAFETY: the host has promised that the callback can be called with its pointer until another is set, and
+        // when the model is destroyed until calls in other threads have returned.
         unsafe { callback(user.get(), level, text.as_ptr()) };
     })
 }

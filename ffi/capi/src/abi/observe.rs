@@ -70,7 +70,7 @@ pub unsafe extern "C" fn enmm_get_contacts(
 }
 
 /// Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
-/// goes back to its events.
+/// goes back to its events. An event does not change between reads, its time included.
 ///
 /// Buffer and errors as enmm_get_block_states.
 #[unsafe(no_mangle)]

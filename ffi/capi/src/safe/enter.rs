@@ -23,11 +23,12 @@ pub fn guard(act: impl FnOnce() -> Outcome) -> enmm_status {
 pub fn with_model(handle: usize, act: impl FnOnce(&mut Model) -> Outcome) -> enmm_status {
     guard(|| {
         let shared = MODELS.find(handle)?;
+        let _turn = shared.enter()?;
         let mut model = shared.lock()?;
         let outcome = act(&mut model);
         let mail = model.take_mail();
         drop(model);
-        mail.deliver();
+        mail.deliver(handle, &shared);
         outcome
     })
 }

@@ -1,6 +1,7 @@
 //! A model behind a handle: the façade, the log of its host, and the calls that make it move.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
@@ -17,19 +18,55 @@ pub static MODELS: Table<Shared> = Table::new(0x10, "model");
 pub type Sink = std::sync::Arc<dyn Fn(enmm_log_level, &str) + Send + Sync>;
 
 /// A model that one thread at a time may use.
-pub struct Shared(Mutex<Model>);
+pub struct Shared {
+    model: Mutex<Model>,
+    /// Thread that is in a call, messages of the call included; 0 for none.
+    owner: AtomicUsize,
+}
+
+/// The right of one thread to a model. The outermost call of the thread gives it back.
+pub struct Turn<'a>(Option<&'a AtomicUsize>);
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        if let Some(owner) = self.0 {
+            owner.store(0, Ordering::Release);
+        }
+    }
+}
+
+/// A number of this thread that no other living thread has; never 0.
+fn this_thread() -> usize {
+    thread_local! { static HERE: u8 = const { 0 } }
+    HERE.with(|here| std::ptr::from_ref(here).addr())
+}
+
+fn busy() -> Failure {
+    let message = "another thread is using this model; let one thread at a time use it";
+    Failure::new(enmm_status::ENMM_BUSY, message)
+}
 
 impl Shared {
-    /// The model for the time of a call.
+    /// Takes the model for a call of this thread until its messages are out; calls of a callback come inside.
     ///
     /// # Errors
-    /// Another thread uses it, or a panic has left it broken.
+    /// Another thread is in a call.
+    pub fn enter(&self) -> Result<Turn<'_>, Failure> {
+        let here = this_thread();
+        match self.owner.compare_exchange(0, here, Ordering::Acquire, Ordering::Relaxed) {
+            Ok(_) => Ok(Turn(Some(&self.owner))),
+            Err(owner) if owner == here => Ok(Turn(None)),
+            Err(_) => Err(busy()),
+        }
+    }
+
+    /// The model while a call works on it; it is free again when messages go out.
+    ///
+    /// # Errors
+    /// A call is working on it, or a panic has left it broken.
     pub fn lock(&self) -> Result<MutexGuard<'_, Model>, Failure> {
-        self.0.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => {
-                let message = "another thread is using this model; let one thread at a time use it";
-                Failure::new(enmm_status::ENMM_BUSY, message)
-            }
+        self.model.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => busy(),
             TryLockError::Poisoned(_) => {
                 let message = "an internal error has broken this model; destroy it, and create it anew";
                 Failure::new(enmm_status::ENMM_PANIC, message)
@@ -62,13 +99,15 @@ impl Log {
 }
 
 /// Messages to be delivered when the model is free again, so that the host may call it.
-pub struct Mail(Option<Sink>, Vec<(enmm_log_level, String)>);
+pub struct Mail(Vec<(enmm_log_level, String)>);
 
 impl Mail {
-    /// Hands every message to the host.
-    pub fn deliver(self) {
-        let Self(Some(sink), mail) = self else { return };
-        for (level, message) in &mail {
+    /// Hands each message to the sink that is set by then: a callback may set another, or destroy the model.
+    pub fn deliver(self, handle: usize, shared: &Shared) {
+        for (level, message) in &self.0 {
+            let alive = MODELS.find(handle).is_ok();
+            let sink = shared.lock().ok().filter(|_| alive).and_then(|model| model.log.sink.clone());
+            let Some(sink) = sink else { return };
             sink(*level, message);
         }
     }
@@ -94,7 +133,7 @@ fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
     let inner = Cosimulation::new(loaded)?;
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
     let model = Model { inner, log: Log::default(), warnings };
-    MODELS.insert(Shared(Mutex::new(model)))
+    MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })
 }
 
 impl Model {
@@ -110,8 +149,7 @@ impl Model {
 
     /// Messages that have come together.
     pub fn take_mail(&mut self) -> Mail {
-        let mail = std::mem::take(&mut self.log.mail);
-        Mail(if mail.is_empty() { None } else { self.log.sink.clone() }, mail)
+        Mail(std::mem::take(&mut self.log.mail))
     }
 
     /// Seeks the initial equilibrium.

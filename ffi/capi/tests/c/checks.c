@@ -361,6 +361,43 @@ static void other_cases(enmm_model *model)
     OK(enmm_state_free(state));
 }
 
+struct turncoat {
+    enmm_model *model;
+    struct turncoat *next; /* speaks in its place from the first message on; none: the model is destroyed */
+    int messages, freed;
+};
+
+static void on_turn(void *user, enmm_log_level level, const char *message)
+{
+    struct turncoat *self = user;
+    (void)level;
+    CHECK(!self->freed && message[0] != 0);
+    self->freed = 1; /* from here on the library must not know it any more */
+    self->messages++;
+    if (self->next != NULL)
+        OK(enmm_set_log_callback(self->model, on_turn, self->next));
+    else
+        enmm_destroy(self->model);
+}
+
+/* Every message looks for the callback anew: one that replaced itself or destroyed the model gets no further one. */
+static void turncoats(const char *path)
+{
+    enmm_model *model = create(path);
+    struct turncoat second = {NULL, NULL, 0, 0}, first = {NULL, NULL, 0, 0};
+    double time = 0;
+    first.model = second.model = model;
+    first.next = &second;
+    OK(enmm_start(model));
+    OK(enmm_get_time(model, &time));
+    OK(enmm_set_gravity(model, 20, -9.81));
+    OK(enmm_set_log_callback(model, on_turn, &first));
+    for (int k = 0; k < 20 && second.messages == 0; k++)
+        OK(enmm_do_step(model, time + 0.2 * k, 0.2, NULL));
+    CHECK(first.messages == 1 && second.messages == 1);
+    CHECK(enmm_get_time(model, &time) == ENMM_DEAD_HANDLE);
+}
+
 int main(int argc, char **argv)
 {
     enmm_model *model;
@@ -379,5 +416,6 @@ int main(int argc, char **argv)
     failures(model);
     other_cases(model);
     enmm_destroy(model);
+    turncoats(argv[1]);
     return CHECKS_RESULT;
 }

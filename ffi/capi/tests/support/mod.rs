@@ -68,13 +68,18 @@ pub fn compiler(source: &str) -> Command {
 
 /// Compiles a host and returns the program.
 pub fn host(source: &str) -> PathBuf {
+    host_with(source, &[])
+}
+
+/// Compiles a host with more flags and returns the program.
+pub fn host_with(source: &str, flags: &[&str]) -> PathBuf {
     let name = Path::new(source).file_stem().expect("a file").to_string_lossy();
     let test = std::env::current_exe().expect("a test that knows where it is");
     let test = test.file_stem().expect("a file").to_string_lossy().into_owned();
-    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{test}"));
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{test}{}", flags.concat()));
     let directory = libraries();
     let mut compile = compiler(source);
-    compile.arg(source).arg("-o").arg(&program).arg("-L").arg(directory);
+    compile.args(flags).arg(source).arg("-o").arg(&program).arg("-L").arg(directory);
     compile.args(["-lenmm", "-lm", "-lpthread"]).arg(format!("-Wl,-rpath,{}", directory.display()));
     succeed(&mut compile);
     program
