@@ -1,10 +1,11 @@
 //! Instances as importers hold them: numbers for live instances, calls that cannot unwind, messages delivered when the
-//! instance is free again, so that a callback may call back.
+//! instance is free again, so that a callback may call back. Those of a step wait for its end, or for that of an
+//! intermediate update; [`Phase::Stepping`](crate::phase::Phase) refuses what a callback must not do.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, RwLock, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError, TryLockResult};
 
 use crate::instance::{Instance, Step, Update};
 use crate::log::{Message, Status};
@@ -37,77 +38,101 @@ impl<H: Host> Handle<H> {
     /// Does `work` on the instance; `function` stands before its messages. A panic is [`Status::Fatal`], and so is
     /// every later call.
     pub fn call(&self, function: &str, work: impl FnOnce(&mut Instance) -> Status) -> Status {
-        let done = catch_unwind(AssertUnwindSafe(|| match self.instance.try_lock() {
-            Ok(mut instance) => {
-                let status = work(&mut instance);
-                (status, instance.take_messages())
-            }
-            Err(TryLockError::WouldBlock) => {
-                (Status::Error, vec![Message::error("the instance is busy with a call of another thread")])
-            }
-            Err(TryLockError::Poisoned(_)) => {
-                (Status::Fatal, vec![Message::fatal("the instance is lost since an earlier panic: free it")])
-            }
-        }));
-        let (status, messages) = done.unwrap_or_else(|panic| {
-            (Status::Fatal, vec![Message::fatal(format!("panic: {}", panic_text(panic.as_ref())))])
-        });
-        for mut message in messages {
-            message.text.insert_str(0, ": ");
-            message.text.insert_str(0, function);
-            self.host.log(&message);
-        }
+        let (status, messages) = attempt(self.instance.try_lock(), work);
+        self.tell(function, messages);
         status
     }
 
-    /// A whole step. The instance is free while `update` runs, which may return the time of an early return.
+    /// A whole step. The instance is free while `update` runs, which may return the time of an early return. Nothing
+    /// touches the instance after the messages of the end are delivered.
     pub fn do_step(
         &self,
         function: &str,
         (t, h): (f64, f64),
         mut update: Option<&mut dyn FnMut(Update) -> Option<f64>>,
     ) -> Ended {
-        let mut step: Option<Step> = None;
+        let mut begun: Option<Step> = None;
         let mut time = t;
-        let mut status = self.call(function, |instance| {
-            let begun = instance.begin_step(t, h);
+        let (mut status, mut held) = attempt(self.instance.try_lock(), |instance| {
+            let outcome = instance.begin_step(t, h);
             time = instance.time();
-            begun.map_or_else(
+            outcome.map_or_else(
                 |status| status,
-                |begun| {
-                    step = Some(begun);
+                |step| {
+                    begun = Some(step);
                     Status::Ok
                 },
             )
         });
-        let Some(mut step) = step else { return Ended { status, time, early: false } };
-        let mut last_told = t;
-        while status == Status::Ok && !step.is_done() {
-            let mut told = None;
-            status = self.call(function, |instance| {
-                let status = instance.advance_step(&mut step);
-                time = instance.time_of_model();
-                let news = status == Status::Ok && update.is_some() && time > last_told;
-                told = news.then(|| instance.enter_update());
-                status
-            });
-            if let (Some(mut told), Some(update)) = (told, update.as_mut()) {
+        let mut early = false;
+        if let Some(mut step) = begun {
+            let mut last_told = time;
+            while status == Status::Ok && !step.is_done() {
+                let mut told = None;
+                status = self.go_on(&mut held, |instance| {
+                    let status = instance.advance_step(&mut step);
+                    let news = status == Status::Ok && update.is_some() && instance.time_of_model() > last_told;
+                    told = news.then(|| instance.enter_update(&step));
+                    time = instance.time();
+                    status
+                });
+                let (Some(told), Some(update)) = (told, update.as_mut()) else { continue };
                 last_told = told.time;
-                told.can_return_early &= !step.is_done();
                 let wanted = update(told).filter(|_| told.can_return_early);
-                status = self.call(function, |instance| instance.leave_update(&mut step, wanted));
+                status = self.go_on(&mut held, |instance| {
+                    let status = instance.leave_update(&mut step, wanted);
+                    time = instance.time();
+                    status
+                });
+                self.tell(function, std::mem::take(&mut held));
             }
+            early = status == Status::Ok && step.is_early();
         }
-        if let Ok(instance) = self.instance.try_lock() {
-            time = instance.time();
+        self.tell(function, held);
+        Ended { status, time, early }
+    }
+
+    /// Goes on with a step that has begun. Another thread can have the instance only to be refused, or to read within
+    /// an update: that is waited for.
+    fn go_on(&self, held: &mut Vec<Message>, work: impl FnOnce(&mut Instance) -> Status) -> Status {
+        let (status, messages) = attempt(self.instance.lock().map_err(TryLockError::from), work);
+        held.extend(messages);
+        status
+    }
+
+    /// Delivers messages of a function.
+    fn tell(&self, function: &str, messages: Vec<Message>) {
+        for mut message in messages {
+            message.text.insert_str(0, ": ");
+            message.text.insert_str(0, function);
+            self.host.log(&message);
         }
-        Ended { status, time, early: status == Status::Ok && step.is_early() }
     }
 
     /// The importer's side.
     pub fn host(&self) -> &H {
         &self.host
     }
+}
+
+/// Does `work` on an instance if it is free, and takes the messages.
+fn attempt(
+    lock: TryLockResult<MutexGuard<'_, Instance>>,
+    work: impl FnOnce(&mut Instance) -> Status,
+) -> (Status, Vec<Message>) {
+    let done = catch_unwind(AssertUnwindSafe(|| match lock {
+        Ok(mut instance) => {
+            let status = work(&mut instance);
+            (status, instance.take_messages())
+        }
+        Err(TryLockError::WouldBlock) => {
+            (Status::Error, vec![Message::error("the instance is busy with a call of another thread")])
+        }
+        Err(TryLockError::Poisoned(_)) => {
+            (Status::Fatal, vec![Message::fatal("the instance is lost since an earlier panic: free it")])
+        }
+    }));
+    done.unwrap_or_else(|panic| (Status::Fatal, vec![Message::fatal(format!("panic: {}", panic_text(panic.as_ref())))]))
 }
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {

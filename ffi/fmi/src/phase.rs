@@ -20,6 +20,8 @@ pub enum Phase {
     Terminated = 32,
     /// After an error.
     Error = 64,
+    /// Within doStep, outside of intermediate update mode.
+    Stepping = 128,
 }
 
 const I: u16 = Phase::Instantiated as u16;
@@ -29,6 +31,7 @@ const F: u16 = Phase::StepFailed as u16;
 const U: u16 = Phase::Intermediate as u16;
 const T: u16 = Phase::Terminated as u16;
 const E: u16 = Phase::Error as u16;
+const P: u16 = Phase::Stepping as u16;
 
 impl Phase {
     /// The phase with this bit.
@@ -41,6 +44,7 @@ impl Phase {
             Self::Intermediate,
             Self::Terminated,
             Self::Error,
+            Self::Stepping,
         ];
         all.into_iter().find(|&phase| phase as u16 == bit)
     }
@@ -55,6 +59,7 @@ impl Phase {
             Self::Intermediate => "intermediate update mode",
             Self::Terminated => "terminated",
             Self::Error => "error",
+            Self::Stepping => "within a step",
         }
     }
 }
@@ -92,28 +97,30 @@ pub enum Call {
     State,
 }
 
-const ALL_BUT_UPDATE: u16 = I | N | S | F | T | E;
+/// All but those within a step.
+const AT_REST: u16 = I | N | S | F | T | E;
 
 /// Rows: call, mask of FMI 2, mask of FMI 3.
 ///
 /// FMI 2 leaves a failed step by a saved state. Here the step is a transaction and the model stands at its begin, so
 /// that a shorter step, or other inputs, are also welcome without one. FMI 3 knows no such state: a discarded step
-/// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists.
+/// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists. Within a step,
+/// for a logger that calls back or another thread, there is nothing but logging.
 const TABLE: [(Call, u16, u16); 14] = [
-    (Call::Logging, ALL_BUT_UPDATE, ALL_BUT_UPDATE | U),
-    (Call::Free, ALL_BUT_UPDATE, ALL_BUT_UPDATE),
+    (Call::Logging, AT_REST | P, AT_REST | P | U),
+    (Call::Free, AT_REST, AT_REST),
     (Call::Setup, I, 0),
     (Call::EnterInitialization, I, I),
     (Call::ExitInitialization, N, N),
     (Call::Terminate, S | F, S),
-    (Call::Reset, ALL_BUT_UPDATE, ALL_BUT_UPDATE),
+    (Call::Reset, AT_REST, AT_REST),
     (Call::Get, N | S | F | T | E, I | N | S | U | T | E),
     (Call::Set, I | N | S | F, I | N | S),
     (Call::SetParameter, I | N, I | N),
     (Call::GetDerivative, S | F | T | E, S | U | T | E),
     (Call::DoStep, S | F, S),
     (Call::Status, S | F | T, 0),
-    (Call::State, ALL_BUT_UPDATE, ALL_BUT_UPDATE),
+    (Call::State, AT_REST, AT_REST),
 ];
 
 /// Whether a call is legal in a phase.
@@ -132,7 +139,7 @@ mod tests {
             assert_eq!(row.0 as usize, k);
         }
         for bit in 0..16 {
-            assert_eq!(Phase::of(1 << bit).map(|phase| phase as u16), (bit < 7).then_some(1 << bit));
+            assert_eq!(Phase::of(1 << bit).map(|phase| phase as u16), (bit < 8).then_some(1 << bit));
         }
     }
 
@@ -149,5 +156,14 @@ mod tests {
         assert!(!is_legal(Version::Two, Call::Get, Phase::Instantiated));
         assert!(is_legal(Version::Three, Call::Get, Phase::Instantiated));
         assert!(!is_legal(Version::Three, Call::Free, Phase::Intermediate));
+    }
+
+    #[test]
+    fn within_a_step_only_logging_is_left() {
+        for version in [Version::Two, Version::Three] {
+            for row in TABLE {
+                assert_eq!(is_legal(version, row.0, Phase::Stepping), row.0 == Call::Logging, "{row:?}");
+            }
+        }
     }
 }

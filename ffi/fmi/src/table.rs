@@ -1,5 +1,6 @@
 //! The one table of variables: both model descriptions, every getter and every setter follow it.
 
+use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
 use enmm::cosimulation::{Parameter, PortKind, parameters};
 use enmm::model::Case;
 use enmm::model::case::Port;
@@ -210,7 +211,7 @@ pub struct Variable {
     pub causality: Causality,
     /// Start value of a parameter or an input; a Boolean is 0 or 1.
     pub start: Option<f64>,
-    /// Least and greatest value, for parameters and a few inputs.
+    /// Least and greatest value of a number that can be set.
     pub limits: Option<(f64, f64)>,
     /// Number of elements of an array; `None` for a scalar.
     pub length: Option<usize>,
@@ -310,6 +311,17 @@ fn plain(name: &str) -> String {
     name.chars().map(|c| if bad(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }
 
+/// Least and greatest value of an input: those that the model itself takes.
+fn input_limits(quantity: Quantity) -> Option<(f64, f64)> {
+    let most = match quantity {
+        Quantity::Gravity(_) | Quantity::BaseAcceleration(_) => ACCELERATION_MAX,
+        Quantity::WaterLevel => LEVEL_MAX,
+        Quantity::StrengthFactor => return Some((0.0, FACTOR_MAX)),
+        _ => VALUE_MAX,
+    };
+    Some((-most, most))
+}
+
 /// Rows in the making.
 struct Rows {
     variables: Vec<Variable>,
@@ -362,8 +374,9 @@ impl Rows {
 
     fn input(&mut self, name: &str, what: &str, unit: &'static str, start: f64, quantity: Quantity) -> &mut Variable {
         self.push(name, &format!("{what}; {ACTS}"), unit, Type::Real, Causality::Input, quantity);
-        self.last().start = Some(start);
-        self.last()
+        let row = self.last();
+        (row.start, row.limits) = (Some(start), input_limits(quantity));
+        row
     }
 
     fn output(&mut self, name: &str, what: &str, unit: &'static str, quantity: Quantity) -> &mut Variable {
@@ -379,7 +392,7 @@ impl Rows {
         }
         let what = "Threads that a step uses; results do not depend on it";
         let row = self.parameter("threads", what, "", Type::Integer, Quantity::Threads);
-        (row.start, row.limits) = (Some(1.0), Some((1.0, 1024.0)));
+        (row.start, row.limits) = (Some(1.0), Some((1.0, THREADS_MAX as f64)));
         let what = "Whether a new input is reached linearly at the end of the next step instead of holding over it";
         self.parameter("interpolate_inputs", what, "", Type::Boolean, Quantity::InterpolateInputs).start = Some(0.0);
     }
@@ -399,7 +412,7 @@ impl Rows {
             self.input("water_level", what, "m", water.level, Quantity::WaterLevel);
         }
         let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
-        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor).limits = Some((0.0, 1e6));
+        self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
         for (k, port) in case.ports.iter().enumerate() {
             self.port_inputs(k, port);
         }

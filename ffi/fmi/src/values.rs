@@ -14,9 +14,12 @@ pub struct Values {
     pub all: Vec<f64>,
 }
 
-/// Inputs that reach the model by one setter.
+/// Inputs that reach the model by one setter. Blocks come first: sums of forces are all that the model may still refuse
+/// after every value has kept to the limits of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
+    /// Forces and moments on blocks, of arrays and ports together.
+    Blocks,
     /// Gravity.
     Gravity,
     /// Acceleration of the base.
@@ -25,8 +28,6 @@ pub enum Group {
     Water,
     /// Factor on strengths.
     Strength,
-    /// Forces and moments on blocks, of arrays and ports together.
-    Blocks,
     /// Traction of a port.
     Traction(usize),
     /// Pressure of a port.
@@ -61,6 +62,11 @@ impl Values {
             values.starts.push(values.all.len());
         }
         values
+    }
+
+    /// Other values of the same variables.
+    pub fn with(&self, all: &[f64]) -> Self {
+        Self { starts: self.starts.clone(), all: all.to_vec() }
     }
 
     /// Values of a variable; empty for outputs.
@@ -150,13 +156,8 @@ impl Values {
                 _ => {}
             }
         }
-        for (block, (force, moment)) in force.into_iter().zip(moment).enumerate() {
-            let (old_force, old_moment) = (model.inputs().block_force[block], model.inputs().block_moment[block]);
-            if old_force != force || old_moment != moment {
-                model.set_block_force(block as u32, force, moment)?;
-            }
-        }
-        Ok(())
+        let sums = force.into_iter().zip(moment).enumerate();
+        model.set_block_forces(sums.map(|(block, (force, moment))| (block as u32, force, moment)))
     }
 }
 

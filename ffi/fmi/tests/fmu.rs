@@ -123,6 +123,7 @@ fn the_description_says_what_the_table_says() {
             assert_eq!(starts.len(), expected, "{}", variable.name);
             let given = matches!(variable.causality, Causality::Parameter | Causality::Input);
             assert_eq!(given, variable.start.is_some(), "{}", variable.name);
+            assert_eq!(given && variable.kind != Type::Boolean, variable.limits.is_some(), "{}", variable.name);
             if let (Some((low, high)), Some(start)) = (variable.limits, variable.start) {
                 assert!(low <= start && start <= high, "{}", variable.name);
             }

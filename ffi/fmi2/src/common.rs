@@ -211,9 +211,9 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, state: FmuState, ou
             return instance.refuse_state(&reason);
         }
         // SAFETY: the importer gives room for `size` bytes.
-        match unsafe { raw::slice_mut(out.cast::<u8>(), size) } {
+        match unsafe { raw::room(out.cast::<u8>(), size) } {
             Some(out) => {
-                out.copy_from_slice(bytes);
+                raw::fill(out, bytes.iter().copied());
                 Status::Ok
             }
             None => instance.refuse_state(MISSING),

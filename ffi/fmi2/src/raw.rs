@@ -1,6 +1,7 @@
 //! What the C side gives: pointers that may be missing.
 
 use std::ffi::{CStr, CString, c_char};
+use std::mem::MaybeUninit;
 
 /// Reason of a call that lacks an argument.
 pub const MISSING: &str = "a pointer is NULL or misaligned, or a count too large; give an array for every count but 0";
@@ -18,16 +19,24 @@ pub unsafe fn slice<'a, T>(pointer: *const T, n: usize) -> Option<&'a [T]> {
     }
 }
 
-/// The array of `n` values to be written at a pointer; empty for `n` = 0, whatever the pointer is.
+/// The room for `n` values at a pointer; empty for `n` = 0, whatever the pointer is. What is there before need not be a
+/// value.
 ///
 /// # Safety
-/// As for [`slice`], and nothing else points there.
-pub unsafe fn slice_mut<'a, T>(pointer: *mut T, n: usize) -> Option<&'a mut [T]> {
+/// A pointer that is neither NULL nor misaligned may be written to for `n` values, and nothing else points there.
+pub unsafe fn room<'a, T>(pointer: *mut T, n: usize) -> Option<&'a mut [MaybeUninit<T>]> {
     match n {
         0 => Some(&mut []),
         _ if pointer.is_null() || !pointer.is_aligned() || !fits::<T>(n) => None,
         // SAFETY: by the contract of this function.
-        _ => Some(unsafe { std::slice::from_raw_parts_mut(pointer, n) }),
+        _ => Some(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), n) }),
+    }
+}
+
+/// Writes values to the room for them, from its begin.
+pub fn fill<T>(room: &mut [MaybeUninit<T>], values: impl IntoIterator<Item = T>) {
+    for (place, value) in room.iter_mut().zip(values) {
+        place.write(value);
     }
 }
 

@@ -13,29 +13,23 @@ pub unsafe extern "C" fn fmi2GetReal(
     n: usize,
     values: *mut Real,
 ) -> Status {
-    call(c, "fmi2GetReal", |instance| {
-        // SAFETY: the importer gives `n` references and room for `n` values.
-        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n)) } {
-            (Some(references), Some(values)) => instance.get(references, Type::Real, values),
-            _ => instance.refuse(MISSING),
-        }
-    })
+    // SAFETY: the importer gives `n` references and room for `n` values.
+    unsafe { get_as((c, "fmi2GetReal", Type::Real), (references, n), values, |number| number) }
 }
 
-/// Reads variables whose values are whole numbers.
+/// Reads variables of a type; `of` makes a value of a number.
 ///
 /// # Safety
 /// The importer gives `n` references and room for `n` values.
-unsafe fn get_whole(
-    c: Component,
-    name: &str,
+unsafe fn get_as<T>(
+    (c, name, kind): (Component, &str, Type),
     (references, n): (*const ValueReference, usize),
-    values: *mut Integer,
-    kind: Type,
+    values: *mut T,
+    of: fn(f64) -> T,
 ) -> Status {
     call(c, name, |instance| {
         // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n)) } {
+        match unsafe { (raw::slice(references, n), raw::room(values, n)) } {
             (Some(references), Some(values)) => {
                 let status = instance.expects(Call::Get, references, kind, n);
                 if status != Status::Ok {
@@ -44,7 +38,7 @@ unsafe fn get_whole(
                 let mut numbers = vec![0.0; n];
                 let status = instance.get(references, kind, &mut numbers);
                 if status == Status::Ok {
-                    values.iter_mut().zip(numbers).for_each(|(value, number)| *value = number as Integer);
+                    raw::fill(values, numbers.into_iter().map(of));
                 }
                 status
             }
@@ -61,7 +55,7 @@ pub unsafe extern "C" fn fmi2GetInteger(
     values: *mut Integer,
 ) -> Status {
     // SAFETY: the importer gives `n` references and room for `n` values.
-    unsafe { get_whole(c, "fmi2GetInteger", (references, n), values, Type::Integer) }
+    unsafe { get_as((c, "fmi2GetInteger", Type::Integer), (references, n), values, |number| number as Integer) }
 }
 
 #[unsafe(no_mangle)]
@@ -72,7 +66,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     values: *mut Boolean,
 ) -> Status {
     // SAFETY: the importer gives `n` references and room for `n` values.
-    unsafe { get_whole(c, "fmi2GetBoolean", (references, n), values, Type::Boolean) }
+    unsafe { get_as((c, "fmi2GetBoolean", Type::Boolean), (references, n), values, |number| number as Boolean) }
 }
 
 /// There are no variables of type String.
@@ -206,8 +200,19 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
 ) -> Status {
     call(c, "fmi2GetRealOutputDerivatives", |instance| {
         // SAFETY: the importer gives `n` references, `n` orders and room for `n` values.
-        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::slice_mut(values, n)) } {
-            (Some(references), Some(orders), Some(values)) => instance.get_derivatives(references, orders, values),
+        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::room(values, n)) } {
+            (Some(references), Some(orders), Some(values)) => {
+                let status = instance.expects(Call::GetDerivative, references, Type::Real, n);
+                if status != Status::Ok {
+                    return status;
+                }
+                let mut numbers = vec![0.0; n];
+                let status = instance.get_derivatives(references, orders, &mut numbers);
+                if status == Status::Ok {
+                    raw::fill(values, numbers);
+                }
+                status
+            }
             _ => instance.refuse(MISSING),
         }
     })

@@ -2,6 +2,8 @@
 
 use enmm_fmi::instance::Update;
 use enmm_fmi::log::Status;
+use enmm_fmi::phase::Call;
+use enmm_fmi::table::Type;
 
 use crate::raw::{self, MISSING};
 use crate::types::{Importer, InstancePointer, ValueReference, call, with_handle};
@@ -63,8 +65,19 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
 ) -> Status {
     call(instance, "fmi3GetOutputDerivatives", |instance| {
         // SAFETY: the importer gives `n` references, `n` orders and room for `n_values` values.
-        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::slice_mut(values, n_values)) } {
-            (Some(references), Some(orders), Some(values)) => instance.get_derivatives(references, orders, values),
+        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::room(values, n_values)) } {
+            (Some(references), Some(orders), Some(values)) => {
+                let status = instance.expects(Call::GetDerivative, references, Type::Real, n_values);
+                if status != Status::Ok {
+                    return status;
+                }
+                let mut numbers = vec![0.0; n_values];
+                let status = instance.get_derivatives(references, orders, &mut numbers);
+                if status == Status::Ok {
+                    raw::fill(values, numbers);
+                }
+                status
+            }
             _ => instance.refuse(MISSING),
         }
     })

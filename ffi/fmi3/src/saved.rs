@@ -96,9 +96,9 @@ pub unsafe extern "C" fn fmi3SerializeFMUState(
             return instance.refuse_state(&reason);
         }
         // SAFETY: the importer gives room for `size` bytes.
-        match unsafe { raw::slice_mut(out, size) } {
+        match unsafe { raw::room(out, size) } {
             Some(out) => {
-                out.copy_from_slice(bytes);
+                raw::fill(out, bytes.iter().copied());
                 Status::Ok
             }
             None => instance.refuse_state(MISSING),

@@ -14,13 +14,9 @@ pub unsafe extern "C" fn fmi3GetFloat64(
     values: *mut f64,
     n_values: usize,
 ) -> Status {
-    call(instance, "fmi3GetFloat64", |instance| {
-        // SAFETY: the importer gives `n` references and room for `n_values` values.
-        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n_values)) } {
-            (Some(references), Some(values)) => instance.get(references, Type::Real, values),
-            _ => instance.refuse(MISSING),
-        }
-    })
+    let what = (instance, "fmi3GetFloat64", Type::Real);
+    // SAFETY: the importer gives `n` references and room for `n_values` values.
+    unsafe { get_as(what, (references, n), (values, n_values), |number| number) }
 }
 
 #[unsafe(no_mangle)]
@@ -40,7 +36,7 @@ pub unsafe extern "C" fn fmi3SetFloat64(
     })
 }
 
-/// Reads variables of a type other than Float64; `of` makes a value of a number.
+/// Reads variables of a type; `of` makes a value of a number.
 ///
 /// # Safety
 /// The importer gives `n` references and room for `n_values` values.
@@ -52,7 +48,7 @@ unsafe fn get_as<T>(
 ) -> Status {
     call(instance, name, |instance| {
         // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::slice_mut(values, n_values)) } {
+        match unsafe { (raw::slice(references, n), raw::room(values, n_values)) } {
             (Some(references), Some(values)) => {
                 let status = instance.expects(Call::Get, references, kind, n_values);
                 if status != Status::Ok {
@@ -61,7 +57,7 @@ unsafe fn get_as<T>(
                 let mut numbers = vec![0.0; n_values];
                 let status = instance.get(references, kind, &mut numbers);
                 if status == Status::Ok {
-                    values.iter_mut().zip(numbers).for_each(|(value, number)| *value = of(number));
+                    raw::fill(values, numbers.into_iter().map(of));
                 }
                 status
             }
@@ -162,7 +158,7 @@ pub unsafe extern "C" fn fmi3GetBinary(
 ) -> Status {
     call(instance, "fmi3GetBinary", |instance| {
         // SAFETY: the importer gives `n` references and room for `n_values` sizes and pointers.
-        let room = unsafe { (raw::slice(references, n), raw::slice_mut(sizes, n), raw::slice_mut(values, n_values)) };
+        let room = unsafe { (raw::slice(references, n), raw::room(sizes, n), raw::room(values, n_values)) };
         let (Some(references), Some(sizes), Some(values)) = room else { return instance.refuse(MISSING) };
         if n != n_values {
             return instance.refuse("the number of values differs from that of the references; no Binary is an array");
@@ -172,8 +168,8 @@ pub unsafe extern "C" fn fmi3GetBinary(
         }
         match instance.get_binary(references) {
             Ok(bytes) => {
-                sizes.fill(bytes.len());
-                values.fill(bytes.as_ptr());
+                raw::fill(sizes, std::iter::repeat(bytes.len()));
+                raw::fill(values, std::iter::repeat(bytes.as_ptr()));
                 Status::Ok
             }
             Err(status) => status,

@@ -196,6 +196,39 @@ fn values_that_cannot_be_set_are_errors_and_a_saved_state_mends_them() {
 }
 
 #[test]
+fn a_call_that_sets_many_values_sets_all_or_none() {
+    let fmu = Fmu::boxed();
+    let instance = fmu.started();
+    let blocks = instance.get("block_x").len();
+    assert_eq!(instance.set("block_force_x", &vec![9e14; blocks]), OK);
+    let before = instance.snapshot();
+    let set = |names: &[&str], values: &[f64]| {
+        let references: Vec<u32> = names.iter().map(|name| fmu.reference(name)).collect();
+        let n = references.len();
+        unsafe { fmi3SetFloat64(instance.pointer, references.as_ptr(), n, values.as_ptr(), values.len()) }
+    };
+    // A value beyond its limits, and forces that only together are too large, after values that are welcome.
+    for (names, values) in [
+        (&["strength_factor", "bed.pressure", "gravity_x"][..], &[0.5, 10.0, 1e30][..]),
+        (&["box.force_y", "face.pressure"], &[5.0, -2e15]),
+        (&["gravity_x", "water_level", "box.force_x"], &[0.1, 0.5, 9e14]),
+    ] {
+        assert_eq!(set(names, values), ERROR);
+        assert!(instance.last_line().contains(&names[names.len() - 1][..3]), "{}", instance.last_line());
+        assert_eq!(instance.snapshot(), before, "{names:?}");
+        for name in ["strength_factor", "bed.pressure", "gravity_x", "box.force_x", "box.force_y", "water_level"] {
+            let start = fmu.table.get(fmu.reference(name)).unwrap().start.unwrap();
+            assert_eq!(instance.get(name), [start], "{name}");
+        }
+        let state = fmi3Reset(instance.pointer);
+        assert_eq!(state, OK);
+        instance.start();
+        assert_eq!(instance.set("block_force_x", &vec![9e14; blocks]), OK);
+        assert_eq!(instance.snapshot(), before);
+    }
+}
+
+#[test]
 fn wrong_references_types_counts_and_pointers_are_errors() {
     let fmu = Fmu::boxed();
     let (real, array) = (fmu.reference("box.force_x"), fmu.reference("block_x"));
@@ -234,6 +267,29 @@ fn wrong_references_types_counts_and_pointers_are_errors() {
     assert_eq!(fmi3GetString(i.pointer, null(), 0, null_mut(), 0), OK);
     assert_eq!(fmi3SetClock(i.pointer, null(), 0, null()), OK);
     fmi3FreeInstance(null_mut());
+}
+
+#[test]
+fn a_getter_that_fails_writes_nothing_and_one_that_works_needs_no_values_before() {
+    use std::mem::MaybeUninit;
+    let fmu = Fmu::boxed();
+    let (real, other, array) = (fmu.reference("box.displacement_x"), fmu.reference("time"), fmu.reference("block_x"));
+    let instance = fmu.started();
+    let blocks = instance.get("block_x").len();
+    let mut room = vec![MaybeUninit::<f64>::uninit(); blocks];
+    let status = unsafe { fmi3GetFloat64(instance.pointer, &array, 1, room.as_mut_ptr().cast::<f64>(), room.len()) };
+    assert_eq!(status, OK);
+    let values: Vec<f64> = room.iter().map(|value| unsafe { value.assume_init() }).collect();
+    assert_eq!(values, instance.get("block_x"));
+    let mut values = [7.0; 2];
+    let (references, out) = ([real, other], values.as_mut_ptr());
+    unsafe {
+        let orders = [1, 1];
+        let status = fmi3GetOutputDerivatives(instance.pointer, references.as_ptr(), 2, orders.as_ptr(), out, 2);
+        assert_eq!(status, ERROR, "time has no derivative that could be asked for");
+        assert_eq!(fmi3GetFloat64(instance.pointer, [real, 9999].as_ptr(), 2, out, 2), ERROR);
+    }
+    assert_eq!(values, [7.0; 2]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{ERROR, Fmu, OK, Options, update};
+use common::{ERROR, Fmu, Instance, OK, Options, update};
 use enmm::geometry::Vector;
 use enmm_fmi3::{Status, fmi3EnterInitializationMode, fmi3ExitInitializationMode, fmi3Reset};
 
@@ -208,6 +208,28 @@ fn bad_steps_are_errors_and_the_stop_time_holds() {
 }
 
 #[test]
+fn a_start_far_from_time_0_changes_no_motion() {
+    let fmu = Fmu::boxed();
+    let plain = fmu.started();
+    plain.run(0.01, 0.1);
+    for start in [1e7, -1e7, 1e9] {
+        let instance = fmu.instance();
+        assert_eq!(fmi3EnterInitializationMode(instance.pointer, false, 0.0, start, false, 0.0), OK);
+        assert_eq!(fmi3ExitInitializationMode(instance.pointer), OK);
+        // Half of the steps begin where the last one ended, half on the grid of the importer.
+        for k in 0..10 {
+            let sum = start + 0.01 * f64::from(k);
+            let t = if k % 2 == 0 { sum } else { instance.get("time")[0] };
+            assert_eq!(instance.step(t, 0.01), (OK, false, t + 0.01), "{}", instance.last_line());
+        }
+        assert_eq!(instance.get("block_y"), plain.get("block_y"), "{start}");
+        assert_eq!(instance.get("block_velocity_x"), plain.get("block_velocity_x"), "{start}");
+        assert_eq!(instance.step(start, 0.01).0, ERROR, "a time that is over");
+        assert!(instance.last_line().contains("must be the time"), "{}", instance.last_line());
+    }
+}
+
+#[test]
 fn an_event_ends_a_step_early_where_that_is_allowed() {
     let fmu = Fmu::boxed();
     let lift = |early_return| {
@@ -275,6 +297,65 @@ fn updates_come_at_every_internal_step_and_may_end_the_step() {
     assert_eq!(instance.step(second, 0.02 - second).0, OK);
     plain.run_from(0.01, 0.01, 0.02);
     assert_eq!(instance.get("block_y"), plain.get("block_y"));
+}
+
+/// An instance whose inputs move linearly, and that may return early at a time.
+fn ramped(fmu: &Fmu, start: f64, ask: Option<(f64, f64)>) -> Instance<'_> {
+    let options = Options { early_return: true, update: Some(update), ..Options::default() };
+    let instance = fmu.instantiate(&options).unwrap();
+    {
+        let mut updates = instance.log.updates.lock().unwrap();
+        (updates.instance, updates.ask) = (instance.pointer as usize, ask);
+    }
+    let reference = fmu.reference("interpolate_inputs");
+    assert_eq!(unsafe { enmm_fmi3::fmi3SetBoolean(instance.pointer, &reference, 1, &true, 1) }, OK);
+    assert_eq!(fmi3EnterInitializationMode(instance.pointer, false, 0.0, start, false, 0.0), OK);
+    assert_eq!(fmi3ExitInitializationMode(instance.pointer), OK);
+    assert_eq!(instance.set("box.force_x", &[1e3]), OK);
+    instance
+}
+
+#[test]
+fn an_early_return_leaves_linear_inputs_on_their_way() {
+    let fmu = Fmu::boxed();
+    let plain = ramped(&fmu, 0.0, None);
+    let dt = plain.get("internal_dt")[0];
+    plain.run(0.04, 0.04);
+    let last = plain.get("block_velocity_x");
+    for wanted in [4.0 * dt, 4.3 * dt] {
+        let instance = ramped(&fmu, 0.0, Some((0.0, wanted)));
+        let (status, early, time) = instance.step(0.0, 0.04);
+        assert_eq!((status, early, time), (OK, true, wanted));
+        let mut model = fmu.model();
+        model.set_interpolation(enmm::cosimulation::Interpolation::Linear);
+        model.start().unwrap();
+        model.set_block_force(model.ports()[0].block, Vector::new(1e3, 0.0), 0.0).unwrap();
+        let mut interval = model.begin(0.0, 0.04).unwrap();
+        model.advance(&mut interval).unwrap();
+        model.shorten(&mut interval, model.time() + (wanted - model.time()));
+        while model.advance(&mut interval).unwrap() {}
+        assert_eq!(instance.snapshot(), model.serialize(&model.save()).unwrap());
+        // The rest of the same way, on the same line.
+        instance.log.updates.lock().unwrap().ask = None;
+        assert_eq!(instance.step(time, 0.04 - time), (OK, false, time + (0.04 - time)));
+        let velocity = instance.get("block_velocity_x");
+        let scale = last.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        assert!(velocity.iter().zip(&last).all(|(a, b)| (a - b).abs() < 0.01 * scale), "{velocity:?} {last:?}");
+    }
+}
+
+#[test]
+fn a_wanted_time_at_or_after_the_end_is_the_end() {
+    let fmu = Fmu::boxed();
+    for start in [0.0, 1e9] {
+        let plain = ramped(&fmu, start, None);
+        assert_eq!(plain.step(start, 0.02), (OK, false, start + 0.02));
+        for wanted in [start + 0.02, start + 0.5, 1e300] {
+            let instance = ramped(&fmu, start, Some((0.0, wanted)));
+            assert_eq!(instance.step(start, 0.02), (OK, false, start + 0.02), "{wanted}");
+            assert_eq!(instance.snapshot(), plain.snapshot());
+        }
+    }
 }
 
 #[test]

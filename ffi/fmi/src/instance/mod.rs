@@ -1,7 +1,7 @@
 //! One instance of an FMU: its life cycle. Both sets of C entry points are thin over it.
 //!
 //! A call either does all that it should or returns an error and leaves values and model as they were; the phase is
-//! then [`Phase::Error`], except for calls that only handle saved states or logging.
+//! then [`Phase::Error`], except for calls that only handle saved states or logging, or that come within a step.
 
 mod read;
 mod saved;
@@ -146,12 +146,12 @@ impl Instance {
         }
     }
 
-    /// Ends a call that failed.
+    /// Ends a call that failed. One that comes within a step, from another thread say, does not touch the step.
     fn fail(&mut self, failure: Failure) -> Status {
-        if self.phase == Phase::Intermediate {
-            self.spoiled = true;
-        } else {
-            self.phase = Phase::Error;
+        match self.phase {
+            Phase::Stepping => {}
+            Phase::Intermediate => self.spoiled = true,
+            _ => self.phase = Phase::Error,
         }
         self.complain(failure)
     }
@@ -332,12 +332,12 @@ impl Instance {
         let values = Values::of(&self.table);
         let start = values.parameters(&self.table);
         if same_bits(&start, &self.built) {
+            self.use_threads(1)?;
             self.model.restore(&self.initial).map_err(|error| error.to_string())?;
         } else {
             let model = self.model_of(&start)?;
             self.take_model(model, start);
         }
-        self.use_threads(1)?;
         self.cache.clear();
         self.values = values;
         self.experiment = Experiment { start: 0.0, stop: None };

@@ -100,30 +100,34 @@ impl Instance {
         }
     }
 
-    /// Everything that can fail comes before the first change.
+    /// Everything that can fail comes before the first change of values or model; threads change no result.
     fn take_whole(&mut self, state: &Whole) -> Result<(), Failure> {
         let phase = self.check_whole(state)?;
+        let values = self.values.with(&state.values);
+        let rests = matches!(phase, Phase::Instantiated | Phase::Initialization);
+        let threads = if rests { self.threads } else { values.threads(&self.table) };
         if same_bits(&state.built, &self.built) {
+            self.use_threads(threads)?;
             self.model.restore(&state.model).map_err(|error| error.to_string())?;
         } else {
             let mut model = self.model_of(&state.built)?;
+            model.set_threads(threads).map_err(|error| error.to_string())?;
             model.restore(&state.model).map_err(|error| error.to_string())?;
             self.take_model(model, state.built.clone());
+            self.threads = threads;
         }
         self.cache.clear();
-        self.values.all.clone_from(&state.values);
+        self.values = values;
         self.phase = phase;
         self.time = state.time;
         self.experiment = Experiment { start: state.start, stop: state.stop };
-        if !matches!(phase, Phase::Instantiated | Phase::Initialization) {
-            self.use_threads(self.values.threads(&self.table))?;
-        }
         Ok(())
     }
 
     fn check_whole(&self, state: &Whole) -> Result<Phase, Failure> {
         let fits = state.values.len() == self.values.all.len() && state.built.len() == self.built.len();
-        let phase = Phase::of(state.phase).filter(|&phase| fits && phase != Phase::Intermediate);
+        let phase =
+            Phase::of(state.phase).filter(|phase| fits && !matches!(phase, Phase::Intermediate | Phase::Stepping));
         phase.ok_or_else(|| "the saved state is of another FMU: use one of this".to_owned())
     }
 

@@ -9,6 +9,8 @@ use super::{Failure, Instance, STOP_TOLERANCE};
 
 /// Part of an internal step below which a time has been reached.
 const SAME_TIME: f64 = 1e-6;
+/// Relative difference of times that importers sum up.
+const SUM_ERROR: f64 = 1e-9;
 
 /// A communication step in progress.
 #[derive(Debug)]
@@ -18,10 +20,7 @@ pub struct Step {
     begin: f64,
     end: f64,
     events_seen: usize,
-    /// Time of the model (s) at which the importer wants to return.
-    wanted: Option<f64>,
-    /// Whether the interval ends at that time.
-    shortened: bool,
+    /// Whether it ends before the end that was asked for.
     early: bool,
     done: bool,
 }
@@ -64,25 +63,26 @@ impl Instance {
         {
             return Err(format!("the step ends at {end} s, must not end after the stop time, {stop} s"));
         }
-        let interval = self.model.begin(t - self.experiment.start, h).map_err(|error| error.to_string())?;
+        let now = (t - self.time).abs() <= self.same_time(self.time);
+        if !now {
+            return Err(CosimulationError::Time { given: t, own: self.time }.to_string());
+        }
+        let interval = self.model.begin(self.model.time(), h).map_err(|error| error.to_string())?;
         self.cache.clear();
-        Ok(Step {
-            interval,
-            begin: self.time,
-            end,
-            events_seen: 0,
-            wanted: None,
-            shortened: false,
-            early: false,
-            done: false,
-        })
+        self.phase = Phase::Stepping;
+        Ok(Step { interval, begin: self.time, end, events_seen: 0, early: false, done: false })
+    }
+
+    /// Difference (s) below which two times of the importer near `t` are the same: the digits that its sums lose. Far
+    /// from time 0 these are more than the model, which counts from its own start, could bear.
+    fn same_time(&self, t: f64) -> f64 {
+        let dt = self.model.internal_step();
+        let sums = (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt);
+        sums.max(4.0 * f64::EPSILON * t.abs())
     }
 
     /// Takes one internal step.
     pub fn advance_step(&mut self, step: &mut Step) -> Status {
-        if self.must_return(step) {
-            return self.leave(step);
-        }
         let advanced = self.model.advance(&mut step.interval);
         self.cache.clear();
         match advanced {
@@ -96,40 +96,13 @@ impl Instance {
                     (false, _) => self.finish(step),
                 }
             }
-            Err(error) if step.shortened => {
-                self.log(Status::Warning, Category::Warning, format!("returned before the wanted time: {error}"));
-                self.leave(step)
-            }
             Err(error) => self.discard(step, &error),
         }
     }
 
-    /// Whether the wanted time has come; shortens the interval when the next internal step would pass it.
-    fn must_return(&mut self, step: &mut Step) -> bool {
-        let Some(wanted) = step.wanted.filter(|_| !step.shortened) else { return false };
-        let dt = self.model.internal_step();
-        let left = wanted - self.model.time();
-        if left <= SAME_TIME * dt {
-            return true;
-        }
-        if left < dt {
-            let now = self.model.time();
-            self.model.leave(step.interval.clone());
-            match self.model.begin(now, left) {
-                Ok(interval) => {
-                    (step.interval, step.shortened, step.events_seen) = (interval, true, 0);
-                }
-                Err(_) => return true,
-            }
-        }
-        false
-    }
-
     fn finish(&mut self, step: &mut Step) -> Status {
         step.done = true;
-        step.early = step.shortened;
-        self.phase = Phase::Step;
-        self.time = if step.early { self.time_of_model() } else { step.end };
+        (self.phase, self.time) = (Phase::Step, step.end);
         let unsettled = step.interval.info().unsettled;
         if unsettled > 0 {
             let text = format!("the contacts of {unsettled} sub-steps did not settle; they went on unsettled");
@@ -149,7 +122,7 @@ impl Instance {
 
     /// The model has gone back to where the step began. Only a numerical failure can go better with a shorter step.
     fn discard(&mut self, step: &mut Step, error: &CosimulationError) -> Status {
-        step.done = true;
+        (step.done, step.early) = (true, false);
         (self.phase, self.time) = (Phase::Step, step.begin);
         if !matches!(error, CosimulationError::Step(_)) {
             return self.fail(error.to_string());
@@ -174,27 +147,38 @@ impl Instance {
     }
 
     /// Enters intermediate update mode.
-    pub fn enter_update(&mut self) -> Update {
+    pub fn enter_update(&mut self, step: &Step) -> Update {
         self.phase = Phase::Intermediate;
-        let time = self.time_of_model();
-        self.time = time;
-        Update { time, can_return_early: self.early_return }
+        if !step.done {
+            self.time = self.time_of_model();
+        }
+        Update { time: self.time, can_return_early: self.early_return && !step.done }
     }
 
     /// Leaves intermediate update mode; `wanted` is the time (s) of an early return.
     pub fn leave_update(&mut self, step: &mut Step, wanted: Option<f64>) -> Status {
-        self.phase = Phase::Step;
+        self.phase = if step.done { Phase::Step } else { Phase::Stepping };
         if std::mem::take(&mut self.spoiled) {
-            self.model.leave(step.interval.clone());
-            step.done = true;
+            if !step.done {
+                self.leave(step);
+            }
             return self.fail("an illegal call within intermediate update mode has ended the step".to_owned());
         }
-        if step.done && !step.early {
-            self.time = step.end;
+        match wanted.filter(|_| self.early_return && !step.done) {
+            Some(wanted) => self.return_at(step, wanted),
+            None => Status::Ok,
         }
-        if let Some(wanted) = wanted.filter(|_| self.early_return && !step.shortened) {
-            let now = self.model.time();
-            step.wanted = Some((wanted - self.experiment.start).max(now));
+    }
+
+    /// Makes a step end at a time (s) that the importer wants, but neither before now nor after its end.
+    fn return_at(&mut self, step: &mut Step, wanted: f64) -> Status {
+        let (left, same) = (wanted - self.time, self.same_time(self.time));
+        if left <= same {
+            return self.leave(step);
+        }
+        if wanted < step.end - same {
+            self.model.shorten(&mut step.interval, self.model.time() + left);
+            (step.end, step.early) = (wanted, true);
         }
         Status::Ok
     }

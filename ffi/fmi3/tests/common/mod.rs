@@ -114,8 +114,12 @@ pub type Line = (Status, String, String);
 #[derive(Default)]
 pub struct Log {
     pub lines: Mutex<Vec<Line>>,
+    /// What the logger does at the next message.
+    pub meddle: Mutex<Option<Meddle>>,
     pub updates: Mutex<Updates>,
 }
+
+pub type Meddle = Box<dyn FnOnce() + Send>;
 
 #[derive(Default)]
 pub struct Updates {
@@ -133,6 +137,10 @@ unsafe extern "C" fn take_line(environment: *mut c_void, status: Status, categor
     let log = unsafe { &*environment.cast::<Log>() };
     let text = |pointer| unsafe { CStr::from_ptr(pointer) }.to_str().unwrap().to_owned();
     log.lines.lock().unwrap().push((status, text(category), text(message)));
+    let meddle = log.meddle.lock().unwrap().take();
+    if let Some(meddle) = meddle {
+        meddle();
+    }
 }
 
 pub unsafe extern "C" fn update(
