@@ -383,13 +383,9 @@ def test_derivatives_are_the_velocities(fmu, opened):
             assert (status, values) == (OK, instance.get(f"{stem}.{pairs[word]}"))
             told += 1
     assert told >= 5
+    assert instance.derivative("kinetic_energy") == (OK, [0.0]), "of which nothing but the value is known"
     state = instance.save()
-    for name, order in (
-        (fmu.block_outputs()[0], 2),
-        (fmu.block_outputs()[0], 0),
-        ("kinetic_energy", 1),
-        ("gravity_x", 1),
-    ):
+    for name, order in ((fmu.block_outputs()[0], 2), (fmu.block_outputs()[0], 0), ("gravity_x", 1)):
         assert instance.derivative(name, order)[0] == ERROR
         instance.check(instance.restore(state))
 

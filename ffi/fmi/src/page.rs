@@ -93,13 +93,15 @@ fn stepping(facts: &Facts) -> String {
 
 fn states(version: Version) -> String {
     let mut items = vec![
-        "A step is done whole or not at all: one that fails leaves the instance as it was at its start, says \
-         why in the log, and can be tried again with another step or other inputs."
+        "A step is done whole or not at all: one that fails numerically is discarded, leaves the instance as it was \
+         at its start, says why in the log, and can be tried again with another step or other inputs. A call with bad \
+         values or out of place is an error, after which a saved state or a reset is needed."
             .to_owned(),
         "The state can be read, set, serialized and deserialized at any communication point, also in another process; \
          what follows has the same bits. A damaged state, or that of another case, is refused."
             .to_owned(),
-        "First derivatives are at hand of the outputs that are displacements or rotations.".to_owned(),
+        "First derivatives are at hand of displacements and rotations; those of other outputs are told as 0."
+            .to_owned(),
     ];
     if version == Version::Three {
         items.extend([

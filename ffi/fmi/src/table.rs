@@ -188,9 +188,9 @@ pub enum Quantity {
 
 impl Quantity {
     /// Whether the value is a function of the state of the model alone: an input that is set does not change it before
-    /// the next step. What blocks, boundaries, joints and monitors do is such.
+    /// the next step. Everything but the snapshot is such, which holds the inputs.
     pub fn is_of_state(self) -> bool {
-        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_))
+        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_) | Self::Total(_))
     }
 }
 

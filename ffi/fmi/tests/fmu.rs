@@ -329,7 +329,7 @@ fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
         model.do_step(time, h).unwrap();
         let seen = |model: &Cosimulation| {
             let ports: Vec<_> = (0..model.ports().len()).map(|k| model.port_state(k)).collect();
-            format!("{ports:?} {:?} {:?}", model.block_states(), model.simulation().monitor(0))
+            format!("{ports:?} {:?} {:?} {:?}", model.block_states(), model.simulation().monitor(0), model.totals())
         };
         let before = seen(&model);
         model.set_gravity(Vector::new(1.0, -3.0)).unwrap();

@@ -125,9 +125,10 @@ class Core:
         """Sets where messages go."""
         sink = None if function is None else Sink(self.library, function)
         callback, key = (_nowhere, None) if sink is None else (_deliver_from_c, sink.key)
+        before, self._sink = self._sink, sink  # Now, because a message of this call may set another.
         status, message, raised = self.library.attempt("enmm_set_log_callback", self.handle, callback, key)
-        if not status:
-            self._sink = sink
+        if status and self._sink is sink:
+            self._sink = before
         self.library.judge(status, message, raised)
 
 

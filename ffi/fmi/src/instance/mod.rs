@@ -21,9 +21,6 @@ use crate::resource;
 use crate::table::{Table, Version};
 use crate::values::Values;
 
-/// Relative difference below which a time is not behind the stop time.
-const STOP_TOLERANCE: f64 = 1e-9;
-
 /// Why a call failed; the text goes to the log.
 pub type Failure = String;
 
@@ -253,6 +250,13 @@ impl Instance {
         started.map_err(|error| format!("the initial equilibrium was not found: {error}"))?;
         let steps = self.model.simulation().state().step;
         self.log(Status::Ok, Category::All, format!("the initial equilibrium took {steps} internal steps"));
+        if let Some(ratio) = self.model.unrest() {
+            let text = format!(
+                "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static stage \
+                 needs a longer duration"
+            );
+            self.log(Status::Warning, Category::Warning, text);
+        }
         Ok(())
     }
 

@@ -58,7 +58,8 @@ impl Instance {
         self.end(outcome)
     }
 
-    /// Reads first time derivatives of outputs.
+    /// Reads first time derivatives of outputs: those of motions, and 0 for outputs that are only known themselves, as
+    /// the standard wants for an order beyond that of an output.
     pub fn get_derivatives(&mut self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Status {
         let legal = self.allow(Call::GetDerivative);
         let outcome = legal.and_then(|()| self.check_count(references, Type::Real, values.len()));
@@ -66,13 +67,16 @@ impl Instance {
             let mut rest = values;
             for (&reference, &order) in references.iter().zip(orders) {
                 let v = self.variable(reference, Type::Real)?;
-                let derivative = Table::derivative(v.quantity).filter(|_| order == 1);
-                let none =
-                    || format!("{}: has no derivative of order {order}; only motions have one, of order 1", v.name);
-                let derivative = derivative.ok_or_else(none)?;
-                let (own, others) = rest.split_at_mut(v.size());
+                if order != 1 || v.causality != Causality::Output {
+                    let name = &v.name;
+                    return Err(format!("{name}: has no derivative of order {order}; outputs have one, of order 1"));
+                }
+                let (derivative, (own, others)) = (Table::derivative(v.quantity), rest.split_at_mut(v.size()));
                 rest = others;
-                self.read(derivative, own);
+                match derivative {
+                    Some(derivative) => self.read(derivative, own),
+                    None => own.fill(0.0),
+                }
             }
             Ok(())
         });

@@ -5,12 +5,17 @@ use enmm::cosimulation::{CosimulationError, Event, EventKind, Interval};
 use crate::log::{Category, Status};
 use crate::phase::{Call, Phase};
 
-use super::{Failure, Instance, STOP_TOLERANCE};
+use super::{Failure, Instance};
 
 /// Part of an internal step below which a time has been reached.
 const SAME_TIME: f64 = 1e-6;
 /// Relative difference of times that importers sum up.
 const SUM_ERROR: f64 = 1e-9;
+
+/// Part of the experiment by which sums of steps may pass the stop time.
+const STOP_TOLERANCE: f64 = 1e-9;
+/// Rounding of times, relative.
+const STOP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A communication step in progress.
 #[derive(Debug)]
@@ -59,7 +64,7 @@ impl Instance {
     fn begin(&mut self, t: f64, h: f64) -> Result<Step, Failure> {
         let end = t + h;
         if let Some(stop) = self.experiment.stop
-            && end > stop + STOP_TOLERANCE * stop.abs().max(h.abs())
+            && end > stop + STOP_TOLERANCE * (stop - self.experiment.start) + STOP_ROUNDING * stop.abs()
         {
             return Err(format!("the step ends at {end} s, must not end after the stop time, {stop} s"));
         }
