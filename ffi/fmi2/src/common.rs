@@ -1,6 +1,6 @@
 //! Life cycle, logging and saved states.
 
-use std::ffi::{c_int, c_void};
+use std::ffi::c_int;
 use std::path::PathBuf;
 
 use enmm_fmi::handle::Host;
@@ -10,11 +10,12 @@ use enmm_fmi::log::Message;
 use enmm_fmi::phase::Call;
 use enmm_fmi::table::Version;
 
-use crate::raw::{self, MISSING};
 use crate::types::{
     Boolean, Byte, CO_SIMULATION, CallbackFunctions, Component, FmuState, Importer, LIVE, Real, Status, Text, call,
     guarded,
 };
+use enmm_fmi_raw::raw::{self, MISSING};
+use enmm_fmi_raw::states;
 
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetTypesPlatform() -> Text {
@@ -129,42 +130,11 @@ pub extern "C" fn fmi2Reset(c: Component) -> Status {
     call(c, "fmi2Reset", Instance::reset)
 }
 
-/// The number of a saved state at a pointer to it; a NULL state has none.
-///
-/// # Safety
-/// A pointer that is neither NULL nor misaligned may be read.
-unsafe fn number(state: *const FmuState) -> Option<Option<usize>> {
-    // SAFETY: by the contract of this function.
-    let state = unsafe { raw::slice(state, 1) }?.first()?;
-    Some((!state.is_null()).then(|| state.addr()))
-}
-
-/// Ends a call that makes a saved state.
-///
-/// # Safety
-/// The pointer may be written to.
-unsafe fn give(state: *mut FmuState, made: Result<usize, Status>) -> Status {
-    match made {
-        Ok(number) => {
-            let pointer: *mut c_void = std::ptr::without_provenance_mut(number);
-            // SAFETY: by the contract of this function.
-            if unsafe { raw::put(state, pointer) } { Status::Ok } else { Status::Error }
-        }
-        Err(status) => status,
-    }
-}
+// SAFETY, of all calls of states: the importer gives pointers that can be read and written, for `size` bytes.
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: Component, state: *mut FmuState) -> Status {
-    call(c, "fmi2GetFMUstate", |instance| {
-        // SAFETY: the importer gives a pointer that can be read and written.
-        unsafe {
-            match number(state) {
-                Some(old) => give(state, instance.save_state(old)),
-                None => instance.refuse_state(MISSING),
-            }
-        }
-    })
+    call(c, "fmi2GetFMUstate", |instance| unsafe { states::save(instance, state) })
 }
 
 #[unsafe(no_mangle)]
@@ -174,51 +144,17 @@ pub extern "C" fn fmi2SetFMUstate(c: Component, state: FmuState) -> Status {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: Component, state: *mut FmuState) -> Status {
-    call(c, "fmi2FreeFMUstate", |instance| {
-        // SAFETY: the importer gives a pointer that can be read and written.
-        unsafe {
-            let Some(Some(old)) = number(state) else { return Status::Ok };
-            let status = instance.free_state(old);
-            if status == Status::Ok {
-                raw::put(state, std::ptr::null_mut());
-            }
-            status
-        }
-    })
+    call(c, "fmi2FreeFMUstate", |instance| unsafe { states::free(instance, state) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Component, state: FmuState, size: *mut usize) -> Status {
-    call(c, "fmi2SerializedFMUstateSize", |instance| {
-        let length = match instance.serialize_state(state.addr()) {
-            Ok(bytes) => bytes.len(),
-            Err(status) => return status,
-        };
-        // SAFETY: the importer gives a pointer that can be written.
-        if unsafe { raw::put(size, length) } { Status::Ok } else { instance.refuse_state(MISSING) }
-    })
+    call(c, "fmi2SerializedFMUstateSize", |instance| unsafe { states::size(instance, state, size) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, state: FmuState, out: *mut Byte, size: usize) -> Status {
-    call(c, "fmi2SerializeFMUstate", |instance| {
-        let bytes = match instance.serialize_state(state.addr()) {
-            Ok(bytes) => bytes,
-            Err(status) => return status,
-        };
-        if bytes.len() != size {
-            let reason = format!("the size is {size}, must be {}, that of the serialized state", bytes.len());
-            return instance.refuse_state(&reason);
-        }
-        // SAFETY: the importer gives room for `size` bytes.
-        match unsafe { raw::room(out.cast::<u8>(), size) } {
-            Some(out) => {
-                raw::fill(out, bytes.iter().copied());
-                Status::Ok
-            }
-            None => instance.refuse_state(MISSING),
-        }
-    })
+    call(c, "fmi2SerializeFMUstate", |instance| unsafe { states::serialize(instance, state, out.cast(), size) })
 }
 
 #[unsafe(no_mangle)]
@@ -228,13 +164,5 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: usize,
     state: *mut FmuState,
 ) -> Status {
-    call(c, "fmi2DeSerializeFMUstate", |instance| {
-        // SAFETY: the importer gives `size` bytes and a pointer that can be read and written.
-        unsafe {
-            match (raw::slice(bytes.cast::<u8>(), size), number(state)) {
-                (Some(bytes), Some(old)) => give(state, instance.deserialize_state(bytes, old)),
-                _ => instance.refuse_state(MISSING),
-            }
-        }
-    })
+    call(c, "fmi2DeSerializeFMUstate", |instance| unsafe { states::deserialize(instance, bytes.cast(), size, state) })
 }

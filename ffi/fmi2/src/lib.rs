@@ -8,7 +8,6 @@
 mod common;
 mod cosimulation;
 mod model_exchange;
-mod raw;
 mod types;
 mod variables;
 

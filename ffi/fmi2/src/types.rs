@@ -10,10 +10,10 @@ use enmm_fmi::instance::Instance;
 use enmm_fmi::log::Message;
 pub use enmm_fmi::log::Status;
 
-use crate::raw;
+use enmm_fmi_raw::raw;
+pub use enmm_fmi_raw::states::FmuState;
 
 pub type Component = *mut c_void;
-pub type FmuState = *mut c_void;
 pub type ValueReference = c_uint;
 pub type Real = f64;
 pub type Integer = c_int;

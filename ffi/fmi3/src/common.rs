@@ -9,11 +9,11 @@ use enmm_fmi::log::Message;
 use enmm_fmi::phase::Call;
 use enmm_fmi::table::Version;
 
-use crate::raw::{self, MISSING};
 use crate::types::{
     Environment, Importer, InstancePointer, IntermediateUpdate, LIVE, LogMessage, Status, Text, ValueReference, call,
     guarded,
 };
+use enmm_fmi_raw::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi3GetVersion() -> Text {

@@ -5,8 +5,8 @@ use enmm_fmi::log::Status;
 use enmm_fmi::phase::Call;
 use enmm_fmi::table::Type;
 
-use crate::raw::{self, MISSING};
 use crate::types::{Importer, InstancePointer, ValueReference, call, with_handle};
+use enmm_fmi_raw::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(

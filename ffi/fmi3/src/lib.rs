@@ -7,8 +7,6 @@
 
 mod common;
 mod cosimulation;
-#[path = "../../fmi2/src/raw.rs"]
-mod raw;
 mod refused;
 mod saved;
 mod types;

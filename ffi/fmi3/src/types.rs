@@ -9,11 +9,11 @@ use enmm_fmi::instance::Instance;
 use enmm_fmi::log::Message;
 pub use enmm_fmi::log::Status;
 
-use crate::raw;
+use enmm_fmi_raw::raw;
+pub use enmm_fmi_raw::states::FmuState;
 
 pub type InstancePointer = *mut c_void;
 pub type Environment = *mut c_void;
-pub type FmuState = *mut c_void;
 pub type ValueReference = u32;
 pub type Text = *const c_char;
 pub type Binary = *const u8;

@@ -252,8 +252,8 @@ impl Instance {
         self.log(Status::Ok, Category::All, format!("the initial equilibrium took {steps} internal steps"));
         if let Some(ratio) = self.model.unrest() {
             let text = format!(
-                "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static stage \
-                 needs a longer duration"
+                "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static \
+                 stage needs a longer duration"
             );
             self.log(Status::Warning, Category::Warning, text);
         }
