@@ -73,7 +73,7 @@ pub unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
 /// `n` texts; none when one is missing.
 ///
 /// # Safety
-/// As for [`slice`] and [`text`].
+/// As for [`slice()`] and [`text`].
 pub unsafe fn texts<'a>(pointer: *const *const c_char, n: usize) -> Option<Vec<&'a str>> {
     // SAFETY: by the contract of this function.
     unsafe { slice(pointer, n)?.iter().map(|&each| text(each)).collect() }
