@@ -204,7 +204,7 @@ impl Cosimulation {
     }
 
     /// Difference (s) below which two times near `t` are the same.
-    pub(super) fn same_time(&self, t: f64) -> f64 {
+    pub fn same_time(&self, t: f64) -> f64 {
         let dt = self.internal_step();
         (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt)
     }

@@ -64,7 +64,7 @@ struct Standing {
 pub struct Cosimulation {
     simulation: Simulation,
     hash: String,
-    /// State at the last point of the internal grid, when the model stands between two.
+    /// State from which the part of an internal step was taken, when the model stands between two grid points.
     grid: Option<Box<State>>,
     standing: Standing,
     /// What a failed step falls back to.
@@ -195,12 +195,9 @@ impl Cosimulation {
 
     /// Takes the acceleration of the base, which is no part of the initial equilibrium, out of the inputs; returns it.
     fn calm(&mut self) -> Vector {
-        let has_rest = initial_stages(self.case()) > 0;
         let drive = self.simulation.drive();
         let shaking = drive.to.base_acceleration;
-        if has_rest {
-            (drive.from.base_acceleration, drive.to.base_acceleration) = (Vector::zeros(), Vector::zeros());
-        }
+        (drive.from.base_acceleration, drive.to.base_acceleration) = (Vector::zeros(), Vector::zeros());
         shaking
     }
 
@@ -223,8 +220,7 @@ impl Cosimulation {
     }
 
     fn next_stage(&mut self) -> Result<bool, CosimulationError> {
-        let located = |invalid: crate::model::case::Invalid| CosimulationError::Stage(invalid);
-        self.simulation.next_stage().map_err(located)
+        self.simulation.next_stage().map_err(CosimulationError::Stage)
     }
 
     /// State of every block, by id.

@@ -45,15 +45,20 @@ impl Cosimulation {
     /// # Errors
     /// The state is of another model.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), CosimulationError> {
-        if saved.hash != self.hash {
-            return Err(CheckpointError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() }.into());
-        }
+        self.check_case(saved)?;
         if !self.fits(saved) {
             let damage = "its state does not fit the model";
             return Err(CheckpointError::Damaged(damage.to_owned()).into());
         }
         self.take(saved.clone());
         Ok(())
+    }
+
+    fn check_case(&self, saved: &Saved) -> Result<(), CheckpointError> {
+        if saved.hash == self.hash {
+            return Ok(());
+        }
+        Err(CheckpointError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() })
     }
 
     /// Whether every index and time of a saved state makes sense for this model.
@@ -76,8 +81,9 @@ impl Cosimulation {
     /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`checkpoint`]).
     ///
     /// # Errors
-    /// When the state cannot be serialised.
+    /// The state is of another model, or cannot be serialised.
     pub fn serialize(&self, saved: &Saved) -> Result<Vec<u8>, CosimulationError> {
+        self.check_case(saved)?;
         checkpoint::encode(saved, &self.hash)
             .map_err(|error| CosimulationError::State(CheckpointError::Damaged(error.to_string())))
     }
@@ -87,7 +93,6 @@ impl Cosimulation {
     /// # Errors
     /// The bytes are damaged, or of another model or version.
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        let saved: Saved = checkpoint::decode(bytes, &self.hash)?;
-        Ok(saved)
+        Ok(checkpoint::decode(bytes, &self.hash)?)
     }
 }

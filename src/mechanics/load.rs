@@ -4,6 +4,7 @@ use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
 use super::Metric;
+use super::pressure::inward;
 
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -75,9 +76,8 @@ impl Load {
             LoadAction::Pressure(list, pressure) => {
                 for (covers, ends) in list {
                     let [a, b] = ends.map(|w| (0..3).map(|k| place(covers[k] as usize) * w[k]).sum::<Point>());
-                    let inward = Vector::new(a.y - b.y, b.x - a.x);
                     let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
-                    spread(covers, &middle, inward * (pressure * factor), force);
+                    spread(covers, &middle, inward(a, b) * (pressure * factor), force);
                 }
             }
             LoadAction::Body(_) => {}
@@ -88,7 +88,8 @@ impl Load {
     }
 }
 
-fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
+/// Spreads a force (N/m) at a material point over its covers.
+pub fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
     for (cover, w) in covers.iter().zip(weights) {
         force[*cover as usize] += f * *w;
     }

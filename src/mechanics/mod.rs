@@ -10,6 +10,6 @@ pub mod pressure;
 
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
-pub use load::{Load, LoadAction, TimeTable, push_block};
+pub use load::{Load, LoadAction, TimeTable, push_block, spread};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};

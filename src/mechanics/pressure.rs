@@ -28,7 +28,7 @@ pub fn hydrostatic(a: Point, b: Point, level: f64, weight: f64) -> [Vector; 2] {
 }
 
 /// Normal into the rock, as long as the edge.
-fn inward(a: Point, b: Point) -> Vector {
+pub fn inward(a: Point, b: Point) -> Vector {
     Vector::new(a.y - b.y, b.x - a.x)
 }
 

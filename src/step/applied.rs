@@ -78,9 +78,7 @@ impl Faces<'_> {
         let stars = &self.slope.covers.star_position;
         let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
         for (k, f) in ends.into_iter().zip(forces(a, b)) {
-            for (&i, w) in boundary.covers[k].iter().zip(boundary.weights[k]) {
-                force[i as usize] += f * w;
-            }
+            mechanics::spread(&boundary.covers[k], &boundary.weights[k], f, force);
         }
     }
 }

@@ -28,6 +28,55 @@ pub struct Facts {
     pub blocks: usize,
 }
 
+/// What a version of the standard writes in its own way.
+pub struct Dialect {
+    /// Version.
+    pub version: &'static str,
+    /// Attribute of the token.
+    pub token: &'static str,
+    /// Capabilities of the co-simulation.
+    pub capabilities: &'static [(&'static str, &'static str)],
+    /// Writes a variable.
+    pub variable: fn(&mut Xml, &Variable) -> io::Result<()>,
+    /// Writes the structure of the model.
+    pub structure: fn(&mut Xml, &Table) -> io::Result<()>,
+}
+
+/// A model description in a dialect.
+pub fn document(dialect: &Dialect, table: &Table, facts: &Facts) -> io::Result<Vec<u8>> {
+    let mut xml = Xml::new()?;
+    let attributes = [
+        ("fmiVersion", dialect.version.to_owned()),
+        ("modelName", facts.title.clone()),
+        (dialect.token, table.token.clone()),
+        ("description", facts.summary.clone()),
+        ("generationTool", tool()),
+        ("variableNamingConvention", "flat".to_owned()),
+    ];
+    let mut capabilities = vec![("modelIdentifier", facts.identifier.clone())];
+    capabilities.extend(dialect.capabilities.iter().map(|&(name, value)| (name, value.to_owned())));
+    xml.element("fmiModelDescription", &attributes, |xml| {
+        xml.leaf("CoSimulation", &capabilities)?;
+        units(xml, table)?;
+        log_categories(xml)?;
+        experiment(xml, facts)?;
+        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| (dialect.variable)(xml, v)))?;
+        (dialect.structure)(xml, table)
+    })?;
+    Ok(xml.finish())
+}
+
+/// The attributes of a variable that both versions begin with.
+pub fn identity(variable: &Variable) -> Vec<(&'static str, String)> {
+    vec![
+        ("name", variable.name.clone()),
+        ("valueReference", variable.reference.to_string()),
+        ("description", variable.description.clone()),
+        ("causality", causality(variable)),
+        ("variability", variability(variable)),
+    ]
+}
+
 impl Facts {
     /// The facts of a model.
     pub fn of(model: &Cosimulation, identifier: &str) -> Self {
@@ -58,7 +107,7 @@ pub fn tool() -> String {
 }
 
 /// Writes the units that the table uses.
-pub fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
+fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
     let used = |unit| table.variables.iter().any(|variable| unit::of(variable) == Some(unit));
     xml.element("UnitDefinitions", &[], |xml| {
         for unit in unit::UNITS.iter().filter(|unit| used(*unit)) {
@@ -76,7 +125,7 @@ pub fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
 }
 
 /// Writes the log categories.
-pub fn log_categories(xml: &mut Xml) -> io::Result<()> {
+fn log_categories(xml: &mut Xml) -> io::Result<()> {
     xml.element("LogCategories", &[], |xml| {
         LOG_CATEGORIES.iter().try_for_each(|(name, description)| {
             xml.leaf("Category", &[("name", (*name).to_owned()), ("description", (*description).to_owned())])
@@ -85,7 +134,7 @@ pub fn log_categories(xml: &mut Xml) -> io::Result<()> {
 }
 
 /// Writes the default experiment.
-pub fn experiment(xml: &mut Xml, facts: &Facts) -> io::Result<()> {
+fn experiment(xml: &mut Xml, facts: &Facts) -> io::Result<()> {
     let attributes = [
         ("startTime", number(0.0)),
         ("stopTime", number(facts.stop_time)),
@@ -95,7 +144,7 @@ pub fn experiment(xml: &mut Xml, facts: &Facts) -> io::Result<()> {
 }
 
 /// The word for a causality in both versions.
-pub fn causality(variable: &Variable) -> String {
+fn causality(variable: &Variable) -> String {
     match variable.causality {
         Causality::Independent => "independent",
         Causality::Parameter => "parameter",
@@ -106,7 +155,7 @@ pub fn causality(variable: &Variable) -> String {
 }
 
 /// The word for a variability in both versions.
-pub fn variability(variable: &Variable) -> String {
+fn variability(variable: &Variable) -> String {
     match variable.causality {
         Causality::Parameter => "fixed",
         _ if variable.is_continuous() => "continuous",

@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::description::{
-    Facts, causality, dependencies, experiment, initial, log_categories, tool, units, value_attributes, variability,
-};
+use crate::description::{Dialect, Facts, dependencies, document, identity, initial, value_attributes};
 use crate::table::{Causality, Table, Type, Variable};
 use crate::xml::Xml;
 
@@ -13,28 +11,14 @@ use crate::xml::Xml;
 /// # Errors
 /// None in practice: it is written to memory.
 pub fn model_description(table: &Table, facts: &Facts) -> io::Result<Vec<u8>> {
-    let mut xml = Xml::new()?;
-    let attributes = [
-        ("fmiVersion", "2.0".to_owned()),
-        ("modelName", facts.title.clone()),
-        ("guid", table.token.clone()),
-        ("description", facts.summary.clone()),
-        ("generationTool", tool()),
-        ("variableNamingConvention", "flat".to_owned()),
-    ];
-    xml.element("fmiModelDescription", &attributes, |xml| {
-        xml.leaf("CoSimulation", &capabilities(facts))?;
-        units(xml, table)?;
-        log_categories(xml)?;
-        experiment(xml, facts)?;
-        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| variable(xml, v)))?;
-        structure(xml, table)
-    })?;
-    Ok(xml.finish())
+    document(&DIALECT, table, facts)
 }
 
-fn capabilities(facts: &Facts) -> Vec<(&'static str, String)> {
-    let flags = [
+/// How FMI 2.0 writes.
+const DIALECT: Dialect = Dialect {
+    version: "2.0",
+    token: "guid",
+    capabilities: &[
         ("needsExecutionTool", "false"),
         ("canHandleVariableCommunicationStepSize", "true"),
         ("canInterpolateInputs", "false"),
@@ -45,20 +29,13 @@ fn capabilities(facts: &Facts) -> Vec<(&'static str, String)> {
         ("canGetAndSetFMUstate", "true"),
         ("canSerializeFMUstate", "true"),
         ("providesDirectionalDerivative", "false"),
-    ];
-    let mut attributes = vec![("modelIdentifier", facts.identifier.clone())];
-    attributes.extend(flags.map(|(name, value)| (name, value.to_owned())));
-    attributes
-}
+    ],
+    variable,
+    structure,
+};
 
 fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let mut attributes = vec![
-        ("name", variable.name.clone()),
-        ("valueReference", variable.reference.to_string()),
-        ("description", variable.description.clone()),
-        ("causality", causality(variable)),
-        ("variability", variability(variable)),
-    ];
+    let mut attributes = identity(variable);
     attributes.extend(initial(variable));
     let kind = match variable.kind {
         Type::Real => "Real",

@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::description::{
-    Facts, causality, dependencies, experiment, initial, log_categories, tool, units, value_attributes, variability,
-};
+use crate::description::{Dialect, Facts, dependencies, document, identity, initial, value_attributes};
 use crate::table::{Causality, Table, Type, Variable};
 use crate::xml::Xml;
 
@@ -16,30 +14,15 @@ pub const SNAPSHOT_TYPE: &str = "application/x-enmm-state";
 /// # Errors
 /// None in practice: it is written to memory.
 pub fn model_description(table: &Table, facts: &Facts) -> io::Result<Vec<u8>> {
-    let mut xml = Xml::new()?;
-    let attributes = [
-        ("fmiVersion", "3.0".to_owned()),
-        ("modelName", facts.title.clone()),
-        ("instantiationToken", table.token.clone()),
-        ("description", facts.summary.clone()),
-        ("generationTool", tool()),
-        ("variableNamingConvention", "flat".to_owned()),
-    ];
-    xml.element("fmiModelDescription", &attributes, |xml| {
-        xml.leaf("CoSimulation", &capabilities(facts))?;
-        units(xml, table)?;
-        log_categories(xml)?;
-        experiment(xml, facts)?;
-        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| variable(xml, v)))?;
-        structure(xml, table)
-    })?;
-    Ok(xml.finish())
+    document(&DIALECT, table, facts)
 }
 
 /// `fixedInternalStepSize` is left out: internal steps are redone in halves where a step does not settle, and parts of
 /// them end communication steps between two points of the grid.
-fn capabilities(facts: &Facts) -> Vec<(&'static str, String)> {
-    let flags = [
+const DIALECT: Dialect = Dialect {
+    version: "3.0",
+    token: "instantiationToken",
+    capabilities: &[
         ("needsExecutionTool", "false"),
         ("canBeInstantiatedOnlyOncePerProcess", "false"),
         ("canGetAndSetFMUState", "true"),
@@ -53,20 +36,13 @@ fn capabilities(facts: &Facts) -> Vec<(&'static str, String)> {
         ("canReturnEarlyAfterIntermediateUpdate", "true"),
         ("hasEventMode", "false"),
         ("providesEvaluateDiscreteStates", "false"),
-    ];
-    let mut attributes = vec![("modelIdentifier", facts.identifier.clone())];
-    attributes.extend(flags.map(|(name, value)| (name, value.to_owned())));
-    attributes
-}
+    ],
+    variable,
+    structure,
+};
 
 fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let mut attributes = vec![
-        ("name", variable.name.clone()),
-        ("valueReference", variable.reference.to_string()),
-        ("description", variable.description.clone()),
-        ("causality", causality(variable)),
-        ("variability", variability(variable)),
-    ];
+    let mut attributes = identity(variable);
     // Only continuous variables may be asked for in an intermediate update.
     if variable.causality == Causality::Output && variable.is_continuous() {
         attributes.push(("intermediateUpdate", "true".to_owned()));

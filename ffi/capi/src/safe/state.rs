@@ -7,33 +7,19 @@ use engine::cosimulation::Saved;
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
 use super::model::Model;
-use crate::types::enmm_status;
 
 /// States that are alive.
 pub static STATES: Table<Kept> = Table::new(0x20, "state");
 
-/// A saved state, the case that it is of, and its bytes between the question for their number and their copy.
+/// A saved state, and its bytes between the question for their number and their copy.
 pub struct Kept {
     saved: Saved,
-    hash: String,
     bytes: Mutex<Option<Vec<u8>>>,
 }
 
 impl Kept {
-    fn of(saved: Saved, model: &Model) -> Self {
-        Self { saved, hash: model.inner.hash().to_owned(), bytes: Mutex::new(None) }
-    }
-
-    fn check(&self, model: &Model) -> Outcome {
-        let own = model.inner.hash();
-        if self.hash == own {
-            return Ok(());
-        }
-        let message = format!(
-            "the state is of case {}, this model is of case {own}; use a model of the case that made the state",
-            self.hash
-        );
-        Err(Failure::new(enmm_status::ENMM_WRONG_STATE, message))
+    fn of(saved: Saved) -> Self {
+        Self { saved, bytes: Mutex::new(None) }
     }
 }
 
@@ -43,7 +29,7 @@ impl Model {
     /// # Errors
     /// When too many states are alive.
     pub fn save(&self) -> Result<usize, Failure> {
-        STATES.insert(Kept::of(self.inner.save(), self))
+        STATES.insert(Kept::of(self.inner.save()))
     }
 
     /// Goes back to a state.
@@ -52,7 +38,6 @@ impl Model {
     /// A dead state, or one of another case.
     pub fn restore(&mut self, state: usize) -> Outcome {
         let kept = STATES.find(state)?;
-        kept.check(self)?;
         Ok(self.inner.restore(&kept.saved)?)
     }
 
@@ -62,7 +47,6 @@ impl Model {
     /// A dead state, one of another case, or what `copy` says.
     pub fn serialize(&self, state: usize, asked: bool, copy: impl FnOnce(&[u8]) -> Outcome) -> Outcome {
         let kept = STATES.find(state)?;
-        kept.check(self)?;
         let mut bytes = kept.bytes.lock().unwrap_or_else(PoisonError::into_inner);
         let own = match bytes.take() {
             Some(own) => own,
@@ -80,6 +64,6 @@ impl Model {
     /// # Errors
     /// Bytes that are damaged, or of another case or version.
     pub fn deserialize(&self, bytes: &[u8]) -> Result<usize, Failure> {
-        STATES.insert(Kept::of(self.inner.deserialize(bytes)?, self))
+        STATES.insert(Kept::of(self.inner.deserialize(bytes)?))
     }
 }

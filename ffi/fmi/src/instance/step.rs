@@ -7,11 +7,6 @@ use crate::phase::{Call, Phase};
 
 use super::{Failure, Instance};
 
-/// Part of an internal step below which a time has been reached.
-const SAME_TIME: f64 = 1e-6;
-/// Relative difference of times that importers sum up.
-const SUM_ERROR: f64 = 1e-9;
-
 /// Part of the experiment by which sums of steps may pass the stop time.
 const STOP_TOLERANCE: f64 = 1e-9;
 /// Rounding of times, relative.
@@ -81,9 +76,7 @@ impl Instance {
     /// Difference (s) below which two times of the importer near `t` are the same: the digits that its sums lose. Far
     /// from time 0 these are more than the model, which counts from its own start, could bear.
     fn same_time(&self, t: f64) -> f64 {
-        let dt = self.model.internal_step();
-        let sums = (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt);
-        sums.max(4.0 * f64::EPSILON * t.abs())
+        self.model.same_time(t).max(4.0 * f64::EPSILON * t.abs())
     }
 
     /// Takes one internal step.
