@@ -46,7 +46,7 @@ struct Standing {
     start: f64,
     /// Whether the initial equilibrium has been sought.
     started: bool,
-    /// Net over applied force at the end of an initial stage that did not come to rest; 0 when all did.
+    /// Net over applied force at the end of the last initial stage when it did not come to rest; 0 when it did.
     unrest: f64,
     /// Whether an input has changed since the last step ended.
     changed: bool,
@@ -211,9 +211,7 @@ impl Cosimulation {
                 last = wanted.then_some(report);
             }
             let report = last.unwrap_or_else(|| self.simulation.report());
-            if !self.simulation.at_rest(&report) {
-                self.standing.unrest = report.unbalanced;
-            }
+            self.standing.unrest = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
             self.next_stage()?;
         }
         Ok(())
