@@ -75,8 +75,9 @@ fn the_upper_block_pushes_the_lower() {
             let mut last = None;
             for _ in 0..steps / 10 {
                 last = Some(advance(&mut simulation, 10));
-                let between =
-                    |c: &&enmm::contact::VertexEdge| blocks.contains(&c.blocks[0]) && blocks.contains(&c.blocks[1]);
+                let between = |c: &&enmm::contact::VertexEdge| {
+                    blocks.contains(&c.pair.blocks[0]) && blocks.contains(&c.pair.blocks[1])
+                };
                 let push: f64 =
                     simulation.scratch().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
                 if window > 0 {

@@ -4,7 +4,7 @@ use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
-use super::{Boundary, Candidate, ContactHistory, ContactState, Corner, JointLaw, VertexEdge};
+use super::{Boundary, Candidate, ContactHistory, ContactState, Corner, JointLaw, Pair, VertexEdge};
 
 /// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
 const ENTRANCE_SINE: f64 = 0.17;
@@ -446,27 +446,23 @@ impl Narrow<'_> {
         let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
         let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, stiffness, normal));
         let history = ContactHistory { edge: pick.edge, ..history };
-        let mut contact = VertexEdge {
+        let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
+        let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
+        VertexEdge {
             limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
             gap: pick.gap + history.offset - history.rest,
             penetration: -pick.gap,
             history,
-            blocks,
-            covers,
-            weights,
+            pair,
             normal,
-            arms,
-            z: [0.0; 2],
             length,
             stiffness,
-            compliance: [0.0; 2],
+            compliance,
             law,
             approach: [0.0; 2],
             torn: false,
             fresh: pick.held.is_none(),
-        };
-        self.weigh(&mut contact);
-        contact
+        }
     }
 
     /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
@@ -518,30 +514,6 @@ impl Narrow<'_> {
             history.state = ContactState::Lock;
         }
         history
-    }
-
-    /// z and the inverse effective masses of both bodies (Eq. 4).
-    fn weigh(&self, contact: &mut VertexEdge) {
-        let axes = [contact.normal, contact.tangent()];
-        for body in 0..2 {
-            let block = contact.blocks[body] as usize;
-            let metric = self.metric;
-            let share = metric.inverse_total[block];
-            let mut own = Vector::zeros();
-            let mut z = 0.0;
-            for (&i, w) in contact.covers[body].iter().zip(contact.weights[body]) {
-                let inverse = metric.inverse[i as usize];
-                own += inverse * (w * w);
-                z += w * metric.inertial[i as usize] * inverse.x;
-            }
-            contact.z[body] = z;
-            let common = share * (1.0 - 2.0 * z + metric.square[block] * share);
-            for (k, axis) in axes.iter().enumerate() {
-                let lever = contact.arms[body].perp(axis);
-                contact.compliance[k] +=
-                    own.x * axis.x * axis.x + own.y * axis.y * axis.y + common + metric.spin[block] * lever * lever;
-            }
-        }
     }
 }
 

@@ -39,6 +39,11 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
+    pub fn shear(&self, normal: f64) -> f64 {
+        (normal * self.friction + self.cohesion).max(0.0)
+    }
+
     /// Limits of joints whose strength is multiplied by `factor`.
     pub fn times(self, factor: f64) -> Self {
         Self { friction: self.friction * factor, cohesion: self.cohesion * factor, tension: self.tension * factor }

@@ -1,17 +1,21 @@
 //! Search, vertex–edge contacts, entrance edge, joint laws, supports and the open–close iteration.
 //! Knows nothing of files or FMI.
 
+mod bolt;
 mod boundary;
 mod entrance;
 mod law;
+mod pair;
 mod search;
 mod support;
 mod sweep;
 mod vertex_edge;
 
+pub use bolt::BoltState;
 pub use boundary::{Boundary, BoundaryOptions, Corner};
 pub use entrance::{Narrow, entrance_edges};
 pub use law::{JointLaw, Limits};
+pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use support::{Support, SupportRow};
 pub use sweep::{BlockPush, OpenClose, SweepOptions, SweepReport, open_close};

@@ -3,7 +3,7 @@
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
-use super::{ContactState, Support, SupportRow, VertexEdge};
+use super::{ContactState, Pair, Support, SupportRow, VertexEdge};
 
 /// Share of the largest normal force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
@@ -85,7 +85,7 @@ impl OpenClose<'_> {
     fn warm_start(&mut self, contacts: &mut [VertexEdge], supports: &[Support], rows: &mut [SupportRow]) {
         for contact in contacts {
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            self.push(contact, force * self.options.kick);
+            self.push(&contact.pair, force * self.options.kick);
         }
         for row in rows {
             supports[row.support as usize].push(row.force * self.options.kick, self.metric, self.increment);
@@ -138,7 +138,7 @@ impl OpenClose<'_> {
     /// Judges one contact open, slip or lock; returns the change of its force (N/m).
     fn judge(&mut self, contact: &mut VertexEdge) -> f64 {
         let SweepOptions { dt, kick, .. } = self.options;
-        let relative = self.increment_at(contact, 0) - self.increment_at(contact, 1);
+        let relative = self.increment_at(&contact.pair, 0) - self.increment_at(&contact.pair, 1);
         let tangent = contact.tangent();
         let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
         let shear_velocity = contact.approach[1] + relative.dot(&tangent);
@@ -150,33 +150,33 @@ impl OpenClose<'_> {
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
         if step != [0.0; 2] {
-            self.push(contact, (contact.normal * step[0] + tangent * step[1]) * kick);
+            self.push(&contact.pair, (contact.normal * step[0] + tangent * step[1]) * kick);
         }
         step[0].abs().max(step[1].abs())
     }
 
-    /// Velocity (m/s) that all impulses so far give to body `k` of a contact at the contact's place (Eq. 17).
-    fn increment_at(&self, contact: &VertexEdge, k: usize) -> Vector {
-        let block = contact.blocks[k] as usize;
+    /// Velocity (m/s) that all impulses so far give to body `k` of a pair at its point (Eq. 17).
+    fn increment_at(&self, pair: &Pair, k: usize) -> Vector {
+        let block = pair.blocks[k] as usize;
         let (metric, push) = (self.metric, &self.push[block]);
         let own: Vector =
-            contact.covers[k].iter().zip(contact.weights[k]).map(|(&i, w)| self.increment[i as usize] * w).sum();
+            pair.covers[k].iter().zip(pair.weights[k]).map(|(&i, w)| self.increment[i as usize] * w).sum();
         let share = metric.inverse_total[block];
-        let common = (push.impulse * (1.0 + metric.square[block] * share - contact.z[k]) - push.weighted) * share;
+        let common = (push.impulse * (1.0 + metric.square[block] * share - pair.z[k]) - push.weighted) * share;
         let spin = metric.spin[block] * push.moment;
-        own + common + Vector::new(-contact.arms[k].y, contact.arms[k].x) * spin
+        own + common + Vector::new(-pair.arms[k].y, pair.arms[k].x) * spin
     }
 
-    /// Adds an impulse (N·s/m) on the node and its reaction on the edge.
-    fn push(&mut self, contact: &VertexEdge, impulse: Vector) {
+    /// Adds an impulse (N·s/m) on the first point and its reaction on the second.
+    fn push(&mut self, pair: &Pair, impulse: Vector) {
         for (k, impulse) in [impulse, -impulse].into_iter().enumerate() {
-            for (&i, w) in contact.covers[k].iter().zip(contact.weights[k]) {
+            for (&i, w) in pair.covers[k].iter().zip(pair.weights[k]) {
                 self.increment[i as usize] += self.metric.inverse[i as usize].component_mul(&impulse) * w;
             }
-            let push = &mut self.push[contact.blocks[k] as usize];
+            let push = &mut self.push[pair.blocks[k] as usize];
             push.impulse += impulse;
-            push.weighted += impulse * contact.z[k];
-            push.moment += contact.arms[k].perp(&impulse);
+            push.weighted += impulse * pair.z[k];
+            push.moment += pair.arms[k].perp(&impulse);
         }
     }
 }
@@ -190,7 +190,7 @@ impl VertexEdge {
             (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
             return;
         }
-        let limit = (normal * self.limits.friction + self.limits.cohesion).max(0.0);
+        let limit = self.limits.shear(normal);
         history.normal_force = normal;
         history.shear_force = shear.clamp(-limit, limit);
         history.state = if shear.abs() >= limit { ContactState::Slip } else { ContactState::Lock };

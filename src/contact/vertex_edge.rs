@@ -1,9 +1,8 @@
 //! One contact between a boundary node and the edge that it may enter.
 
-use crate::cover::Weights;
 use crate::geometry::Vector;
 
-use super::Limits;
+use super::{Limits, Pair};
 
 /// What a contact does at the end of a step.
 #[doc(alias = "sliding")]
@@ -51,18 +50,10 @@ pub struct ContactHistory {
 pub struct VertexEdge {
     /// What it remembers; forces are updated by the sweeps.
     pub history: ContactHistory,
-    /// Blocks of node and edge.
-    pub blocks: [u32; 2],
-    /// Covers of the node and of the edge's element.
-    pub covers: [[u32; 3]; 2],
-    /// Weights of those covers at the node's current place.
-    pub weights: [Weights; 2],
+    /// The node and the place on the edge that it faces.
+    pub pair: Pair,
     /// Outward unit normal of the edge.
     pub normal: Vector,
-    /// Arms from the blocks' centroids to the contact (m).
-    pub arms: [Vector; 2],
-    /// z = Σwμ/m of both blocks.
-    pub z: [f64; 2],
     /// Gap along the normal that the springs see (m); negative in penetration.
     pub gap: f64,
     /// Penetration of the node (m), with no allowance.
@@ -100,10 +91,7 @@ impl VertexEdge {
 
     /// Normal and shear component of a cover field at the node relative to the edge.
     pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
-        let at = |k: usize| -> Vector {
-            self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
-        };
-        let relative = at(0) - at(1);
+        let relative = self.pair.difference(field);
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
@@ -112,7 +100,7 @@ impl VertexEdge {
         if self.history.state == ContactState::Open {
             return (0.0, 0.0);
         }
-        let limit = (self.history.normal_force * self.limits.friction + self.limits.cohesion).max(0.0);
+        let limit = self.limits.shear(self.history.normal_force);
         let trial = self.history.shear_stored - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])

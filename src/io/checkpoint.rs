@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use super::files::write_atomic;
 
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 const TEXT_MAX: usize = 256;
 
 /// Why a checkpoint cannot be used.

@@ -215,6 +215,12 @@ pub struct EnergyRecord {
     pub contact_dissipation: f64,
     /// Energy taken by damping.
     pub damping: f64,
+    /// Energy taken by rock that yields.
+    pub yielding: f64,
+    /// Work of bolts.
+    pub bolt_work: f64,
+    /// Work of quiet boundaries and free-field columns.
+    pub radiation: f64,
     /// Work of loads.
     pub external_work: f64,
     /// Energy of the start and of what was excavated.
@@ -235,6 +241,9 @@ impl From<&Ledger> for EnergyRecord {
             friction: ledger.friction,
             contact_dissipation: ledger.contact_dissipation(),
             damping: ledger.damping,
+            yielding: ledger.yielding,
+            bolt_work: ledger.bolt_work,
+            radiation: ledger.radiation,
             external_work: ledger.external_work,
             baseline: ledger.baseline,
             residual: ledger.residual(),

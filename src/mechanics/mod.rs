@@ -1,15 +1,19 @@
 //! Mass, strain, stress, elastic law, body and boundary forces, energies: pure functions over slices.
 //! Knows nothing of contact or files.
 
+mod column;
 mod elasticity;
 mod internal;
 mod load;
 mod mass;
 mod motion;
+mod plasticity;
 pub mod pressure;
 
+pub use column::ColumnState;
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, TimeTable, push_block, spread};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};
+pub use plasticity::PlasticStrain;

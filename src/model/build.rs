@@ -123,6 +123,9 @@ fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
         residual_tension: 0.0,
         dilation_deg: 0.0,
         dilation_slip: None,
+        jrc: None,
+        jcs: None,
+        closure_max: None,
     };
     let without = case.joint_laws.is_empty().then_some(without);
     let laws = case.joint_laws.values().chain(&without);
@@ -232,6 +235,7 @@ fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
                 load.pressure.unwrap_or_default(),
             ),
             LoadKind::Body => LoadAction::Body(vector(load.acceleration)),
+            LoadKind::Joint => return Err(not_yet(&format!("{key}.kind"))),
             LoadKind::Block => {
                 let block = places.block(&point().0, point().1)?;
                 LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
@@ -240,6 +244,10 @@ fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
         loads.push(Load { action, table: TimeTable(load.table.clone().unwrap_or_default()) });
     }
     Ok(loads)
+}
+
+fn not_yet(key: &str) -> Invalid {
+    Invalid { key: key.into(), message: "is not built yet".into() }
 }
 
 fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid> {
@@ -289,6 +297,10 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(slope)),
+        bolts: Vec::new(),
+        plastic: Vec::new(),
+        columns: Vec::new(),
+        acceleration: Vec::new(),
         events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
         ledger: Default::default(),
         counters: Default::default(),

@@ -1,6 +1,8 @@
 //! The case: all that a user writes about one model. Plain data with SI units; angles in degrees only under keys that
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `build`.
 
+mod bolt;
+mod ground;
 pub mod key;
 pub mod limits;
 mod validate;
@@ -11,6 +13,8 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use bolt::{Anchorage, Bolt};
+pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use validate::Invalid;
 
 /// A closed or open list of points (m).
@@ -49,6 +53,18 @@ pub struct Case {
     /// Loads.
     #[serde(default, rename = "load")]
     pub loads: Vec<Load>,
+    /// Motion of the base.
+    #[serde(default, rename = "base_motion")]
+    pub base_motions: Vec<BaseMotion>,
+    /// Boundaries that let waves leave.
+    #[serde(default, rename = "quiet")]
+    pub quiets: Vec<Quiet>,
+    /// Free-field columns beside the model.
+    #[serde(default, rename = "free_field")]
+    pub free_fields: Vec<FreeField>,
+    /// Rock bolts.
+    #[serde(default, rename = "bolt")]
+    pub bolts: Vec<Bolt>,
     /// Velocities at the start.
     #[serde(default, rename = "initial_velocity")]
     pub initial_velocities: Vec<InitialVelocity>,
@@ -169,7 +185,7 @@ pub enum Plane {
     Stress,
 }
 
-/// A linear elastic rock.
+/// An elastic rock; with `friction_deg` or `cohesion` it yields by Mohr–Coulomb.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rock {
@@ -182,6 +198,18 @@ pub struct Rock {
     /// Plane strain or plane stress.
     #[serde(default)]
     pub plane: Plane,
+    /// Friction angle (degrees); with neither this nor `cohesion` the rock never yields.
+    #[serde(default)]
+    pub friction_deg: Option<f64>,
+    /// Cohesion (Pa).
+    #[serde(default)]
+    pub cohesion: Option<f64>,
+    /// Dilation angle (degrees); default: `friction_deg` (associated flow).
+    #[serde(default)]
+    pub dilation_deg: Option<f64>,
+    /// Tensile strength (Pa); default: the apex of the Mohr–Coulomb surface.
+    #[serde(default)]
+    pub tension: Option<f64>,
     /// Polygon (m): elements whose centroid lies inside are of this rock.
     #[serde(default)]
     pub region: Option<PointList>,
@@ -197,6 +225,8 @@ pub enum JointLawKind {
     /// |T| ≤ N·tan φ + c·l with tension cut-off, peak and residual values, dilation.
     #[default]
     MohrCoulomb,
+    /// |τ| ≤ σ·tan(φr + JRC·log10(JCS/σ)) with φr = `friction_deg`, and hyperbolic closure.
+    BartonBandis,
 }
 
 /// Strength and stiffness of a joint.
@@ -212,7 +242,7 @@ pub struct JointLaw {
     /// Shear stiffness (Pa/m); default: the solver's contact stiffness.
     #[serde(default)]
     pub shear_stiffness: Option<f64>,
-    /// Friction angle (degrees).
+    /// Friction angle (degrees); of Barton–Bandis joints the residual angle φr.
     pub friction_deg: f64,
     /// Cohesion (Pa).
     #[serde(default)]
@@ -235,6 +265,15 @@ pub struct JointLaw {
     /// Slip (m) at which dilation ends; default: never.
     #[serde(default)]
     pub dilation_slip: Option<f64>,
+    /// Joint roughness coefficient (Barton–Bandis).
+    #[serde(default)]
+    pub jrc: Option<f64>,
+    /// Joint wall compressive strength (Pa; Barton–Bandis).
+    #[serde(default)]
+    pub jcs: Option<f64>,
+    /// Greatest closure (m; Barton–Bandis): the normal stress is kn·v/(1 − v/this) at closure v; default: linear.
+    #[serde(default)]
+    pub closure_max: Option<f64>,
 }
 
 /// Acceleration of gravity.
@@ -320,6 +359,8 @@ pub enum LoadKind {
     Body,
     /// `force` (N/m) and `moment` (N·m/m, counter-clockwise) about the centroid of the block that holds `point`.
     Block,
+    /// Fluid `pressure` (Pa) on both faces of the joints along `edge`, linear to `pressure_end` at its second point.
+    Joint,
 }
 
 /// A load with an optional time table.
@@ -334,7 +375,7 @@ pub struct Load {
     /// Material point (m), for `point` and `block`.
     #[serde(default)]
     pub point: Option<[f64; 2]>,
-    /// Segment (m), for `traction` and `pressure`.
+    /// Segment (m), for `traction`, `pressure` and `joint`.
     #[serde(default)]
     pub edge: Option<[[f64; 2]; 2]>,
     /// Force (N per metre of depth).
@@ -349,6 +390,9 @@ pub struct Load {
     /// Pressure (Pa), pushing into the rock.
     #[serde(default)]
     pub pressure: Option<f64>,
+    /// Pressure (Pa) at the second point of `edge`, for `joint`; default: `pressure`.
+    #[serde(default)]
+    pub pressure_end: Option<f64>,
     /// Acceleration (m/s²).
     #[serde(default)]
     pub acceleration: Option<[f64; 2]>,
@@ -391,12 +435,17 @@ pub struct InSitu {
     pub y_reference: f64,
 }
 
-/// Water with a level surface: hydrostatic pressure on the faces that it reaches, at their current places.
+/// Water with a level or a sloping surface: hydrostatic pressure on the faces that it reaches, at their current places.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
-    /// Height y of the surface at the start (m); hosts may move it.
-    pub level: f64,
+    /// Height y of the surface at the start (m); hosts may move it. This or `table`.
+    #[serde(default)]
+    pub level: Option<f64>,
+    /// Surface as points (m) from left to right, level beyond both ends; hosts shift it by what they move the level,
+    /// which starts as the height of its highest point.
+    #[serde(default)]
+    pub table: Option<PointList>,
     /// Density (kg/m³).
     #[serde(default = "water_density")]
     pub density: f64,
@@ -406,6 +455,14 @@ pub struct Water {
     /// Segments (m) of the outer boundary that the water reaches; default: all that no `[[fix]]` edge holds.
     #[serde(default)]
     pub faces: Option<Vec<[[f64; 2]; 2]>>,
+}
+
+impl Water {
+    /// Height of the surface at the start (m): `level`, or the highest point of `table`.
+    pub fn start_level(&self) -> f64 {
+        let highest = || self.table.iter().flatten().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
+        self.level.unwrap_or_else(highest)
+    }
 }
 
 fn water_density() -> f64 {
@@ -483,6 +540,9 @@ pub struct Stage {
     /// Joints of one law that take another.
     #[serde(default, rename = "switch_law")]
     pub law_switches: Vec<LawSwitch>,
+    /// Bolts by name that are installed.
+    #[serde(default)]
+    pub install: Vec<String>,
     /// Fixities by name that begin to hold.
     #[serde(default)]
     pub fix: Vec<String>,
@@ -564,6 +624,19 @@ pub enum Integrator {
     /// Lumped mass, leapfrog, open–close iteration.
     #[default]
     Explicit,
+    /// Global stiffness, Newmark's rule, open–close iteration with refactorisation: the classical method.
+    Implicit,
+}
+
+/// Newmark's rule of the implicit integrator.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Newmark {
+    /// β = ½, γ = 1: constant acceleration as in discontinuous deformation analysis; damps fast motion.
+    #[default]
+    Constant,
+    /// β = ¼, γ = ½: trapezoidal rule; keeps energy.
+    Trapezoidal,
 }
 
 /// Numerical choices; the defaults are those of `docs/theory.md`.
@@ -591,6 +664,15 @@ pub struct Solver {
     pub sweeps_max: u32,
     /// Penetration, relative to the mesh size, at which the run stops as failed.
     pub penetration_limit: f64,
+    /// Implicit: Newmark's rule.
+    pub newmark: Newmark,
+    /// Implicit: internal step (s); default: 20 times the explicit one. It is an integer fraction of the communication
+    /// step's tenth as well.
+    pub implicit_step: Option<f64>,
+    /// Implicit: most open–close iterations in a step before it is cut to 0.3.
+    pub iterations_max: u32,
+    /// Implicit: largest displacement in a step, relative to half the height of the model, before it is cut.
+    pub displacement_ratio: f64,
     /// Displacement (m) beyond which a block counts as failed; default: the mesh size.
     pub failure_displacement: Option<f64>,
     /// Memory (bytes) that a model may need.
@@ -610,6 +692,10 @@ impl Default for Solver {
             contact_tolerance: 1e-2,
             sweeps_max: 100,
             penetration_limit: 0.2,
+            newmark: Newmark::Constant,
+            implicit_step: None,
+            iterations_max: 8,
+            displacement_ratio: 0.01,
             failure_displacement: None,
             memory_limit: 8 << 30,
         }

@@ -21,6 +21,12 @@ pub struct Ledger {
     pub support_work: f64,
     /// Energy taken by damping.
     pub damping: f64,
+    /// Energy taken by rock that yields.
+    pub yielding: f64,
+    /// Work of bolts.
+    pub bolt_work: f64,
+    /// Work of quiet boundaries and free-field columns: minus what they carry away, plus what their waves bring.
+    pub radiation: f64,
     /// Work of loads, and of gravity while it is ramped.
     pub external_work: f64,
     /// Energy that left with excavated blocks, and energy of the start.
@@ -34,6 +40,9 @@ impl Ledger {
         self.contact_work += share * works.contact_work;
         self.support_work += share * works.support_work;
         self.damping += share * works.damping;
+        self.yielding += share * works.yielding;
+        self.bolt_work += share * works.bolt_work;
+        self.radiation += share * works.radiation;
         self.external_work += share * works.external_work;
     }
 
@@ -44,9 +53,11 @@ impl Ledger {
 
     /// Energy that appeared from nowhere; zero but for discretisation.
     pub fn residual(&self) -> f64 {
-        self.kinetic + self.strain + self.potential + self.damping
+        self.kinetic + self.strain + self.potential + self.damping + self.yielding
             - self.contact_work
             - self.support_work
+            - self.bolt_work
+            - self.radiation
             - self.external_work
             - self.baseline
     }
@@ -60,8 +71,11 @@ impl Ledger {
             self.stored,
             self.friction,
             self.damping,
+            self.yielding,
             self.external_work,
             self.contact_work,
+            self.bolt_work,
+            self.radiation,
         ]
         .into_iter()
         .map(f64::abs)

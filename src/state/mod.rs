@@ -14,8 +14,9 @@ pub use slope::{Fixity, Port, PortKind, Slope, Water};
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactHistory, JointLaw, Near};
+use crate::contact::{BoltState, ContactHistory, JointLaw, Near};
 use crate::geometry::Vector;
+use crate::mechanics::{ColumnState, PlasticStrain};
 
 /// Everything that changes in time and that a checkpoint holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,6 +59,14 @@ pub struct State {
     pub stage_force: Vec<Vector>,
     /// What a host has set.
     pub drive: Drive,
+    /// Bolts.
+    pub bolts: Vec<BoltState>,
+    /// Plastic strain of each element (Eq. 36); empty when no rock yields.
+    pub plastic: Vec<PlasticStrain>,
+    /// Free-field columns.
+    pub columns: Vec<ColumnState>,
+    /// Acceleration of each physical cover (m/s²) at the end of the last implicit step; empty in explicit runs.
+    pub acceleration: Vec<Vector>,
     /// What happened.
     pub events: Events,
     /// Energy ledger.
@@ -84,6 +93,10 @@ impl State {
         self.law_switch.clone_from(&other.law_switch);
         self.stage_displacement.clone_from(&other.stage_displacement);
         self.stage_force.clone_from(&other.stage_force);
+        self.bolts.clone_from(&other.bolts);
+        self.plastic.clone_from(&other.plastic);
+        self.columns.clone_from(&other.columns);
+        self.acceleration.clone_from(&other.acceleration);
         self.drive.copy_from(&other.drive);
         self.events.copy_from(&other.events);
     }

@@ -61,7 +61,7 @@ impl Step<'_> {
         let limit = slope.penetration_limit;
         match self.scratch.contacts.iter().find(|c| c.loaded_penetration() > limit) {
             Some(contact) => Err(StepError {
-                block: contact.blocks[0],
+                block: contact.pair.blocks[0],
                 place: self.scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize],
                 time: self.time,
                 failure: Failure::Penetration { depth: contact.loaded_penetration(), limit },

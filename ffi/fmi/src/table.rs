@@ -409,7 +409,7 @@ impl Rows {
         }
         if let Some(water) = &case.water {
             let what = "Height y of the free water surface";
-            self.input("water_level", what, "m", water.level, Quantity::WaterLevel);
+            self.input("water_level", what, "m", water.start_level(), Quantity::WaterLevel);
         }
         let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
         self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);

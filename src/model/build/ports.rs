@@ -82,5 +82,5 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         *wet |= water.joints && faces.boundary.trace[edge] != NONE;
     }
     let edges = (0..wet.len()).filter(|&k| wet[k]).map(|k| k as u32).collect();
-    Ok(Some(Water { density: water.density, level: water.level, edges }))
+    Ok(Some(Water { density: water.density, level: water.start_level(), edges }))
 }

@@ -94,6 +94,7 @@ fn fields_of(kind: LoadKind) -> (&'static str, [Use; 7]) {
         LoadKind::Pressure => ("pressure", [No, Must, No, No, No, Must, No]),
         LoadKind::Body => ("body", [No, No, No, No, No, No, Must]),
         LoadKind::Block => ("block", [Must, No, May, May, No, No, No]),
+        LoadKind::Joint => ("joint", [No, Must, No, No, No, Must, No]),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Checks of water and ports.
 
-use super::checks::{COORDINATE_MAX, Check, Range, fail, number, point, segment, unique};
+use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, segment, unique};
 use crate::model::case::key::{Key, list};
 use crate::model::case::limits::VALUE_MAX;
 use crate::model::case::{Port, Water};
@@ -10,7 +10,7 @@ use crate::model::case::{Port, Water};
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_water(key: &Key, water: &Water) -> Check {
-    number(key, "level", water.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
+    optional(key, "level", water.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
     number(key, "density", water.density, Range::above(0.0).to(1e5), "kg/m³", "1000 is the default")?;
     let Some(faces) = &water.faces else { return Ok(()) };
     faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))

@@ -1,0 +1,54 @@
+//! Two material points that act on each other: a node and an edge, or the ends of a bolt.
+
+use crate::cover::Weights;
+use crate::geometry::Vector;
+use crate::mechanics::Metric;
+
+/// Two material points of two blocks (or of one), as the open–close iteration needs them (Eq. 17).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pair {
+    /// Blocks of both points.
+    pub blocks: [u32; 2],
+    /// Covers of both points.
+    pub covers: [[u32; 3]; 2],
+    /// Weights of those covers at the points' current places.
+    pub weights: [Weights; 2],
+    /// Arms from the blocks' centroids to the points (m).
+    pub arms: [Vector; 2],
+    /// z = Σwμ/m of both blocks.
+    pub z: [f64; 2],
+}
+
+impl Pair {
+    /// A cover field at the first point relative to the second.
+    pub fn difference(&self, field: &[Vector]) -> Vector {
+        let at = |k: usize| -> Vector {
+            self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
+        };
+        at(0) - at(1)
+    }
+
+    /// Sets z; returns the inverse effective mass (m/kg) of both bodies along each axis (Eq. 4).
+    pub fn weigh<const N: usize>(&mut self, metric: &Metric, axes: [Vector; N]) -> [f64; N] {
+        let mut compliance = [0.0; N];
+        for body in 0..2 {
+            let block = self.blocks[body] as usize;
+            let share = metric.inverse_total[block];
+            let mut own = Vector::zeros();
+            let mut z = 0.0;
+            for (&i, w) in self.covers[body].iter().zip(self.weights[body]) {
+                let inverse = metric.inverse[i as usize];
+                own += inverse * (w * w);
+                z += w * metric.inertial[i as usize] * inverse.x;
+            }
+            self.z[body] = z;
+            let common = share * (1.0 - 2.0 * z + metric.square[block] * share);
+            for (compliance, axis) in compliance.iter_mut().zip(&axes) {
+                let lever = self.arms[body].perp(axis);
+                *compliance +=
+                    own.x * axis.x * axis.x + own.y * axis.y * axis.y + common + metric.spin[block] * lever * lever;
+            }
+        }
+        compliance
+    }
+}

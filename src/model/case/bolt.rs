@@ -1,0 +1,59 @@
+//! Rock bolts of a case.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How a bolt is tied to the rock.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Anchorage {
+    /// At its two ends; the bar between them is free.
+    #[default]
+    Ends,
+    /// Along its whole length: at each joint that it crosses a short free length bridges the joint.
+    Grouted,
+}
+
+/// A row of equal elastic–plastic bars that carry tension across joints.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bolt {
+    /// Name, for stages that install it.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Head and far end (m), both in rock.
+    pub points: [[f64; 2]; 2],
+    /// Ends or grouted.
+    #[serde(default)]
+    pub anchorage: Anchorage,
+    /// Young's modulus of the bar (Pa).
+    pub young: f64,
+    /// Cross-section of one bar (m²).
+    pub area: f64,
+    /// Distance between bars out of the plane (m).
+    #[serde(default = "one")]
+    pub spacing: f64,
+    /// Force (N) at which one bar yields; default: never.
+    #[serde(default)]
+    pub yield_force: Option<f64>,
+    /// Elongation of the free length, relative to it, at which the bar breaks; default: never.
+    #[serde(default)]
+    pub rupture_strain: Option<f64>,
+    /// Force (N) of one bar when it is installed.
+    #[serde(default)]
+    pub pretension: f64,
+    /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
+    #[serde(default)]
+    pub free_length: Option<f64>,
+    /// Whether it is there from the start; else a stage installs it by name.
+    #[serde(default = "yes")]
+    pub active: bool,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn yes() -> bool {
+    true
+}

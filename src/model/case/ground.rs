@@ -1,0 +1,102 @@
+//! What shakes a model and lets waves leave it: base motion, quiet boundaries, free-field columns.
+
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Axes, TimeTable};
+
+/// One direction of the plane.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// Horizontal.
+    #[default]
+    X,
+    /// Vertical.
+    Y,
+}
+
+/// What the rows of a base motion give.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BaseMotionKind {
+    /// Acceleration (m/s²).
+    #[default]
+    Acceleration,
+    /// Velocity (m/s).
+    Velocity,
+}
+
+/// Motion of the base that carries the model; the model lives in the frame of the base, so that its rock feels the
+/// opposite acceleration.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BaseMotion {
+    /// What the rows give.
+    #[serde(default)]
+    pub kind: BaseMotionKind,
+    /// Direction.
+    #[serde(default)]
+    pub axis: Axis,
+    /// Rows of time (s) since the start of the stage and value; linear between, zero outside. This or `file`.
+    #[serde(default)]
+    pub table: Option<TimeTable>,
+    /// CSV file with time (s) and value in its first two columns, relative to the case file.
+    #[serde(default)]
+    pub file: Option<PathBuf>,
+    /// Factor on the values, such as 9.81 for a record in g.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Stage at whose start the table begins; default: the first dynamic one.
+    #[serde(default)]
+    pub stage: Option<String>,
+}
+
+/// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
+/// holds like a fixity; in dynamic stages the forces that it bore then stay on.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Quiet {
+    /// The parts of the rock boundary on this segment (m).
+    pub edge: [[f64; 2]; 2],
+    /// What it holds in static stages.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity.
+    #[serde(default)]
+    pub wave: Option<[f64; 2]>,
+    /// Rows of time (s) since the start of the stage and factor on `wave`; linear between, zero outside. This or `file`.
+    #[serde(default)]
+    pub table: Option<TimeTable>,
+    /// CSV file with time (s) and factor in its first two columns, relative to the case file.
+    #[serde(default)]
+    pub file: Option<PathBuf>,
+    /// Factor on the values.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Stage at whose start the table begins; default: the first dynamic one.
+    #[serde(default)]
+    pub stage: Option<String>,
+}
+
+/// A column of rock beside a vertical side of the model that moves as the free field does; the side is coupled to it by
+/// a quiet boundary. Its foot moves as the boundary below it: with the base, or as a quiet boundary with its wave.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FreeField {
+    /// The vertical side (m).
+    pub edge: [[f64; 2]; 2],
+    /// What the side holds in static stages.
+    #[serde(default = "horizontal")]
+    pub axes: Axes,
+}
+
+fn horizontal() -> Axes {
+    Axes::X
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,94 @@
+//! Models of a problem: cases from text, stages run to their ends, ledgers.
+
+use std::path::Path;
+
+use enmm::io;
+use enmm::model::Simulation;
+use enmm::model::case::Integrator;
+use enmm::step::StepReport;
+
+use crate::{Row, Tolerance, Values};
+
+/// Why a problem could not be solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trouble(pub String);
+
+impl<E: std::error::Error> From<E> for Trouble {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// What a problem is solved with, and the cases that it has built so far.
+pub struct Setup {
+    /// Values of the parameters.
+    pub values: Values,
+    /// Time integration.
+    pub integrator: Integrator,
+    /// Whether fewer and coarser models will do.
+    pub quick: bool,
+    /// Name and text of each case, for users who want to change them.
+    pub cases: Vec<(String, String)>,
+}
+
+impl Setup {
+    /// The value of a parameter.
+    pub fn get(&self, name: &str) -> f64 {
+        self.values.get(name)
+    }
+
+    /// Builds a model from the text of a case and keeps the text under `name`.
+    ///
+    /// # Errors
+    /// What the case file's reader or the builder says.
+    pub fn simulation(&mut self, name: &str, text: String) -> Result<Simulation, Trouble> {
+        let mut case = io::parse_case(&text, name, Path::new("."))?.case;
+        self.cases.push((name.to_owned(), text));
+        case.solver.integrator = self.integrator;
+        Ok(Simulation::new(case)?)
+    }
+}
+
+/// Runs the stage in progress to its end; returns the last report.
+///
+/// # Errors
+/// A numerical failure.
+pub fn run_stage(simulation: &mut Simulation) -> Result<StepReport, Trouble> {
+    let start = simulation.state().stage_start;
+    let mut last = StepReport::default();
+    let mut step = 0u64;
+    while !simulation.stage_is_over(Some(&last).filter(|r| r.dt > 0.0 && r.time >= start)) {
+        let report = simulation.advance(step.is_multiple_of(10))?;
+        if report.dt > 0.0 {
+            last = report;
+        }
+        step += 1;
+    }
+    Ok(last)
+}
+
+/// Runs all stages; returns the last report of each.
+///
+/// # Errors
+/// A numerical failure, or a stage that does not fit.
+pub fn run_all(simulation: &mut Simulation) -> Result<Vec<StepReport>, Trouble> {
+    let mut reports = vec![run_stage(simulation)?];
+    while simulation.next_stage()? {
+        reports.push(run_stage(simulation)?);
+    }
+    Ok(reports)
+}
+
+/// Whether a static stage that has just ended came to rest, instead of running out of time.
+pub fn at_rest_by_end(simulation: &Simulation, report: &StepReport) -> bool {
+    simulation.at_rest(report)
+}
+
+impl Row {
+    /// What the energy ledger leaves unexplained, relative to its largest term (claim A4).
+    pub fn ledger(report: &StepReport) -> Self {
+        let share = report.ledger.residual() / report.ledger.largest().max(f64::MIN_POSITIVE);
+        Self::new("energy ledger, residual over largest term", "", share, 0.0)
+            .within(Tolerance::AtMost(1e-3), "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy")
+    }
+}
