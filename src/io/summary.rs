@@ -53,6 +53,8 @@ pub struct Summary {
     pub open_close: OpenCloseRecord,
     /// Energy ledger at the last report (J/m).
     pub energy: EnergyRecord,
+    /// Elements that have yielded.
+    pub yielded_elements: usize,
     /// Largest penetration of all steps (m).
     pub penetration_max: f64,
     /// The same over the mesh size.
@@ -328,6 +330,7 @@ impl Summary {
                 searches: counters.searches,
             },
             energy: EnergyRecord::from(record.ledger),
+            yielded_elements: simulation.yielded_elements(),
             penetration_max: counters.penetration_max,
             penetration_max_relative: counters.penetration_max / slope.covers.mesh.size,
             wall_seconds: record.wall,

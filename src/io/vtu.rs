@@ -25,7 +25,7 @@ const POLYGON: u8 = 7;
 ///
 /// Point data: `displacement` (m), `velocity` (m/s), three components each. Cell data: `stress_xx`, `stress_yy`,
 /// `stress_xy` (Pa, tension positive), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (both Pa, in
-/// the plane), `block`, `rock`. Field data: `TimeValue` (s).
+/// the plane), `block`, `rock`, and `plastic_strain` = √(⅔ εp:εp) where rock can yield. Field data: `TimeValue` (s).
 ///
 /// # Errors
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
@@ -35,7 +35,9 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     let max_shear = |[xx, yy, xy]: [f64; 3]| (0.5 * (xx - yy)).hypot(xy);
     let of_stress =
         |name, part: &dyn Fn([f64; 3]) -> f64| Array::numbers(name, snapshot.stress.iter().map(|&s| part(s)));
-    let grid = Grid {
+    let yielding = !snapshot.plastic_strain.is_empty();
+    let plastic = yielding.then(|| Array::numbers("plastic_strain", snapshot.plastic_strain.iter().copied()));
+    let mut grid = Grid {
         time: snapshot.time,
         points: Array::vectors("Points", &elements.points),
         cell_type: POLYGON,
@@ -54,6 +56,7 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
             Array::ids("rock", snapshot.rock.iter().copied()),
         ],
     };
+    grid.cell_data.extend(plastic);
     grid.write(path)
 }
 

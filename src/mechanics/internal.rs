@@ -96,6 +96,47 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
+    /// Strain RᵀF − I as xx, yy, xy in the axes that turn with the element (Eq. Y1).
+    pub fn strain(&self) -> [f64; 3] {
+        let d = self.stretch();
+        let (c, s) = (self.cos, self.sin);
+        [c * d[0] + s * d[2], c * d[3] - s * d[1], 0.5 * (c * (d[1] + d[2]) + s * (d[3] - d[0]))]
+    }
+
+    /// The stress (Pa) that a pre-stress makes in the axes that turn with the element: RᵀFσ₀FᵀR/det F.
+    pub fn carried_in_turned_axes(&self, pre: &PreStress) -> PreStress {
+        if *pre == [0.0; 3] {
+            return *pre;
+        }
+        let [f11, f12, f21, f22] = self.f;
+        let (c, s) = (self.cos, self.sin);
+        let u = [c * f11 + s * f21, c * f12 + s * f22, c * f21 - s * f11, c * f22 - s * f12];
+        let volume = f11 * f22 - f12 * f21;
+        let [xx, yy, xy] = *pre;
+        let q = [u[0] * xx + u[1] * xy, u[0] * xy + u[1] * yy, u[2] * xx + u[3] * xy, u[2] * xy + u[3] * yy];
+        [q[0] * u[0] + q[1] * u[1], q[2] * u[2] + q[3] * u[3], q[0] * u[2] + q[1] * u[3]].map(|v| v / volume)
+    }
+
+    /// (t₁₂(U₁₁ − U₂₂) − U₁₂(t₁₁ − t₂₂))/tr U of the stretch U = RᵀF and a tensor xx, yy, xy in its axes: zero when
+    /// both have the same axes.
+    pub fn skew(&self, [xx, yy, xy]: [f64; 3]) -> f64 {
+        let strain = self.strain();
+        (xy * (strain[0] - strain[1]) - strain[2] * (xx - yy)) / self.trace
+    }
+
+    /// R·t of a tensor, row by row.
+    pub fn turn_rows(&self, t: [f64; 4]) -> [f64; 4] {
+        let (c, s) = (self.cos, self.sin);
+        [c * t[0] - s * t[2], c * t[1] - s * t[3], s * t[0] + c * t[2], s * t[1] + c * t[3]]
+    }
+
+    /// R·t·Rᵀ of a symmetric tensor xx, yy, xy: from the axes that turn with the element to global ones.
+    pub fn turn(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+        let (c, s) = (self.cos, self.sin);
+        let p = self.turn_rows([xx, xy, xy, yy]);
+        [p[0] * c - p[1] * s, p[2] * s + p[3] * c, p[0] * s + p[1] * c]
+    }
+
     /// Rotation (rad), counter-clockwise.
     pub fn rotation(&self) -> f64 {
         self.sin.atan2(self.cos)

@@ -16,4 +16,4 @@ pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, TimeTable, push_block, spread};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};
-pub use plasticity::PlasticStrain;
+pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};

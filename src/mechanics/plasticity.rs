@@ -1,4 +1,418 @@
-//! Mohr–Coulomb rock: return mapping in principal stresses.
+//! Mohr–Coulomb rock: elastic, perfectly plastic, return mapping in principal stresses (Eqs. Y1–Y6).
+
+use crate::geometry::Vector;
+
+use super::{Deformation, Elasticity};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that turn with it.
 pub type PlasticStrain = [f64; 4];
+
+/// Stress beyond the surface, relative to the largest stress and the cohesion, that still counts as on it: far above
+/// rounding, so that a second return changes nothing, and far below what anybody measures.
+const ON_SURFACE: f64 = 1e-10;
+/// Planes of the surface in the order in which they are tried: shear between sorted principal stresses (first, last),
+/// then the three tension planes and, for plane stress, the shear planes of the opposite order.
+const PLANES: [Plane; 9] = [
+    Plane::Shear(0, 2),
+    Plane::Shear(0, 1),
+    Plane::Shear(1, 2),
+    Plane::Tension(0),
+    Plane::Tension(1),
+    Plane::Tension(2),
+    Plane::Shear(2, 0),
+    Plane::Shear(1, 0),
+    Plane::Shear(2, 1),
+];
+/// Planes that can be met when the return keeps the order of the principal stresses, as it does in plane strain.
+const ORDERED: usize = 6;
+
+/// One plane of the surface in principal stresses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Plane {
+    /// Shear between the stress that is the larger one on this plane and the smaller one.
+    Shear(usize, usize),
+    /// Tension cut-off of one stress.
+    Tension(usize),
+}
+
+/// Strength of a rock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MohrCoulomb {
+    /// Elastic constants in the plane.
+    pub elasticity: Elasticity,
+    /// Whether there is no stress out of the plane, instead of no strain.
+    pub plane_stress: bool,
+    /// Tangent of the friction angle.
+    pub friction: f64,
+    /// Cohesion (Pa).
+    pub cohesion: f64,
+    /// Tangent of the dilation angle.
+    pub dilation: f64,
+    /// Tensile strength (Pa); none for the apex of the shear planes.
+    pub tension: Option<f64>,
+}
+
+impl MohrCoulomb {
+    /// The surface with tan φ, c and the tensile strength times `factor` (Eq. Y6); ψ is at most the φ that is left.
+    pub fn surface(&self, factor: f64) -> YieldSurface {
+        let sine = |tangent: f64| tangent / (1.0 + tangent * tangent).sqrt();
+        let (friction, cohesion) = (self.friction * factor, self.cohesion * factor);
+        let apex = if friction > 0.0 { cohesion / friction } else { f64::INFINITY };
+        YieldSurface {
+            elasticity: self.elasticity,
+            plane_stress: self.plane_stress,
+            sin_friction: sine(friction),
+            sin_dilation: sine(self.dilation.min(friction)),
+            shear: 2.0 * cohesion / (1.0 + friction * friction).sqrt(),
+            tension: self.tension.map_or(apex, |tension| (tension * factor).min(apex)),
+            cohesion,
+        }
+    }
+
+    /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. Y2).
+    fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
+        relief(&self.elasticity, self.plane_stress, plastic)
+    }
+
+    /// What plastic strain adds to the forces (N/m) on the three covers of an element of cut area `area` (m²).
+    ///
+    /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that
+    /// they turn no element (Eq. Y5).
+    pub fn forces(&self, at: &Deformation, g: &[Vector; 3], area: f64, plastic: &PlasticStrain) -> [Vector; 3] {
+        let [xx, yy, xy, _] = self.relief(plastic);
+        let skew = at.skew([xx, yy, xy]);
+        let p = at.turn_rows([xx, xy + skew, xy - skew, yy]).map(|v| area * v);
+        g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
+    }
+
+    /// What plastic strain adds to the stress xx, yy, xy (Pa) in global axes.
+    pub fn stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 3] {
+        let [xx, yy, xy, _] = self.relief(plastic);
+        at.turn([-xx, -yy, -xy])
+    }
+
+    /// What plastic strain adds to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. Y5).
+    pub fn energy(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+        let relief = self.relief(plastic);
+        let [xx, yy, xy] = at.strain();
+        let own = [0.5 * plastic[0] - xx, 0.5 * plastic[1] - yy, 0.5 * plastic[2] - xy, 0.5 * plastic[3]];
+        double_dot(&relief, &own) - double_dot(pre, plastic)
+    }
+}
+
+/// C·ε of a plane strain field with strain out of the plane; in plane stress that one costs nothing.
+fn relief(rock: &Elasticity, plane_stress: bool, strain: &[f64; 4]) -> [f64; 4] {
+    let [xx, yy, xy, zz] = *strain;
+    let zz = if plane_stress { 0.0 } else { zz };
+    let volume = rock.lambda * (xx + yy + zz);
+    let out = if plane_stress { 0.0 } else { 2.0 * rock.mu * zz + volume };
+    [2.0 * rock.mu * xx + volume, 2.0 * rock.mu * yy + volume, 2.0 * rock.mu * xy, out]
+}
+
+/// a : b of two symmetric tensors xx, yy, xy, zz.
+fn double_dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2] + a[3] * b[3]
+}
+
+/// √(⅔ εp:εp): size of a plastic strain.
+pub fn equivalent_strain(plastic: &PlasticStrain) -> f64 {
+    (2.0 / 3.0 * double_dot(plastic, plastic)).sqrt()
+}
+
+/// The planes between elastic and plastic states of a rock (Eq. Y3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct YieldSurface {
+    elasticity: Elasticity,
+    plane_stress: bool,
+    sin_friction: f64,
+    sin_dilation: f64,
+    /// 2c·cos φ (Pa).
+    shear: f64,
+    /// Tensile strength (Pa); infinite for a rock without friction that names none.
+    tension: f64,
+    cohesion: f64,
+}
+
+impl YieldSurface {
+    /// Plastic strain after yielding, and the energy (J/m²) that it took; none where the rock is elastic.
+    ///
+    /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
+    pub fn update(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<(PlasticStrain, f64)> {
+        let own = self.own_stress(at, plastic);
+        let [xx, yy, xy] = at.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
+        let flow = self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])?;
+        let plastic = [0, 1, 2, 3].map(|k| plastic[k] + flow[k]);
+        let own = self.own_stress(at, &plastic);
+        let bearing = [0, 1, 2, 3].map(|k| own[k] + pre[k]);
+        Some((plastic, double_dot(&bearing, &flow)))
+    }
+
+    /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that turn with the element (Eq. Y2).
+    fn own_stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 4] {
+        let [xx, yy, xy] = at.strain();
+        let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
+        relief(&self.elasticity, self.plane_stress, &elastic)
+    }
+
+    /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.
+    pub fn excess(&self, stress: [f64; 4]) -> f64 {
+        let principal = Principal::of(stress, self.plane_stress);
+        PLANES[..ORDERED].iter().map(|&p| self.beyond(p, &principal.sorted)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; none inside (Eq. Y4).
+    pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
+        let principal = Principal::of(trial, self.plane_stress);
+        let sorted = principal.sorted;
+        let most = sorted.iter().fold(self.cohesion, |a, s| a.max(s.abs()));
+        let tolerance = ON_SURFACE * most;
+        let excess = self.beyond(PLANES[0], &sorted).max(self.beyond(PLANES[3], &sorted));
+        if excess.is_nan() || excess <= tolerance {
+            return None;
+        }
+        let flow = Return { surface: self, principal: &principal, tolerance }.flow();
+        Some(principal.in_plane_axes(flow))
+    }
+
+    fn beyond(&self, plane: Plane, s: &[f64; 3]) -> f64 {
+        match plane {
+            Plane::Shear(i, j) => s[i] - s[j] + (s[i] + s[j]) * self.sin_friction - self.shear,
+            Plane::Tension(i) => s[i] - self.tension,
+        }
+    }
+
+    /// Gradient of a plane, with the friction angle or, for the flow, the dilation angle.
+    fn normal(plane: Plane, sine: f64) -> [f64; 3] {
+        let mut normal = [0.0; 3];
+        match plane {
+            Plane::Shear(i, j) => (normal[i], normal[j]) = (1.0 + sine, sine - 1.0),
+            Plane::Tension(i) => normal[i] = 1.0,
+        }
+        normal
+    }
+}
+
+/// Principal stresses, largest first, and how they lie in the plane.
+struct Principal {
+    sorted: [f64; 3],
+    /// Which of (larger in the plane, smaller in the plane, out of the plane) each sorted one is.
+    axis: [usize; 3],
+    /// Cosine and sine of twice the angle from x to the larger one in the plane.
+    double_angle: [f64; 2],
+    /// Which sorted one costs no elastic stress: the one out of the plane in plane stress.
+    free: Option<usize>,
+}
+
+impl Principal {
+    fn of([xx, yy, xy, zz]: [f64; 4], plane_stress: bool) -> Self {
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let radius = half.hypot(xy);
+        let double_angle = if radius > 0.0 { [half / radius, xy / radius] } else { [1.0, 0.0] };
+        let (a, b) = (mean + radius, mean - radius);
+        let (sorted, axis) = match () {
+            () if zz > a => ([zz, a, b], [2, 0, 1]),
+            () if zz < b => ([a, b, zz], [0, 1, 2]),
+            () => ([a, zz, b], [0, 2, 1]),
+        };
+        let free = axis.iter().position(|&k| k == 2).filter(|_| plane_stress);
+        Self { sorted, axis, double_angle, free }
+    }
+
+    /// A strain along the sorted axes as xx, yy, xy, zz.
+    fn in_plane_axes(&self, strain: [f64; 3]) -> PlasticStrain {
+        let mut own = [0.0; 3];
+        self.axis.iter().zip(strain).for_each(|(&k, value)| own[k] = value);
+        let (mean, half) = (0.5 * (own[0] + own[1]), 0.5 * (own[0] - own[1]));
+        let [cos, sin] = self.double_angle;
+        [mean + half * cos, mean - half * cos, half * sin, own[2]]
+    }
+}
+
+/// The search for the planes on which a trial stress ends up.
+struct Return<'a> {
+    surface: &'a YieldSurface,
+    principal: &'a Principal,
+    tolerance: f64,
+}
+
+impl Return<'_> {
+    /// Plastic strain along the sorted axes: one plane, else an edge, else a corner, else the apex.
+    fn flow(&self) -> [f64; 3] {
+        let count = if self.principal.free.is_some() { PLANES.len() } else { ORDERED };
+        let planes = &PLANES[..count];
+        let one = (0..count).find_map(|i| self.on(&[planes[i]]));
+        let two = || pairs(count).find_map(|(i, j)| self.on(&[planes[i], planes[j]]));
+        let three = || {
+            pairs(count).find_map(|(i, j)| (j + 1..count).find_map(|k| self.on(&[planes[i], planes[j], planes[k]])))
+        };
+        one.or_else(two).or_else(three).unwrap_or_else(|| self.apex())
+    }
+
+    /// Stress of a strain along the sorted axes.
+    fn stress(&self, strain: &[f64; 3]) -> [f64; 3] {
+        let Elasticity { lambda, mu, .. } = self.surface.elasticity;
+        let bears = |k: usize| self.principal.free != Some(k);
+        let volume: f64 = lambda * (0..3).filter(|&k| bears(k)).map(|k| strain[k]).sum::<f64>();
+        [0, 1, 2].map(|k| if bears(k) { 2.0 * mu * strain[k] + volume } else { 0.0 })
+    }
+
+    /// Plastic strain when exactly these planes yield; none when one of them would have to yield backwards, or another
+    /// plane is violated.
+    fn on<const N: usize>(&self, planes: &[Plane; N]) -> Option<[f64; 3]> {
+        let surface = self.surface;
+        if planes.iter().any(|&p| surface.beyond(p, &[0.0; 3]) == f64::NEG_INFINITY) {
+            return None;
+        }
+        let flows = planes.map(|p| YieldSurface::normal(p, surface.sin_dilation));
+        let stresses = flows.map(|b| self.stress(&b));
+        let normals = planes.map(|p| YieldSurface::normal(p, surface.sin_friction));
+        let matrix = normals.map(|a| stresses.map(|s| (0..3).map(|k| a[k] * s[k]).sum::<f64>()));
+        let right = planes.map(|p| surface.beyond(p, &self.principal.sorted));
+        let rates = solve(matrix, right, surface.elasticity.mu)?;
+        let least = -self.tolerance / surface.elasticity.mu;
+        if rates.iter().any(|rate| rate.is_nan() || *rate < least) {
+            return None;
+        }
+        let strain = [0, 1, 2].map(|k| (0..N).map(|p| rates[p] * flows[p][k]).sum::<f64>());
+        let relief = self.stress(&strain);
+        let stress = [0, 1, 2].map(|k| self.principal.sorted[k] - relief[k]);
+        let holds = |p: &Plane| surface.beyond(*p, &stress) <= self.tolerance;
+        PLANES.iter().all(holds).then_some(strain)
+    }
+
+    /// Plastic strain that leaves the apex, or no stress at all where there is none or it has no place in the plane.
+    fn apex(&self) -> [f64; 3] {
+        let Elasticity { lambda, mu, .. } = self.surface.elasticity;
+        let free = self.principal.free;
+        let target = if free.is_none() && self.surface.tension.is_finite() { self.surface.tension } else { 0.0 };
+        let bears = |k: usize| free != Some(k);
+        let off = [0, 1, 2].map(|k| if bears(k) { self.principal.sorted[k] - target } else { 0.0 });
+        let axes = if free.is_some() { 2.0 } else { 3.0 };
+        let volume = off.iter().sum::<f64>() / (2.0 * mu + axes * lambda);
+        [0, 1, 2].map(|k| if bears(k) { (off[k] - lambda * volume) / (2.0 * mu) } else { 0.0 })
+    }
+}
+
+/// All pairs i < j below `count`.
+fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j)))
+}
+
+/// Solution of a small linear system by elimination; none when it is singular beside `scale`.
+fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], scale: f64) -> Option<[f64; N]> {
+    for k in 0..N {
+        let pivot = (k..N).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        if a[k][k].abs() <= 1e-9 * scale {
+            return None;
+        }
+        for i in k + 1..N {
+            let share = a[i][k] / a[k][k];
+            (k..N).for_each(|j| a[i][j] -= share * a[k][j]);
+            b[i] -= share * b[k];
+        }
+    }
+    for k in (0..N).rev() {
+        let known: f64 = (k + 1..N).map(|j| a[k][j] * b[j]).sum();
+        b[k] = (b[k] - known) / a[k][k];
+    }
+    Some(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rock(friction_deg: f64, dilation_deg: f64, tension: Option<f64>, plane_stress: bool) -> MohrCoulomb {
+        let tangent = |degrees: f64| degrees.to_radians().tan();
+        let elasticity = if plane_stress {
+            Elasticity::plane_stress(1e9, 0.3, 2500.0)
+        } else {
+            Elasticity::plane_strain(1e9, 0.3, 2500.0)
+        };
+        let (friction, dilation) = (tangent(friction_deg), tangent(dilation_deg));
+        MohrCoulomb { elasticity, plane_stress, friction, cohesion: 1e6, dilation, tension }
+    }
+
+    /// Stress after the return of a trial stress.
+    fn returned(strength: &MohrCoulomb, trial: [f64; 4]) -> ([f64; 4], PlasticStrain) {
+        let flow = strength.surface(1.0).flow(trial).unwrap_or_default();
+        let relief = strength.relief(&flow);
+        ([0, 1, 2, 3].map(|k| trial[k] - relief[k]), flow)
+    }
+
+    /// On the face s₁ (1 + sin φ) − s₃ (1 − sin φ) = 2c·cos φ; the flow swells by 2 sin ψ per 2 of shear and the middle
+    /// stress's axis does not flow.
+    #[test]
+    fn a_face_returns_along_the_dilation_angle() {
+        let strength = rock(30.0, 10.0, None, false);
+        let (stress, flow) = returned(&strength, [-1e6, -9e6, 0.0, -3e6]);
+        assert!((stress[0] * 1.5 - stress[1] * 0.5 - 2e6 * 30f64.to_radians().cos()).abs() < 1e-3);
+        assert!(flow[3].abs() < 1e-15);
+        let sine = (flow[0] + flow[1]) / (flow[0] - flow[1]);
+        assert!((sine - 10f64.to_radians().sin()).abs() < 1e-9, "{sine}");
+    }
+
+    /// Triaxial extension and compression end on edges; a hydrostatic pull ends at the apex c·cot φ or the cut-off.
+    #[test]
+    fn edges_apex_and_cut_off() {
+        let strength = rock(30.0, 0.0, None, false);
+        let (stress, _) = returned(&strength, [-1e6, -1.1e6, 0.0, -30e6]);
+        assert!((stress[0] - stress[1]).abs() < 1e-3 && stress[3] < -3e6, "{stress:?}");
+        let apex = 1e6 / 30f64.to_radians().tan();
+        let (stress, _) = returned(&strength, [9e6, 8e6, 1e6, 7e6]);
+        assert!([0, 1, 3].iter().all(|&k| (stress[k] - apex).abs() < 1e-3) && stress[2].abs() < 1e-3);
+        let (stress, _) = returned(&rock(30.0, 0.0, Some(2e5), false), [9e6, -1e5, 0.0, 1e5]);
+        assert!((stress[0] - 2e5).abs() < 1e-3, "{stress:?}");
+    }
+
+    /// Small reproducible numbers in 0..1.
+    fn dice(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Any trial stress ends on the surface, a second return changes nothing, and energy is only ever taken.
+    #[test]
+    fn any_trial_stress_ends_on_the_surface() {
+        let mut seed = 7;
+        let mut yielded = 0;
+        for case in 0..200_000 {
+            let friction = 60.0 * dice(&mut seed) * f64::from(case % 5 != 0);
+            let tension = (case % 3 == 0).then(|| 1e6 * dice(&mut seed));
+            let plane_stress = case % 2 == 0;
+            let strength = rock(friction, friction * dice(&mut seed), tension, plane_stress);
+            let mut number = || (2.0 * dice(&mut seed) - 1.0) * 2e7;
+            let (centre, own) = (number(), [number(), number(), number(), number()]);
+            let trial = [own[0] + centre, own[1] + centre, own[2], own[3] + centre];
+            let trial = if plane_stress { [trial[0], trial[1], trial[2], 0.0] } else { trial };
+            let (stress, flow) = returned(&strength, trial);
+            let surface = strength.surface(1.0);
+            assert!(surface.excess(stress) <= 1e-9 * 6e7, "{strength:?} {trial:?} {stress:?}");
+            assert!(surface.flow(stress).is_none(), "{strength:?} {trial:?} {stress:?}");
+            assert!(double_dot(&stress, &flow) >= -1e-9 * 6e7 * equivalent_strain(&flow), "{trial:?} {flow:?}");
+            yielded += u32::from(flow != [0.0; 4]);
+        }
+        assert!(yielded > 100_000, "{yielded}");
+    }
+
+    #[test]
+    fn forces_are_minus_the_gradient_of_the_energy() {
+        let gradients = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
+        let (strength, plastic) = (rock(30.0, 0.0, None, false), [0.01, -0.02, 0.005, 0.003]);
+        let u = [Vector::new(0.1, -0.2), Vector::new(-0.05, 0.3), Vector::new(0.2, 0.15)];
+        let forces = strength.forces(&Deformation::new(u, &gradients), &gradients, 1.0, &plastic);
+        for k in 0..3 {
+            for axis in 0..2 {
+                let energy = |d: f64| {
+                    let mut moved = u;
+                    moved[k][axis] += d;
+                    strength.energy(&Deformation::new(moved, &gradients), &[1e6, 2e6, 3e5, 0.0], &plastic)
+                };
+                let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+                assert!((slope + forces[k][axis]).abs() < 1.0, "{slope} {}", forces[k][axis]);
+            }
+        }
+    }
+}

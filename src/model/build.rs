@@ -57,6 +57,8 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let slope = Slope {
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
+        pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
+        strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
         rocks,
         element_rock,
@@ -82,7 +84,8 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     };
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
     let state = initial_state(case, &slope, &places)?;
-    let warnings = warnings(&plane.arrangement.report);
+    let mut warnings = warnings(&plane.arrangement.report);
+    warnings.extend(rock::overstressed(case, &slope));
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 
@@ -298,7 +301,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(slope)),
         bolts: Vec::new(),
-        plastic: Vec::new(),
+        plastic: rock::plastic(slope),
         columns: Vec::new(),
         acceleration: Vec::new(),
         events: Events::none(slope.covers.block_count(), slope.trace_law.len()),

@@ -218,6 +218,13 @@ pub struct Rock {
     pub blocks: PointList,
 }
 
+impl Rock {
+    /// Whether the rock has a strength that can be exceeded.
+    pub fn yields(&self) -> bool {
+        self.friction_deg.is_some() || self.cohesion.is_some()
+    }
+}
+
 /// Kind of a joint law.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -433,6 +440,13 @@ pub struct InSitu {
     /// Height (m) at which the values hold.
     #[serde(default)]
     pub y_reference: f64,
+    /// Normal stress out of the plane (Pa) at that height, for rock that yields in plane strain; default: Poisson's
+    /// ratio times (sxx + syy), whatever the height.
+    #[serde(default)]
+    pub szz: Option<f64>,
+    /// Change of `szz` with height (Pa/m).
+    #[serde(default)]
+    pub szz_gradient: f64,
 }
 
 /// Water with a level or a sloping surface: hydrostatic pressure on the faces that it reaches, at their current places.

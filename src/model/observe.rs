@@ -4,7 +4,7 @@
 
 use crate::contact::{ContactHistory, ContactState, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
-use crate::mechanics::{Deformation, PreStress};
+use crate::mechanics::equivalent_strain;
 use crate::state::{Slope, State};
 use crate::step;
 
@@ -68,7 +68,10 @@ impl Simulation {
                 snapshot.velocity.push(slope.sample(e, p, &state.velocity));
             }
             snapshot.elements.start.push(snapshot.elements.points.len() as u32);
-            snapshot.stress.push(deformation(slope, state, e).stress(rock(slope, e), &pre_stress(slope, e)));
+            snapshot.stress.push(slope.stress(state, e));
+            if !state.plastic.is_empty() {
+                snapshot.plastic_strain.push(equivalent_strain(&slope.plastic_strain(state, e)));
+            }
             snapshot.block.push(covers.element_block[e]);
             snapshot.rock.push(u32::from(slope.element_rock[e]));
         }
@@ -165,12 +168,19 @@ impl Simulation {
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
         for e in covers.elements_of(block) {
-            let (deformation, pre) = (deformation(slope, state, e), pre_stress(slope, e));
-            let of_element = deformation.stress(rock(slope, e), &pre);
+            let of_element = slope.stress(state, e);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += deformation.energy(rock(slope, e), &pre) * covers.element_area[e];
+            strain_energy += slope.strain_energy(state, e) * covers.element_area[e];
         }
         (stress, strain_energy)
+    }
+
+    /// Elements that are there and have yielded.
+    pub fn yielded_elements(&self) -> usize {
+        let state = self.state();
+        let blocks = &self.slope().covers.element_block;
+        let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block as usize]);
+        there.filter(|(plastic, _)| **plastic != [0.0; 4]).count()
     }
 
     /// Current places of the boundary points (m).
@@ -223,20 +233,6 @@ fn rotation(slope: &Slope, state: &State, block: usize) -> f64 {
         sine += slope.metric.row_sum[i] * before.perp(&after);
     }
     sine.atan2(cosine)
-}
-
-fn deformation(slope: &Slope, state: &State, element: usize) -> Deformation {
-    let covers = &slope.covers;
-    let displacement = covers.element_covers[element].map(|i| state.displacement[i as usize]);
-    Deformation::new(displacement, &covers.gradients[covers.element_triangle[element].set as usize])
-}
-
-fn rock(slope: &Slope, element: usize) -> &crate::mechanics::Elasticity {
-    &slope.rocks[slope.element_rock[element] as usize]
-}
-
-fn pre_stress(slope: &Slope, element: usize) -> PreStress {
-    slope.pre_stress.get(element).copied().unwrap_or_default()
 }
 
 fn joint_point(slope: &Slope, places: &[Point], contact: &VertexEdge) -> JointPoint {

@@ -149,6 +149,11 @@ impl Drive {
         mix(self.from.strength_factor, self.to.strength_factor, share)
     }
 
+    /// Strength factor that acts at time `t` (s); a jump that has not acted yet is left out.
+    pub fn strength_factor_now(&self, t: f64) -> f64 {
+        if self.is_moving() { self.strength_factor(self.share(t)) } else { self.from.strength_factor }
+    }
+
     /// Force (N/m) and moment (N·m/m) on a block at a share of the way.
     pub fn block(&self, block: usize, share: f64) -> (Vector, f64) {
         let force = mix(self.from.block_force[block], self.to.block_force[block], share);

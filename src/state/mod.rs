@@ -1,5 +1,6 @@
 //! The three heaps: [`Slope`] (fixed once built), [`State`] (all that a checkpoint holds), [`Scratch`] (buffers).
 
+mod element;
 mod events;
 mod inputs;
 mod ledger;
@@ -61,7 +62,7 @@ pub struct State {
     pub drive: Drive,
     /// Bolts.
     pub bolts: Vec<BoltState>,
-    /// Plastic strain of each element (Eq. 36); empty when no rock yields.
+    /// Plastic strain of each element (Eq. Y2); empty when no rock yields.
     pub plastic: Vec<PlasticStrain>,
     /// Free-field columns.
     pub columns: Vec<ColumnState>,

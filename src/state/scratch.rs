@@ -2,7 +2,7 @@
 
 use crate::contact::{BlockPush, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{BlockMotion, Metric};
+use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
 /// Buffers, sized at the first step and reused.
 #[derive(Debug, Clone, Default)]
@@ -33,6 +33,10 @@ pub struct Scratch {
     pub push: Vec<BlockPush>,
     /// Law of each joint trace after switches.
     pub trace_law: Vec<u32>,
+    /// Yield surface of each rock in this step; none for one that never yields.
+    pub surfaces: Vec<Option<YieldSurface>>,
+    /// Energy (J/m) taken by yielding of each run of elements in this step.
+    pub yielded: Vec<f64>,
     /// Whether each block touches another.
     pub touching: Vec<bool>,
     /// Largest speed of a cover (m/s).

@@ -3,7 +3,7 @@
 use crate::contact::{Boundary, JointLaw, Support};
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Elasticity, Load, Metric, PreStress, StressField};
+use crate::mechanics::{Elasticity, Load, Metric, MohrCoulomb, PreStress, StressField};
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -66,6 +66,10 @@ pub struct Slope {
     pub element_rock: Vec<u16>,
     /// In-situ stress of each element (Pa); empty when there is none.
     pub pre_stress: Vec<PreStress>,
+    /// Strength of each rock; none for one that never yields.
+    pub strengths: Vec<Option<MohrCoulomb>>,
+    /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
+    pub pre_stress_out: Vec<f64>,
     /// Masses of all blocks as if free.
     pub metric: Metric,
     /// 2π·cs/max(√A, h) of each block (1/s): what the damping ratio multiplies.

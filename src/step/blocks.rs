@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::geometry::Vector;
-use crate::mechanics::{self, BlockMotion, Damping, Deformation, Kick, PreStress};
+use crate::mechanics::{self, BlockMotion, Damping, Deformation, Kick};
 use crate::state::{Scratch, Slope, State};
 
 use super::DECAY_MAX;
@@ -130,9 +130,13 @@ impl Pass<'_> {
         for e in covers.elements_of(block) {
             let ids = covers.element_covers[e];
             let g = &covers.gradients[covers.element_triangle[e].set as usize];
-            let rock = &slope.rocks[slope.element_rock[e] as usize];
             let deformation = Deformation::new(ids.map(|i| u[i as usize]), g);
-            let forces = deformation.forces(g, covers.element_area[e], rock, &pre_stress(slope, e));
+            let area = covers.element_area[e];
+            let mut forces = deformation.forces(g, area, slope.rock_of(e), &slope.pre_stress_of(e));
+            if let Some((strength, plastic)) = self.state.plastic.get(e).and_then(|p| Some((slope.strength_of(e)?, p))) {
+                let relief = strength.forces(&deformation, g, area, plastic);
+                forces.iter_mut().zip(relief).for_each(|(f, r)| *f += r);
+            }
             for (i, f) in ids.into_iter().zip(forces) {
                 force[(i - first) as usize] += f;
             }
@@ -149,11 +153,6 @@ impl Pass<'_> {
             mass => mass,
         }
     }
-}
-
-/// In-situ stress of an element, zero when the model has none.
-pub(super) fn pre_stress(slope: &Slope, element: usize) -> PreStress {
-    slope.pre_stress.get(element).copied().unwrap_or_default()
 }
 
 /// One block's slices with neither damping nor force: for its energy and momentum.

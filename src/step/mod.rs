@@ -7,6 +7,7 @@ mod events;
 mod guard;
 mod prepare;
 mod report;
+mod yielding;
 
 pub use guard::{Failure, StepError};
 pub use prepare::{begin_stage, prepare};
@@ -105,6 +106,7 @@ pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch)
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     step.search();
+    step.yield_rock();
     step.predict(dt);
     step.entrance(dt);
     scratch.contacts
@@ -143,6 +145,7 @@ impl Step<'_> {
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
     fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
         self.search();
+        self.yield_rock();
         self.predict(dt);
         self.entrance(dt);
         let swept = self.open_close(dt);
@@ -182,6 +185,13 @@ impl Step<'_> {
             self.state.counters.searches += 1;
         }
         scratch.seconds.search += clock.elapsed().as_secs_f64();
+    }
+
+    /// Plastic strain at the current displacements.
+    fn yield_rock(&mut self) {
+        let clock = Instant::now();
+        yielding::update(self.slope, self.state, self.scratch, self.time);
+        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
     /// Internal forces, loads and the kick of every block without contact forces.

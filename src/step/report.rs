@@ -2,10 +2,10 @@
 
 use crate::contact::ContactState;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, Deformation, Metric};
+use crate::mechanics::{self, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
 
-use super::blocks::{pre_stress, resting};
+use super::blocks::resting;
 
 /// A step as seen from outside; energies hold at the step's start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -36,15 +36,10 @@ pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], v
         .sum()
 }
 
-/// Strain energy (J/m) of all blocks that are there (Eq. 8).
+/// Strain energy (J/m) of all blocks that are there (Eqs. 8, Y5).
 pub(super) fn strain(slope: &Slope, state: &State) -> f64 {
     let covers = &slope.covers;
-    let of_element = |e: usize| {
-        let g = &covers.gradients[covers.element_triangle[e].set as usize];
-        let u = covers.element_covers[e].map(|i| state.displacement[i as usize]);
-        let rock = &slope.rocks[slope.element_rock[e] as usize];
-        covers.element_area[e] * Deformation::new(u, g).energy(rock, &pre_stress(slope, e))
-    };
+    let of_element = |e: usize| covers.element_area[e] * slope.strain_energy(state, e);
     (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]).map(of_element).sum()
 }
 

@@ -45,6 +45,10 @@ region = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0]]
 density = 2650
 young = 5e10
 poisson = 0.25
+friction_deg = 45.0
+cohesion = 5e6
+dilation_deg = 10.0
+tension = 2e6
 
 [rock.marl]
 density = 2200.0
@@ -127,6 +131,8 @@ syy = -2e6
 sxy = 1e5
 gradient = [1e4, 2e4, 0.0]
 y_reference = 5.0
+szz = -1e6
+szz_gradient = 1e4
 
 [water]
 level = 1.5

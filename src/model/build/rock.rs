@@ -1,8 +1,10 @@
-//! Which rock each element is made of.
+//! Which rock each element is made of, and the strength of rock.
 
+use crate::cover::Covers;
 use crate::geometry::polygon;
-use crate::mechanics::Elasticity;
+use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
+use crate::state::Slope;
 
 use super::geometry::points;
 use super::place::Places;
@@ -13,6 +15,71 @@ pub(super) fn elasticity(rock: &Rock) -> Elasticity {
         Plane::Strain => Elasticity::plane_strain(rock.young, rock.poisson, rock.density),
         Plane::Stress => Elasticity::plane_stress(rock.young, rock.poisson, rock.density),
     }
+}
+
+/// Strength of a rock of the case; none when it gives neither friction nor cohesion.
+pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
+    if !rock.yields() {
+        return None;
+    }
+    let tangent = |degrees: f64| degrees.to_radians().tan();
+    let friction = rock.friction_deg.unwrap_or(0.0);
+    Some(MohrCoulomb {
+        elasticity: elasticity(rock),
+        plane_stress: rock.plane == Plane::Stress,
+        friction: tangent(friction),
+        cohesion: rock.cohesion.unwrap_or(0.0),
+        dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
+        tension: rock.tension,
+    })
+}
+
+/// No plastic strain in any element; empty when no rock yields.
+pub(super) fn plastic(slope: &Slope) -> Vec<PlasticStrain> {
+    let yields = slope.strengths.iter().any(Option::is_some);
+    vec![[0.0; 4]; if yields { slope.covers.element_count() } else { 0 }]
+}
+
+/// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
+pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16]) -> Vec<f64> {
+    let Some(field) = case.in_situ.as_ref().filter(|_| case.rocks.values().any(Rock::yields)) else {
+        return Vec::new();
+    };
+    let rocks: Vec<&Rock> = case.rocks.values().collect();
+    let of_element = |e: usize| {
+        let (rock, height) = (rocks[element_rock[e] as usize], covers.element_centroid[e].y - field.y_reference);
+        let in_plane = field.sxx + field.syy + (field.gradient[0] + field.gradient[1]) * height;
+        match rock.plane {
+            Plane::Stress => 0.0,
+            Plane::Strain => field.szz.map_or(rock.poisson * in_plane, |szz| szz + field.szz_gradient * height),
+        }
+    };
+    (0..covers.element_count()).map(of_element).collect()
+}
+
+/// A warning where the in-situ stress is beyond the strength of the rock: how many elements, where, and by how much.
+pub(super) fn overstressed(case: &Case, slope: &Slope) -> Option<String> {
+    case.in_situ.as_ref()?;
+    let excess = |e: usize| {
+        let strength = slope.strength_of(e)?;
+        let stress = slope.pre_stress_and_out(e);
+        let size = stress.iter().fold(strength.cohesion, |a, s| a.max(s.abs()));
+        let excess = strength.surface(1.0).excess(stress);
+        (excess > 1e-9 * size).then_some((e, excess))
+    };
+    let beyond: Vec<(usize, f64)> = (0..slope.covers.element_count()).filter_map(excess).collect();
+    let &(worst, most) = beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let place = slope.covers.element_centroid[worst];
+    let name = case.rocks.keys().nth(slope.element_rock[worst] as usize).map_or("", String::as_str);
+    Some(format!(
+        "the in-situ stress is beyond the strength of the rock in {} of {} elements, most at ({:.6}, {:.6}) m in \
+         `{name}`, by {most:.3e} Pa; they yield in the first step: lower the stress, set `in_situ.szz`, or raise the \
+         strength",
+        beyond.len(),
+        slope.covers.element_count(),
+        place.x,
+        place.y
+    ))
 }
 
 /// Rock of each element: by block, else by region, else the rock that names neither.

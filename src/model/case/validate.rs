@@ -47,6 +47,7 @@ impl Case {
         }
         if let Some(stress) = &self.in_situ {
             in_situ(&root.field("in_situ"), stress)?;
+            self.validate_stress_out(&root.field("in_situ"), stress)?;
         }
         if let Some(water) = &self.water {
             ports::validate_water(&root.field("water"), water)?;
@@ -126,6 +127,19 @@ impl Case {
         Ok(())
     }
 
+    /// `szz` acts on rock that yields in plane strain alone.
+    fn validate_stress_out(&self, key: &Key, stress: &InSitu) -> Check {
+        let acts = self.rocks.values().any(|rock| rock.yields() && rock.plane == Plane::Strain);
+        if stress.szz.is_some() && !acts {
+            let message = "has no effect: no rock of plane strain yields; remove it, or give a rock `friction_deg`";
+            return fail(&key.field("szz"), message);
+        }
+        if stress.szz_gradient != 0.0 && stress.szz.is_none() {
+            return fail(&key.field("szz_gradient"), "has no effect without `szz`; add it or remove this");
+        }
+        Ok(())
+    }
+
     fn validate_monitors(&self, key: &Key) -> Check {
         for (i, monitor) in self.monitors.iter().enumerate() {
             point(&key.index(i).field("point"), &monitor.point)?;
@@ -189,10 +203,33 @@ fn rock(key: &Key, rock: &Rock) -> Check {
         Plane::Stress => Range::above(-1.0).to(0.5),
     };
     number(key, "poisson", rock.poisson, poisson, "", "rock has 0.1 to 0.4")?;
+    strength(key, rock)?;
     if let Some(ring) = &rock.region {
         region(&key.field("region"), ring)?;
     }
     points(&key.field("blocks"), &rock.blocks, 0, "a list of blocks")
+}
+
+/// Strength of rock: signs and ranges, and what makes no sense together.
+fn strength(key: &Key, rock: &Rock) -> Check {
+    let free = "leave out friction_deg and cohesion for rock that never yields";
+    optional(key, "friction_deg", rock.friction_deg, Law::ANGLE, "degrees", free)?;
+    optional(key, "cohesion", rock.cohesion, Law::STRENGTH, "Pa", free)?;
+    let (friction, cohesion) = (rock.friction_deg.unwrap_or(0.0), rock.cohesion.unwrap_or(0.0));
+    if rock.yields() && friction == 0.0 && cohesion == 0.0 {
+        return fail(key, format!("has friction_deg 0 and cohesion 0, one must be greater than 0; {free}"));
+    }
+    for (name, value) in [("dilation_deg", rock.dilation_deg), ("tension", rock.tension)] {
+        if value.is_some() && !rock.yields() {
+            let message = "has no effect on rock that never yields; add friction_deg or cohesion, or remove it";
+            return fail(&key.field(name), message);
+        }
+    }
+    let hint = "more than friction_deg would make energy; leave it out for friction_deg";
+    optional(key, "dilation_deg", rock.dilation_deg, Range::from(0.0).to(friction), "degrees", hint)?;
+    let apex = if friction > 0.0 { cohesion / friction.to_radians().tan() } else { Law::STRENGTH_MAX };
+    let hint = "the shear planes end at cohesion/tan(friction_deg); leave it out for that";
+    optional(key, "tension", rock.tension, Range::from(0.0).to(apex), "Pa", hint)
 }
 
 fn joint_law(key: &Key, law: &JointLaw) -> Check {
@@ -245,6 +282,9 @@ fn in_situ(key: &Key, stress: &InSitu) -> Check {
             "density times gravity is usual",
         )?;
     }
+    optional(key, "szz", stress.szz, Range::within(1e12), "Pa", hint)?;
+    let slope = "density times gravity is usual";
+    number(key, "szz_gradient", stress.szz_gradient, Range::within(1e9), "Pa/m", slope)?;
     number(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
 }
 

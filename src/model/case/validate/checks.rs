@@ -22,7 +22,9 @@ impl Law {
     /// Friction and dilation angles (degrees).
     pub const ANGLE: Range = Range::from(0.0).below(90.0);
     /// Cohesion and tensile strength (Pa).
-    pub const STRENGTH: Range = Range::from(0.0).to(1e12);
+    pub const STRENGTH: Range = Range::from(0.0).to(Self::STRENGTH_MAX);
+    /// Largest cohesion and tensile strength (Pa).
+    pub const STRENGTH_MAX: f64 = 1e12;
     /// Stiffness (Pa/m).
     pub const STIFFNESS: Range = Range::above(0.0).to(1e18);
 }
