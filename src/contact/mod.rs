@@ -17,6 +17,6 @@ pub use entrance::{Narrow, entrance_edges};
 pub use law::{JointLaw, Limits};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};
-pub use support::{Support, SupportRow};
+pub use support::{Resistance, Support, SupportRow};
 pub use sweep::{BlockPush, OpenClose, SweepOptions, SweepReport, open_close};
 pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

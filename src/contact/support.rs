@@ -1,10 +1,20 @@
-//! Supports: bilateral springs that hold a material point along one direction, judged in the same iteration.
+//! Supports: bilateral springs that hold a material point along one direction, and dashpots of quiet boundaries, judged
+//! in the same iteration.
 
 use crate::cover::Weights;
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
-/// A spring between a material point and the ground.
+/// What a support answers to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Resistance {
+    /// Displacement.
+    Spring,
+    /// Velocity: part of a quiet boundary, by its index.
+    Dashpot(u32),
+}
+
+/// A spring or dashpot between a material point and the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
     /// Fixity of the case that it belongs to.
@@ -17,7 +27,9 @@ pub struct Support {
     pub weights: Weights,
     /// Unit direction that is held.
     pub direction: Vector,
-    /// Stiffness (N/m per metre).
+    /// What it answers to.
+    pub resistance: Resistance,
+    /// Stiffness of a spring (N/m per metre), viscosity of a dashpot (N·s/m per metre).
     pub stiffness: f64,
     /// Force (N/m) that it bears at no displacement, from in-situ stress.
     pub preload: f64,
@@ -30,6 +42,10 @@ pub struct SupportRow {
     pub support: u32,
     /// Displacement along the held direction (m).
     pub displacement: f64,
+    /// Force (N/m) at no velocity at the end of the step.
+    pub target: f64,
+    /// Loss of force per velocity at the end of the step (N·s/m per metre).
+    pub viscosity: f64,
     /// Predicted velocity along it (m/s).
     pub approach: f64,
     /// Inverse effective mass (m/kg).
@@ -39,6 +55,11 @@ pub struct SupportRow {
 }
 
 impl Support {
+    /// Whether it is a dashpot.
+    pub fn is_dashpot(&self) -> bool {
+        self.resistance != Resistance::Spring
+    }
+
     /// Sum of a cover field at the point, along the direction.
     pub fn sample(&self, field: &[Vector]) -> f64 {
         let at: Vector = self.covers.iter().zip(self.weights).map(|(&i, w)| field[i as usize] * w).sum();

@@ -102,19 +102,24 @@ impl OpenClose<'_> {
     }
 
     /// Sweeps the supports to and fro until they settle; returns the first sweep's change over the largest force.
+    /// Springs and dashpots settle by themselves: waves are small beside weights.
     fn sweep_supports(&mut self, supports: &[Support], rows: &mut [SupportRow]) -> f64 {
         let mut first = None;
         for _ in 0..SUPPORT_SWEEPS_MAX {
-            let (mut change, mut largest) = (0.0f64, f64::MIN_POSITIVE);
+            let (mut change, mut largest) = ([0.0f64; 2], [f64::MIN_POSITIVE; 2]);
             for row in rows.iter_mut() {
-                change = change.max(self.bear(&supports[row.support as usize], row));
+                let support = &supports[row.support as usize];
+                let kind = usize::from(support.is_dashpot());
+                change[kind] = change[kind].max(self.bear(support, row));
             }
             for row in rows.iter_mut().rev() {
-                change = change.max(self.bear(&supports[row.support as usize], row));
-                largest = largest.max(row.force.abs());
+                let support = &supports[row.support as usize];
+                let kind = usize::from(support.is_dashpot());
+                change[kind] = change[kind].max(self.bear(support, row));
+                largest[kind] = largest[kind].max(row.force.abs());
             }
-            first.get_or_insert(change / largest);
-            if change <= SUPPORT_TOLERANCE * largest {
+            first.get_or_insert(change[0].max(change[1]) / largest[0].max(largest[1]));
+            if (0..2).all(|kind| change[kind] <= SUPPORT_TOLERANCE * largest[kind]) {
                 break;
             }
         }
@@ -123,12 +128,11 @@ impl OpenClose<'_> {
 
     /// Updates the force of one support; returns its change (N/m).
     fn bear(&mut self, support: &Support, row: &mut SupportRow) -> f64 {
-        let SweepOptions { dt, kick, .. } = self.options;
+        let kick = self.options.kick;
         let velocity = row.approach + support.sample(self.increment);
-        let a = support.stiffness * self.options.theta * dt;
-        let force = (support.preload - support.stiffness * row.displacement - a * velocity
-            + a * kick * row.compliance * row.force)
-            / (1.0 + a * kick * row.compliance);
+        let a = row.viscosity;
+        let force =
+            (row.target - a * velocity + a * kick * row.compliance * row.force) / (1.0 + a * kick * row.compliance);
         let change = force - row.force;
         support.push(change * kick, self.metric, self.increment);
         row.force = force;

@@ -8,12 +8,14 @@ use std::path::Path;
 use super::case_error::{CaseError, read_text};
 use super::geometry_file::{self, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
+use super::record_file;
 use crate::model::case::{Case, JointTrace};
 
 /// A case that has been read and checked.
 #[derive(Debug, Clone)]
 pub struct LoadedCase {
-    /// The case; outline and joints of the geometry file are part of it, and `domain.geometry_file` is empty.
+    /// The case; outline and joints of the geometry file and the rows of records are part of it, and the keys of those
+    /// files are empty.
     pub case: Case,
     /// Where each value came from.
     pub source: CaseSource,
@@ -45,6 +47,8 @@ pub struct CaseSource {
     geometry_lines: LineMap,
     /// Keys of the geometry file by those of the case.
     geometry: BTreeMap<String, String>,
+    /// File and lines of the rows of records, by the keys of their tables.
+    records: BTreeMap<String, (String, Vec<usize>)>,
 }
 
 impl CaseSource {
@@ -56,6 +60,11 @@ impl CaseSource {
     /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
     /// beginning of the key that is known; a value from the geometry file is located there.
     pub fn locate(&self, key: &str, message: &str) -> CaseError {
+        if let Some((table, (file, lines))) = self.records.iter().find(|(table, _)| key.starts_with(table.as_str())) {
+            let row = key[table.len()..].trim_start_matches('[').split(']').next().and_then(|row| row.parse().ok());
+            let line = row.and_then(|row: usize| lines.get(row)).copied().unwrap_or(1);
+            return CaseError::at(file, line, key, message);
+        }
         let of_geometry = beginnings(key).find_map(|part| Some((self.geometry.get(part)?, &key[part.len()..])));
         let (file, lines, key) = match of_geometry {
             Some((place, rest)) => {
@@ -91,9 +100,34 @@ pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded
     let file = file_name.to_string();
     let mut source = CaseSource { file, lines, ..CaseSource::default() };
     let warnings = merge_geometry_file(&mut case, &mut source, base_dir)?;
+    merge_record_files(&mut case, &mut source, base_dir)?;
     case.validate().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
     let hash = fingerprint(&case).map_err(|message| source.locate("", &message))?;
     Ok(LoadedCase { case, source, hash, warnings })
+}
+
+/// Moves the rows of the files of base motions and waves into their tables.
+fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<(), CaseError> {
+    let motions = case.base_motions.iter_mut().map(|base| ("base_motion", &mut base.file, &mut base.table));
+    let waves = case.quiets.iter_mut().map(|quiet| ("quiet", &mut quiet.file, &mut quiet.table));
+    for records in [motions.collect::<Vec<_>>(), waves.collect()] {
+        for (k, (name, file, table)) in records.into_iter().enumerate() {
+            let Some(name_of_file) = file.take() else { continue };
+            let key = |field: &str| format!("{name}[{k}].{field}");
+            let path = base_dir.join(name_of_file);
+            let shown = path.display().to_string();
+            if table.is_some() {
+                let message = format!("the rows are also in {shown:?}, only one can be; remove `table` or `file`");
+                return Err(source.locate(&key("table"), &message));
+            }
+            let text = read_text(&path);
+            let text = text.map_err(|message| source.locate(&key("file"), &format!("{shown:?}: {message}")))?;
+            let record = record_file::parse(&shown, &text)?;
+            *table = Some(record.rows);
+            source.records.insert(key("table"), (shown, record.lines));
+        }
+    }
+    Ok(())
 }
 
 /// Moves outline, loops and traces of `domain.geometry_file` into the case; returns the warnings.

@@ -12,6 +12,7 @@ mod geometry_file;
 pub mod history;
 mod lines;
 pub mod picture;
+mod record_file;
 mod run;
 mod schema;
 pub mod summary;

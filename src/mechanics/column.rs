@@ -2,11 +2,209 @@
 
 use crate::geometry::Vector;
 
+use super::Elasticity;
+
 /// Motion of a free-field column, from its foot to its head.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ColumnState {
     /// Displacement of each node (m).
     pub displacement: Vec<Vector>,
     /// Velocity of each node half a step ago (m/s).
     pub velocity: Vec<Vector>,
+}
+
+impl Clone for ColumnState {
+    fn clone(&self) -> Self {
+        Self { displacement: self.displacement.clone(), velocity: self.velocity.clone() }
+    }
+
+    /// Copies without allocating.
+    fn clone_from(&mut self, other: &Self) {
+        self.displacement.clone_from(&other.displacement);
+        self.velocity.clone_from(&other.velocity);
+    }
+}
+
+impl ColumnState {
+    /// A column of some nodes at rest.
+    pub fn at_rest(nodes: usize) -> Self {
+        Self { displacement: vec![Vector::zeros(); nodes], velocity: vec![Vector::zeros(); nodes] }
+    }
+}
+
+/// What moves the foot of a column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Foot {
+    /// The base, with which it is rigid.
+    Rigid,
+    /// A quiet boundary, by its index.
+    Quiet(u32),
+}
+
+/// A column of rock of unit width: equal cells between nodes, each with the rock at its middle (Eq. W5).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Height y of the foot (m).
+    pub foot_height: f64,
+    /// Height of a cell (m).
+    pub spacing: f64,
+    /// Rock of each cell, from the foot.
+    pub rocks: Vec<Elasticity>,
+    /// Block of the model beside each node; those of one block are damped together.
+    pub blocks: Vec<u32>,
+    /// What moves the foot.
+    pub foot: Foot,
+}
+
+/// A place in a column: a cell and the share of its height.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ColumnPlace {
+    cell: u32,
+    share: f64,
+}
+
+/// What acts on a column in a step.
+#[derive(Debug, Clone, Copy)]
+pub struct ColumnDrive {
+    /// Acceleration of its rock (m/s²) beside that by its own stress: that of the base, with the opposite sign.
+    pub acceleration: Vector,
+    /// Particle velocity (m/s) of the wave that a quiet foot lets in.
+    pub wave: Vector,
+    /// Time over which forces act (s).
+    pub kick: f64,
+}
+
+impl Column {
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.rocks.len() + 1
+    }
+
+    /// Longest stable step (s): the way of a pressure wave through a cell (Eq. W6).
+    pub fn critical_dt(&self) -> f64 {
+        let through = |rock: &Elasticity| self.spacing / (rock.confined_modulus() / rock.density).sqrt();
+        self.rocks.iter().map(through).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The place at a height y (m).
+    pub fn place(&self, y: f64) -> ColumnPlace {
+        let height = ((y - self.foot_height) / self.spacing).clamp(0.0, self.rocks.len() as f64);
+        let cell = (height as usize).min(self.rocks.len() - 1);
+        ColumnPlace { cell: cell as u32, share: height - cell as f64 }
+    }
+
+    /// Mass of a node (kg/m per metre of width).
+    fn mass(&self, node: usize) -> f64 {
+        let cells = [node.checked_sub(1), Some(node)].into_iter().flatten().filter_map(|cell| self.rocks.get(cell));
+        cells.map(|rock| 0.5 * rock.density * self.spacing).sum()
+    }
+
+    /// Shear and vertical stress (Pa) of each cell by the displacements.
+    fn stress(&self, cell: usize, displacement: &[Vector]) -> Vector {
+        let rock = &self.rocks[cell];
+        let strain = (displacement[cell + 1] - displacement[cell]) / self.spacing;
+        Vector::new(rock.mu * strain.x, rock.confined_modulus() * strain.y)
+    }
+
+    /// Writes the velocities (m/s) after the step; `decay` gives the damping factor of a block (Eqs. W5, W6).
+    pub fn kick(&self, state: &ColumnState, drive: &ColumnDrive, decay: impl Fn(u32) -> f64, out: &mut [Vector]) {
+        out.copy_from_slice(&state.velocity);
+        self.damp(decay, out);
+        let last = self.rocks.len();
+        for node in 0..=last {
+            let below = node.checked_sub(1).map_or_else(Vector::zeros, |cell| self.stress(cell, &state.displacement));
+            let above = if node < last { self.stress(node, &state.displacement) } else { Vector::zeros() };
+            out[node] += ((above - below) / self.mass(node) + drive.acceleration) * drive.kick;
+        }
+        match self.foot {
+            Foot::Rigid => out[0] = Vector::zeros(),
+            Foot::Quiet(_) => {
+                let impedance = self.rocks[0].impedances();
+                for axis in 0..2 {
+                    let half = 0.5 * impedance[1 - axis] * drive.kick / self.mass(0);
+                    let push = half * (4.0 * drive.wave[axis] - state.velocity[0][axis]);
+                    out[0][axis] = (out[0][axis] + push) / (1.0 + half);
+                }
+            }
+        }
+    }
+
+    /// Damps the velocities of the nodes beside each block relative to their mean.
+    fn damp(&self, decay: impl Fn(u32) -> f64, velocity: &mut [Vector]) {
+        let mut first = 0;
+        while first < self.blocks.len() {
+            let block = self.blocks[first];
+            let end = first + self.blocks[first..].iter().take_while(|b| **b == block).count();
+            let factor = decay(block);
+            if factor < 1.0 {
+                let mass: f64 = (first..end).map(|node| self.mass(node)).sum();
+                let mean = (first..end).map(|node| velocity[node] * self.mass(node)).sum::<Vector>() / mass;
+                velocity[first..end].iter_mut().for_each(|v| *v = mean + (*v - mean) * factor);
+            }
+            first = end;
+        }
+    }
+}
+
+impl ColumnPlace {
+    /// A field of the nodes at this place.
+    pub fn sample(&self, field: &[Vector]) -> Vector {
+        let cell = self.cell as usize;
+        field[cell] + (field[cell + 1] - field[cell]) * self.share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn column(foot: Foot) -> Column {
+        let rock = Elasticity { lambda: 2.0, mu: 1.0, density: 1.0 };
+        Column { foot_height: 1.0, spacing: 0.5, rocks: vec![rock; 40], blocks: vec![0; 41], foot }
+    }
+
+    /// Runs a column of c_s = 1 and c_p = 2 m/s, 20 m high.
+    fn run(column: &Column, drive: impl Fn(f64) -> ColumnDrive, seconds: f64) -> ColumnState {
+        let mut state = ColumnState::at_rest(column.node_count());
+        let mut after = state.velocity.clone();
+        let dt = 0.2;
+        for step in 0..(seconds / dt) as u32 {
+            let drive = ColumnDrive { kick: if step == 0 { 0.5 * dt } else { dt }, ..drive(f64::from(step) * dt) };
+            column.kick(&state, &drive, |_| 1.0, &mut after);
+            state.velocity.copy_from_slice(&after);
+            state.displacement.iter_mut().zip(&after).for_each(|(u, v)| *u += v * dt);
+        }
+        state
+    }
+
+    /// A velocity of 1 m/s enters and has reached 15 m by shear and all of the column, doubled at its head, by pressure.
+    #[test]
+    fn a_wave_enters_through_a_quiet_foot_and_doubles_at_the_head() {
+        let wave = |_| ColumnDrive { acceleration: Vector::zeros(), wave: Vector::new(1.0, 1.0), kick: 0.0 };
+        let state = run(&column(Foot::Quiet(0)), wave, 15.0);
+        let mean = |range: std::ops::Range<usize>, axis: usize| {
+            let count = range.len() as f64;
+            state.velocity[range].iter().map(|v| v[axis]).sum::<f64>() / count
+        };
+        assert!((mean(2..20, 0) - 1.0).abs() < 0.02 && mean(36..41, 0).abs() < 0.02, "{:?}", state.velocity);
+        assert!((mean(32..41, 1) - 2.0).abs() < 0.05 && (mean(2..14, 1) - 1.0).abs() < 0.05, "{:?}", state.velocity);
+    }
+
+    /// Under a constant acceleration the head of a rigid-footed column swings to twice a·ρH²/2μ at half its period 4H/c.
+    #[test]
+    fn a_rigid_foot_holds_the_column() {
+        let push = |_| ColumnDrive { acceleration: Vector::new(0.1, 0.0), wave: Vector::zeros(), kick: 0.0 };
+        let state = run(&column(Foot::Rigid), push, 40.0);
+        assert_eq!(state.displacement[0], Vector::zeros());
+        assert!((state.displacement[40].x - 40.0).abs() < 0.4, "{}", state.displacement[40]);
+    }
+
+    #[test]
+    fn places_lie_in_their_cells() {
+        let column = column(Foot::Rigid);
+        let field: Vec<Vector> = (0..41).map(|k| Vector::new(f64::from(k), 0.0)).collect();
+        for (y, expected) in [(1.0, 0.0), (1.2, 0.4), (21.0, 40.0), (30.0, 40.0)] {
+            assert!((column.place(y).sample(&field).x - expected).abs() < 1e-12);
+        }
+    }
 }

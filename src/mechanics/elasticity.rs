@@ -29,6 +29,11 @@ impl Elasticity {
         self.lambda + 2.0 * self.mu
     }
 
+    /// ρ·cp and ρ·cs (Pa·s/m): stress of a plane wave over its particle velocity.
+    pub fn impedances(&self) -> [f64; 2] {
+        [self.confined_modulus(), self.mu].map(|modulus| (modulus * self.density).sqrt())
+    }
+
     /// Speed of shear waves (m/s).
     pub fn shear_wave_speed(&self) -> f64 {
         (self.mu / self.density).sqrt()

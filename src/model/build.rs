@@ -3,14 +3,17 @@
 mod geometry;
 mod place;
 mod ports;
+mod quiet;
 mod rock;
 
 use std::collections::BTreeMap;
 
-use crate::contact::{Boundary, BoundaryOptions, JointLaw, Support};
+use crate::contact::{Boundary, BoundaryOptions, JointLaw, Resistance, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
-use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
+use crate::mechanics::{
+    ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
+};
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 
@@ -47,7 +50,10 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
     let laws = joint_laws(case, stiffness);
-    let (fixities, supports) = fixities(case, &places, stiffness)?;
+    let (mut fixities, mut supports) = fixities(case, &places, stiffness)?;
+    let fixed_supports = supports.len() as u32;
+    let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
+    let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
     let loads = loads(case, &places)?;
     let monitors = monitors(case, &places)?;
     let boundary = Boundary::new(&covers, &BoundaryOptions::default());
@@ -68,6 +74,11 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         default_law: plane.default_law,
         fixities,
         supports,
+        fixed_supports,
+        base_motions: quiet::base_motions(case),
+        quiets,
+        columns,
+        free_field,
         loads,
         ports,
         water,
@@ -83,6 +94,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         covers,
     };
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
+    quiet::check_columns(&slope)?;
     let state = initial_state(case, &slope, &places)?;
     let mut warnings = warnings(&plane.arrangement.report);
     warnings.extend(rock::overstressed(case, &slope));
@@ -195,6 +207,7 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
                 covers: h.covers,
                 weights: h.weights,
                 direction,
+                resistance: Resistance::Spring,
                 stiffness: h.stiffness,
                 preload: h.preload[axis],
             }));
@@ -205,11 +218,11 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
 }
 
 /// Stiffness of supported edges over that of contacts.
-const EDGE_RATIO: f64 = 100.0;
+pub(super) const EDGE_RATIO: f64 = 100.0;
 /// Stiffness of supported points over that of contacts of the length of a mesh size.
 const POINT_RATIO: f64 = 1000.0;
 
-fn in_situ(case: &Case) -> Option<StressField> {
+pub(super) fn in_situ(case: &Case) -> Option<StressField> {
     let field = |s: &case::InSitu| StressField {
         value: [s.sxx, s.syy, s.sxy],
         gradient: s.gradient,
@@ -283,6 +296,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
     Ok(State {
         stage: 0,
         stage_start: 0.0,
+        stage_starts: Vec::new(),
         stage_step: 0,
         step: 0,
         part: 0.0,
@@ -302,7 +316,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         drive: Drive::hold(Inputs::of(slope)),
         bolts: Vec::new(),
         plastic: rock::plastic(slope),
-        columns: Vec::new(),
+        columns: slope.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
         acceleration: Vec::new(),
         events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
         ledger: Default::default(),

@@ -11,7 +11,9 @@ pub use events::{Event, EventKind, Events};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use scratch::{Scratch, Seconds};
-pub use slope::{Fixity, Port, PortKind, Slope, Water};
+pub use slope::{
+    BaseMotion, Fixity, FreeFieldPoint, MotionKind, Port, PortKind, QuietBoundary, Slope, TimedRecord, Water,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +28,8 @@ pub struct State {
     pub stage: u32,
     /// Time at the start of the stage (s).
     pub stage_start: f64,
+    /// Start of each stage up to this one (s): ground motion counts its time from there.
+    pub stage_starts: Vec<f64>,
     /// Internal steps done in the stage.
     pub stage_step: u64,
     /// Internal steps done in all stages.
@@ -82,6 +86,7 @@ impl State {
         let Self { stage, stage_start, stage_step, step, part, dt_last, ledger, counters, .. } = self;
         (*stage, *stage_start, *stage_step, *step) = (other.stage, other.stage_start, other.stage_step, other.step);
         (*part, *dt_last, *ledger, *counters) = (other.part, other.dt_last, other.ledger, other.counters);
+        self.stage_starts.clone_from(&other.stage_starts);
         self.displacement.clone_from(&other.displacement);
         self.velocity.clone_from(&other.velocity);
         self.contacts.clone_from(&other.contacts);

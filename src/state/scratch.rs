@@ -27,6 +27,8 @@ pub struct Scratch {
     pub contacts: Vec<VertexEdge>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
+    /// Velocities of free-field columns after this step (m/s).
+    pub columns: Vec<Vec<Vector>>,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.

@@ -3,7 +3,7 @@
 use crate::contact::{Boundary, JointLaw, Support};
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Elasticity, Load, Metric, MohrCoulomb, PreStress, StressField};
+use crate::mechanics::{Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, PreStress, Record, StressField};
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -55,6 +55,61 @@ pub struct Water {
     pub edges: Vec<u32>,
 }
 
+/// What the rows of a motion of the base give.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotionKind {
+    /// Acceleration (m/s²), zero outside.
+    Acceleration,
+    /// Velocity (m/s) from zero, kept at the end.
+    Velocity,
+}
+
+/// A record that begins with a stage and acts in dynamic stages.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedRecord {
+    /// Rows.
+    pub record: Record,
+    /// Factor on the values, with direction.
+    pub amplitude: Vector,
+    /// Stage at whose start its time begins.
+    pub stage: u32,
+}
+
+/// A motion of the base.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BaseMotion {
+    /// What the rows give.
+    pub kind: MotionKind,
+    /// Rows and direction.
+    pub motion: TimedRecord,
+}
+
+/// A boundary that holds in static stages, and in dynamic ones bears what it bore and lets waves leave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuietBoundary {
+    /// Fixity of its springs.
+    pub springs: u32,
+    /// Fixity of its dashpots.
+    pub dashpots: u32,
+    /// Particle velocity (m/s) of the wave that it lets in, if any.
+    pub wave: Option<TimedRecord>,
+    /// Free-field column on its far side, if any.
+    pub column: Option<u32>,
+}
+
+/// What a free-field column gives to a dashpot of the side beside it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FreeFieldPoint {
+    /// Support that is the dashpot.
+    pub support: u32,
+    /// Where the column has the velocity that counts.
+    pub at: ColumnPlace,
+    /// Both ends of the piece of side that the dashpot stands for.
+    pub ends: [ColumnPlace; 2],
+    /// Force (N/m) along the dashpot per displacement of the column's second end relative to the first, along x and y.
+    pub stiffness: Vector,
+}
+
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
 #[derive(Debug, Clone)]
 pub struct Slope {
@@ -86,6 +141,16 @@ pub struct Slope {
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.
     pub supports: Vec<Support>,
+    /// Supports that belong to fixities of the case; those of quiet boundaries come after them.
+    pub fixed_supports: u32,
+    /// Motions of the base.
+    pub base_motions: Vec<BaseMotion>,
+    /// Quiet boundaries, sides along free-field columns included.
+    pub quiets: Vec<QuietBoundary>,
+    /// Free-field columns.
+    pub columns: Vec<Column>,
+    /// What the columns give to the dashpots beside them, in the order of the supports.
+    pub free_field: Vec<FreeFieldPoint>,
     /// Loads.
     pub loads: Vec<Load>,
     /// Ports.

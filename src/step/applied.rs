@@ -2,9 +2,49 @@
 
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, pressure};
-use crate::state::{Port, Slope, State};
+use crate::state::{MotionKind, Port, Slope, State, TimedRecord};
 
-/// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, base (Eq. 31).
+use super::{Regime, quiet};
+
+/// Interval (s) over which the forces of a step act.
+#[derive(Debug, Clone, Copy)]
+pub struct Kick {
+    /// Start.
+    pub from: f64,
+    /// End.
+    pub to: f64,
+}
+
+impl TimedRecord {
+    /// What `mean` of the record makes of a kick, times amplitude; nothing before its stage and in static stages.
+    fn over(&self, regime: Regime, state: &State, kick: Kick, mean: impl Fn(f64, f64) -> f64) -> Vector {
+        match (regime, state.stage_starts.get(self.stage as usize)) {
+            (Regime::Dynamic { .. }, Some(start)) => self.amplitude * mean(kick.from - start, kick.to - start),
+            _ => Vector::zeros(),
+        }
+    }
+}
+
+/// Acceleration (m/s²) of the base by its records, its mean over a kick (Eq. W1).
+pub fn base_motion(slope: &Slope, regime: Regime, state: &State, kick: Kick) -> Vector {
+    let of = |base: &crate::state::BaseMotion| {
+        let TimedRecord { record, .. } = &base.motion;
+        base.motion.over(regime, state, kick, |from, to| match base.kind {
+            MotionKind::Acceleration => record.mean(from, to),
+            MotionKind::Velocity => record.mean_rate(from, to),
+        })
+    };
+    slope.base_motions.iter().map(of).sum()
+}
+
+/// Particle velocity (m/s) of the wave that comes in through a quiet boundary, its mean over a kick.
+pub fn wave(slope: &Slope, regime: Regime, state: &State, kick: Kick, quiet: u32) -> Vector {
+    let wave = &slope.quiets[quiet as usize].wave;
+    wave.as_ref().map_or_else(Vector::zeros, |w| w.over(regime, state, kick, |a, b| w.record.mean(a, b)))
+}
+
+/// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the base
+/// by (Eq. 31).
 pub fn acceleration(slope: &Slope, state: &State, t: f64) -> Vector {
     let body: Vector = slope.loads.iter().map(|load| load.body(t)).sum();
     let share = state.drive.share(t);
@@ -27,6 +67,9 @@ pub fn push_forces(slope: &Slope, state: &State, t: f64, ramp: f64, force: &mut 
         faces.push_port(port, traction * ramp, pressure * ramp, force);
     }
     push_blocks(slope, state, share, ramp, force);
+    for (k, support) in quiet::frozen(slope, state) {
+        mechanics::spread(&support.covers, &support.weights, support.direction * state.support_force[k], force);
+    }
 }
 
 fn push_blocks(slope: &Slope, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {

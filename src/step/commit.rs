@@ -20,6 +20,7 @@ impl Step<'_> {
         let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
         self.record_contacts(dt);
+        self.commit_columns(dt);
         let state = &mut *self.state;
         for (u, v) in state.displacement.iter_mut().zip(&self.scratch.predicted) {
             *u += v * dt;
@@ -77,9 +78,10 @@ impl Step<'_> {
         for row in &scratch.rows {
             let support = &slope.supports[row.support as usize];
             let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
-            works.support_work += row.force * velocity * kick_dt;
+            let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
+            *work += row.force * velocity * kick_dt;
         }
-        let extra = self.acceleration() - slope.gravity;
+        let extra = self.acceleration(dt) - slope.gravity;
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
             works.external_work += force.dot(&(state.velocity[i] + scratch.predicted[i])) * (0.5 * kick_dt);
@@ -96,7 +98,7 @@ impl Step<'_> {
         ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
         ledger.strain = report::strain(slope, state);
         ledger.potential = report::potential(slope, state);
-        ledger.stored = report::stored(slope, scratch);
+        ledger.stored = report::stored(slope, state, scratch);
         let contacts = scratch.contacts.iter();
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
         StepReport {
@@ -115,7 +117,7 @@ impl Step<'_> {
     fn unbalanced(&self, dt: f64) -> f64 {
         let (metric, scratch) = (&self.slope.metric, &*self.scratch);
         let kick_dt = 0.5 * (self.state.dt_last + dt);
-        let acceleration = self.acceleration();
+        let acceleration = self.acceleration(dt);
         let (mut net, mut applied) = (0.0, 0.0);
         for i in 0..metric.mass.len() {
             net += ((scratch.predicted[i] - scratch.damped[i]) * (metric.mass[i] / kick_dt)).norm_squared();

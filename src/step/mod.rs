@@ -6,6 +6,7 @@ mod commit;
 mod events;
 mod guard;
 mod prepare;
+mod quiet;
 mod report;
 mod yielding;
 
@@ -206,21 +207,23 @@ impl Step<'_> {
         let pass = blocks::Pass {
             slope,
             state: &*self.state,
-            acceleration: self.acceleration(),
+            acceleration: self.acceleration(dt),
             damping: self.damping,
             dt: kick_dt,
             grain: blocks::grain(self.scratch.serial),
         };
         pass.run(self.scratch);
+        self.kick_columns(dt);
         for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
             *spin = motion.spin;
         }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
-    /// Acceleration of all rock (m/s²) at this time.
-    fn acceleration(&self) -> Vector {
-        applied::acceleration(self.slope, self.state, self.time) * self.ramp()
+    /// Acceleration of all rock (m/s²) in a step of `dt` (s).
+    fn acceleration(&self, dt: f64) -> Vector {
+        let base = applied::base_motion(self.slope, self.regime, self.state, self.kick_of(dt));
+        applied::acceleration(self.slope, self.state, self.time) * self.ramp() - base
     }
 
     /// Share of gravity that acts at this time.
@@ -276,14 +279,8 @@ impl Step<'_> {
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
         }
-        for row in &mut scratch.rows {
-            let k = row.support as usize;
-            let support = &slope.supports[k];
-            row.displacement = support.sample(&state.displacement) - state.support_rest[k];
-            row.approach = support.sample(&scratch.predicted);
-            row.force = state.support_force[k];
-        }
-        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+        self.load_supports(dt);
+        self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
     /// Open–close iteration on the predicted velocities.

@@ -4,7 +4,7 @@ use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
 use crate::state::{Scratch, Slope, State};
 
-use super::{Regime, applied};
+use super::{Regime, applied, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
@@ -22,6 +22,8 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     }
     scratch.motion.resize(slope.covers.block_count(), Default::default());
     scratch.push.resize(slope.covers.block_count(), Default::default());
+    scratch.columns.clear();
+    scratch.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
@@ -49,6 +51,8 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.rows.extend(slope.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
         displacement: 0.0,
+        target: 0.0,
+        viscosity: 0.0,
         approach: 0.0,
         compliance: support.compliance(metric),
         force: state.support_force[k],
@@ -67,6 +71,9 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;
+    state.stage_starts.truncate(stage as usize);
+    state.stage_starts.push(start);
+    quiet::begin_stage(slope, regime, state);
     state.near.forget();
     state.stage_displacement.clear();
     state.stage_force.clear();

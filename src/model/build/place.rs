@@ -23,7 +23,7 @@ pub(super) struct OuterPiece {
     pub block: u32,
     pub covers: [u32; 3],
     pub weights: [Weights; 2],
-    piece: BoundaryPiece,
+    pub piece: BoundaryPiece,
 }
 
 /// A material point with a support's stiffness (N/m per metre) and the force (N/m) that it bears from the start.

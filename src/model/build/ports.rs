@@ -71,7 +71,10 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
             }
         }
         None => {
-            let held: Vec<[[f64; 2]; 2]> = case.fixes.iter().filter_map(|fix| fix.edge).collect();
+            let quiet = case.quiets.iter().map(|quiet| quiet.edge);
+            let beside = case.free_fields.iter().map(|side| side.edge);
+            let held: Vec<[[f64; 2]; 2]> =
+                case.fixes.iter().filter_map(|fix| fix.edge).chain(quiet).chain(beside).collect();
             for (edge, wet) in wet.iter_mut().enumerate() {
                 let outer = faces.boundary.trace[edge] == NONE;
                 *wet = outer && !held.iter().any(|&segment| faces.lies_on(edge, segment));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Axes, TimeTable};
+use super::{Axes, Case, StageKind, TimeTable};
 
 /// One direction of the plane.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -40,7 +40,8 @@ pub struct BaseMotion {
     /// Direction.
     #[serde(default)]
     pub axis: Axis,
-    /// Rows of time (s) since the start of the stage and value; linear between, zero outside. This or `file`.
+    /// Rows of time (s) since the start of the stage and value; linear between. Outside them the acceleration is zero: a
+    /// velocity must start at 0 and keeps its last value. This or `file`.
     #[serde(default)]
     pub table: Option<TimeTable>,
     /// CSV file with time (s) and value in its first two columns, relative to the case file.
@@ -49,7 +50,7 @@ pub struct BaseMotion {
     /// Factor on the values, such as 9.81 for a record in g.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Stage at whose start the table begins; default: the first dynamic one.
+    /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
     #[serde(default)]
     pub stage: Option<String>,
 }
@@ -76,7 +77,7 @@ pub struct Quiet {
     /// Factor on the values.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Stage at whose start the table begins; default: the first dynamic one.
+    /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
     #[serde(default)]
     pub stage: Option<String>,
 }
@@ -91,6 +92,16 @@ pub struct FreeField {
     /// What the side holds in static stages.
     #[serde(default = "horizontal")]
     pub axes: Axes,
+}
+
+impl Case {
+    /// The stage at whose start a ground motion begins: the named one, or the first dynamic one.
+    pub fn motion_stage(&self, name: Option<&str>) -> Option<usize> {
+        match name {
+            Some(name) => self.stages.iter().position(|stage| stage.name == name),
+            None => self.stages.iter().position(|stage| stage.kind == StageKind::Dynamic),
+        }
+    }
 }
 
 fn horizontal() -> Axes {

@@ -3,6 +3,8 @@
 
 /// Magnitude of an acceleration (m/s²).
 pub const ACCELERATION_MAX: f64 = 1e4;
+/// Magnitude of the velocity of a base or a wave (m/s).
+pub const VELOCITY_MAX: f64 = 1e4;
 /// Magnitude of a height (m).
 pub const LEVEL_MAX: f64 = 1e9;
 /// Factor on the strength of joints.

@@ -2,6 +2,7 @@
 //! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
 
 mod checks;
+mod ground;
 mod loads;
 mod ports;
 mod stages;
@@ -42,6 +43,9 @@ impl Case {
         gravity(&root.field("gravity"), &self.gravity)?;
         loads::validate_fixes(&root.field("fix"), &self.fixes)?;
         loads::validate_loads(&root.field("load"), &self.loads)?;
+        ground::validate_base_motions(&root.field("base_motion"), self)?;
+        ground::validate_quiets(&root.field("quiet"), self)?;
+        ground::validate_free_fields(&root.field("free_field"), &self.free_fields)?;
         for (i, start) in self.initial_velocities.iter().enumerate() {
             initial_velocity(&root.field("initial_velocity").index(i), start)?;
         }

@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::Invalid;
 use crate::model::case::key::{Key, list, nearest};
-use crate::model::case::{Case, TimeTable};
+use crate::model::case::{Case, StageKind, TimeTable};
 
 /// Outcome of a check.
 pub type Check = Result<(), Invalid>;
@@ -266,6 +266,13 @@ impl<'a> Names<'a> {
     pub fn of_fixes(case: &'a Case) -> Self {
         let known = case.fixes.iter().filter_map(|fix| fix.name.as_deref()).collect();
         Self { what: "fixity", remedy: "add [[fix]] with this `name`", known }
+    }
+
+    /// Returns the dynamic stages of a case.
+    pub fn of_dynamic_stages(case: &'a Case) -> Self {
+        let dynamic = case.stages.iter().filter(|stage| stage.kind == StageKind::Dynamic);
+        let known = dynamic.map(|stage| stage.name.as_str()).collect();
+        Self { what: "dynamic stage", remedy: "add [[stage]] with this `name` and `kind = \"dynamic\"`", known }
     }
 
     /// Checks that `name` is known.

@@ -1,0 +1,212 @@
+//! Base motions, quiet boundaries and free-field columns of a case.
+
+use crate::contact::{Resistance, Support};
+use crate::geometry::{Point, Vector, segment};
+use crate::mechanics::{Column, Elasticity, Foot, Record};
+use crate::model::case::{self, Axes, Axis, BaseMotionKind, Case, Invalid};
+use crate::state::{BaseMotion, Fixity, FreeFieldPoint, MotionKind, QuietBoundary, Slope, TimedRecord};
+
+use super::place::{OuterPiece, Places};
+use super::{EDGE_RATIO, in_situ};
+
+/// Height of a lattice row over the mesh size: cells of columns are about as high, so that waves in both travel alike.
+const ROW: f64 = 0.866_025_403_784_438_6;
+/// Distance from the side's line, relative to the mesh size, at which the rock of a column is looked up.
+const INSIDE: f64 = 1e-3;
+
+/// What the quiet boundaries of a case are made from.
+pub(super) struct Ground<'a> {
+    pub case: &'a Case,
+    pub places: &'a Places<'a>,
+    pub rocks: &'a [Elasticity],
+    pub element_rock: &'a [u16],
+    /// Stiffness of contacts (Pa/m).
+    pub stiffness: f64,
+}
+
+/// Quiet boundaries and columns as built.
+#[derive(Default)]
+pub(super) struct Quiets {
+    pub quiets: Vec<QuietBoundary>,
+    pub columns: Vec<Column>,
+    pub free_field: Vec<FreeFieldPoint>,
+}
+
+/// Motions of the base.
+pub(super) fn base_motions(case: &Case) -> Vec<BaseMotion> {
+    let of = |base: &case::BaseMotion| {
+        let kind = match base.kind {
+            BaseMotionKind::Acceleration => MotionKind::Acceleration,
+            BaseMotionKind::Velocity => MotionKind::Velocity,
+        };
+        let axis = match base.axis {
+            Axis::X => Vector::x(),
+            Axis::Y => Vector::y(),
+        };
+        BaseMotion { kind, motion: timed(case, &base.table, axis * base.scale, base.stage.as_deref()) }
+    };
+    case.base_motions.iter().map(of).collect()
+}
+
+fn timed(case: &Case, table: &Option<case::TimeTable>, amplitude: Vector, stage: Option<&str>) -> TimedRecord {
+    let record = Record(table.clone().unwrap_or_default());
+    TimedRecord { record, amplitude, stage: case.motion_stage(stage).unwrap_or(0) as u32 }
+}
+
+impl Ground<'_> {
+    /// Quiet boundaries and free-field sides with their columns; their fixities and supports are appended.
+    pub fn quiets(&self, fixities: &mut Vec<Fixity>, supports: &mut Vec<Support>) -> Result<Quiets, Invalid> {
+        let mut made = Quiets::default();
+        for (k, quiet) in self.case.quiets.iter().enumerate() {
+            let pieces = self.places.boundary(&format!("quiet[{k}].edge"), quiet.edge)?;
+            let wave = quiet
+                .wave
+                .map(|wave| timed(self.case, &quiet.table, Vector::from(wave) * quiet.scale, quiet.stage.as_deref()));
+            let number = made.quiets.len() as u32;
+            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave, column: None });
+            self.hold(&mut made.quiets[number as usize], quiet.axes, &pieces, fixities, supports);
+            let fix = made.quiets[number as usize].dashpots;
+            supports.extend(pieces.iter().flat_map(|piece| self.dashpots(piece, number, fix)));
+        }
+        for (k, side) in self.case.free_fields.iter().enumerate() {
+            let key = format!("free_field[{k}].edge");
+            let pieces = self.places.boundary(&key, side.edge)?;
+            let number = made.quiets.len() as u32;
+            let column = self.column(&key, side.edge)?;
+            let own = Some(made.columns.len() as u32);
+            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave: None, column: own });
+            self.hold(&mut made.quiets[number as usize], side.axes, &pieces, fixities, supports);
+            for piece in &pieces {
+                let first = supports.len() as u32;
+                supports.extend(self.dashpots(piece, number, made.quiets[number as usize].dashpots));
+                let added = &supports[first as usize..];
+                made.free_field.extend(self.beside(&column, piece, first, added));
+            }
+            made.columns.push(column);
+        }
+        Ok(made)
+    }
+
+    /// The springs of a quiet boundary, preloaded by the in-situ stress like those of a fixity.
+    fn hold(
+        &self,
+        quiet: &mut QuietBoundary,
+        axes: Axes,
+        pieces: &[OuterPiece],
+        fixities: &mut Vec<Fixity>,
+        supports: &mut Vec<Support>,
+    ) {
+        quiet.springs = fixities.len() as u32;
+        quiet.dashpots = quiet.springs + 1;
+        fixities.push(Fixity { active: true, ..Fixity::default() });
+        fixities.push(Fixity::default());
+        let stress = |p: Point| in_situ(self.case).map_or([0.0; 3], |field| field.at(p));
+        let held = [axes != Axes::Y, axes != Axes::X];
+        for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| held[*axis]) {
+            supports.extend(pieces.iter().map(|piece| {
+                let hold = piece.support(EDGE_RATIO * self.stiffness, &stress);
+                Support {
+                    fix: quiet.springs,
+                    block: hold.block,
+                    covers: hold.covers,
+                    weights: hold.weights,
+                    direction,
+                    resistance: Resistance::Spring,
+                    stiffness: hold.stiffness,
+                    preload: hold.preload[axis],
+                }
+            }));
+        }
+    }
+
+    /// Dashpots ρ·cp along the normal and ρ·cs along the tangent of a piece, half of its length at each end (Eq. W2).
+    fn dashpots(&self, piece: &OuterPiece, quiet: u32, fix: u32) -> [Support; 4] {
+        let along = (piece.piece.b - piece.piece.a) / piece.length();
+        let impedance = self.rocks[self.element_rock[piece.piece.element as usize] as usize].impedances();
+        let of = |end: usize, kind: usize| Support {
+            fix,
+            block: piece.block,
+            covers: piece.covers,
+            weights: piece.weights[end],
+            direction: [Vector::new(along.y, -along.x), along][kind],
+            resistance: Resistance::Dashpot(quiet),
+            stiffness: impedance[kind] * 0.5 * piece.length(),
+            preload: 0.0,
+        };
+        [of(0, 0), of(0, 1), of(1, 0), of(1, 1)]
+    }
+
+    /// The column beside a vertical side.
+    fn column(&self, key: &str, edge: [[f64; 2]; 2]) -> Result<Column, Invalid> {
+        let [a, b] = edge.map(Point::from);
+        let (foot, head) = if a.y < b.y { (a, b) } else { (b, a) };
+        let (height, size) = (head.y - foot.y, self.places.covers.mesh.size);
+        let cells = (height / (ROW * size) + 1e-9).floor().max(1.0) as usize;
+        let spacing = height / cells as f64;
+        let beside = |y: f64| {
+            let inside = [INSIDE, -INSIDE].map(|share| Point::new(foot.x + share * size, y));
+            let found = inside.iter().find_map(|p| self.places.covers.element_near(*p, self.places.tolerance));
+            found.ok_or_else(|| Invalid {
+                key: key.into(),
+                message: format!(
+                    "there is no rock beside the side at ({}, {y:.6}): let the segment be as long as the side",
+                    foot.x
+                ),
+            })
+        };
+        let mut rocks = Vec::new();
+        let mut blocks = Vec::new();
+        for cell in 0..cells {
+            let element = beside(foot.y + (cell as f64 + 0.5) * spacing)?;
+            rocks.push(self.rocks[self.element_rock[element] as usize]);
+            blocks.push(self.places.covers.element_block[element]);
+        }
+        blocks.push(blocks[cells - 1]);
+        Ok(Column { foot_height: foot.y, spacing, rocks, blocks, foot: self.foot(foot) })
+    }
+
+    /// The quiet boundary that reaches the foot of a column, or else the base.
+    fn foot(&self, place: Point) -> Foot {
+        let tolerance = self.places.tolerance;
+        let reaches = |quiet: &case::Quiet| {
+            let [a, b] = quiet.edge.map(Point::from);
+            segment::distance(place, a, b) <= tolerance && a.x != b.x
+        };
+        self.case.quiets.iter().position(reaches).map_or(Foot::Rigid, |k| Foot::Quiet(k as u32))
+    }
+
+    /// What a column gives to the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. W7).
+    fn beside(&self, column: &Column, piece: &OuterPiece, first: u32, dashpots: &[Support]) -> Vec<FreeFieldPoint> {
+        let rock = &self.rocks[self.element_rock[piece.piece.element as usize] as usize];
+        let (a, b) = (piece.piece.a, piece.piece.b);
+        let ends = [column.place(a.y), column.place(b.y)];
+        // Outward normal (dy, −dx)/l: a side that is walked upwards has the free field at its right.
+        let of = |(k, support): (usize, &Support)| FreeFieldPoint {
+            support: first + k as u32,
+            at: ends[k / 2],
+            ends,
+            stiffness: Vector::new(rock.mu * support.direction.y, rock.lambda * support.direction.x) * 0.5,
+        };
+        dashpots.iter().enumerate().map(of).collect()
+    }
+}
+
+/// Whether the columns are stable at the step of the model.
+pub(super) fn check_columns(slope: &Slope) -> Result<(), Invalid> {
+    for (k, column) in slope.columns.iter().enumerate() {
+        let most = column.critical_dt();
+        if slope.dt > most {
+            return Err(Invalid {
+                key: format!("free_field[{k}].edge"),
+                message: format!(
+                    "its column has cells of {:.6} m, which a wave crosses in {most:.3e} s, below the internal step of \
+                     {:.3e} s: set solver.dt_max to {:.3e} or less",
+                    column.spacing,
+                    slope.dt,
+                    0.9 * most
+                ),
+            });
+        }
+    }
+    Ok(())
+}

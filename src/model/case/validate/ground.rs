@@ -1,0 +1,126 @@
+//! Checks of base motions, quiet boundaries and free-field columns.
+
+use super::checks::{Check, Names, Range, fail, number, segment, table};
+use crate::model::case::key::Key;
+use crate::model::case::limits::{ACCELERATION_MAX, VELOCITY_MAX};
+use crate::model::case::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
+
+/// Slope of a side, relative to its length, up to which it is vertical.
+const VERTICAL: f64 = 1e-9;
+
+/// Checks the motions of the base.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_base_motions(key: &Key, case: &Case) -> Check {
+    let of = |(i, base): (usize, &BaseMotion)| validate_base_motion(&key.index(i), base, case);
+    case.base_motions.iter().enumerate().try_for_each(of)
+}
+
+fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
+    let Some(rows) = &base.table else { return missing_table(key, base.file.is_some()) };
+    let (most, unit) = match base.kind {
+        BaseMotionKind::Acceleration => (ACCELERATION_MAX, "m/s²"),
+        BaseMotionKind::Velocity => (VELOCITY_MAX, "m/s"),
+    };
+    rows_within(key, rows, base.scale, most, unit)?;
+    if base.kind == BaseMotionKind::Velocity && rows[0][1] != 0.0 {
+        let message = format!(
+            "starts with {} m/s, must start with 0: the base is at rest before; add a row `[{}, 0.0]` at an earlier time",
+            rows[0][1], rows[0][0]
+        );
+        return fail(&key.field("table").index(0), message);
+    }
+    stage_is_dynamic(key, base.stage.as_deref(), case)
+}
+
+/// Checks the quiet boundaries.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_quiets(key: &Key, case: &Case) -> Check {
+    case.quiets.iter().enumerate().try_for_each(|(i, quiet)| validate_quiet(&key.index(i), quiet, case))
+}
+
+fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
+    segment(&key.field("edge"), &quiet.edge)?;
+    let Some(wave) = quiet.wave else {
+        let given = [
+            ("table", quiet.table.is_some()),
+            ("file", quiet.file.is_some()),
+            ("scale", quiet.scale != 1.0),
+            ("stage", quiet.stage.is_some()),
+        ];
+        return match given.iter().find(|(_, there)| *there) {
+            Some((name, _)) => {
+                let message = "belongs to a wave, and the boundary has none; add `wave = [1.0, 0.0]` or remove it";
+                fail(&key.field(name), message)
+            }
+            None => Ok(()),
+        };
+    };
+    let Some(rows) = &quiet.table else { return missing_table(key, quiet.file.is_some()) };
+    for (i, value) in wave.into_iter().enumerate() {
+        let hint = "the particle velocity of the incident wave";
+        number(&key.field("wave").index(i), "", value, Range::within(VELOCITY_MAX), "m/s", hint)?;
+    }
+    rows_within(key, rows, quiet.scale * wave[0].hypot(wave[1]), VELOCITY_MAX, "m/s")?;
+    number(key, "scale", quiet.scale, Range::within(1e12), "", "1 is the default")?;
+    stage_is_dynamic(key, quiet.stage.as_deref(), case)
+}
+
+/// Checks the free-field columns.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_free_fields(key: &Key, sides: &[FreeField]) -> Check {
+    for (i, side) in sides.iter().enumerate() {
+        let key = key.index(i).field("edge");
+        segment(&key, &side.edge)?;
+        let [a, b] = side.edge;
+        if (b[0] - a[0]).abs() > VERTICAL * (b[1] - a[1]).abs() {
+            let message = format!(
+                "runs from ({}, {}) to ({}, {}), must be vertical: its column stands upright; give a side with one x",
+                a[0], a[1], b[0], b[1]
+            );
+            return fail(&key, message);
+        }
+    }
+    Ok(())
+}
+
+fn missing_table(key: &Key, file: bool) -> Check {
+    if file {
+        let message = "the file is not read into the case; load the case through `io::load_case`, or give `table`";
+        return fail(&key.field("file"), message);
+    }
+    fail(&key.field("table"), "is missing; add `table = [[0.0, 0.0], [1.0, 1.0]]` or `file = \"record.csv\"`")
+}
+
+/// Checks rows, their factor, and that no product of both is beyond `most`.
+fn rows_within(key: &Key, rows: &TimeTable, scale: f64, most: f64, unit: &str) -> Check {
+    table(&key.field("table"), rows)?;
+    number(key, "scale", scale, Range::within(1e12), "", "1 is the default")?;
+    if rows.len() < 2 {
+        let message = "has 1 row, at least 2 are needed: values are zero outside the rows; add a row";
+        return fail(&key.field("table"), message);
+    }
+    for (i, row) in rows.iter().enumerate() {
+        if (row[1] * scale).abs() > most {
+            let value = row[1] * scale;
+            let message = format!("times `scale` is {value:e} {unit}, must be at most {most:e} in magnitude; scale it");
+            return fail(&key.field("table").index(i), message);
+        }
+    }
+    Ok(())
+}
+
+fn stage_is_dynamic(key: &Key, name: Option<&str>, case: &Case) -> Check {
+    if let Some(name) = name {
+        return Names::of_dynamic_stages(case).must_hold(&key.field("stage"), name);
+    }
+    match case.motion_stage(None) {
+        Some(_) => Ok(()),
+        None => fail(key, "the case has no dynamic stage, and waves and motions need one; add one or remove this"),
+    }
+}
