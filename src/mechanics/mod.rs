@@ -14,7 +14,7 @@ mod record;
 pub use column::{Column, ColumnDrive, ColumnPlace, ColumnState, Foot};
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
-pub use load::{Load, LoadAction, TimeTable, push_block, spread};
+pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};
 pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
