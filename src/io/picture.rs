@@ -4,6 +4,7 @@
 //! font of the system is looked at. Coordinates that are not finite are left out.
 
 mod axes;
+mod chart;
 mod colour;
 mod displacement;
 mod history;
@@ -19,6 +20,7 @@ use resvg::{tiny_skia, usvg};
 
 use super::files::{at_path, write_atomic};
 
+pub use chart::{Chart, ChartSeries, chart_picture};
 pub use displacement::displacement_picture;
 pub use history::{Series, history_picture};
 pub use model::{ModelDecor, model_picture};

@@ -1,11 +1,24 @@
 //! Verification problems with exact answers: each builds its models from its parameters, runs them and sets computed
 //! values beside exact ones. Nothing here knows a number that the formula of the problem does not give.
 
+//!
+//! [`choose`] makes jobs from what a user asks for, [`solve_all`] solves them, [`Record`] is what came out as data,
+//! [`report`] writes the manual from it.
+
 mod model;
 mod outcome;
+pub mod plot;
 mod problem;
 pub mod problems;
+mod record;
+pub mod report;
+mod runner;
+mod selection;
+pub mod text;
 
 pub use model::{Setup, Trouble, at_rest_by_end, run_all, run_stage};
 pub use outcome::{Origin, Outcome, Plot, Row, Series, Tolerance};
 pub use problem::{Parameter, Problem, Values};
+pub use record::{ParameterRecord, ProblemRecord, Record, RowRecord, ToleranceKind};
+pub use runner::{Job, Solved, solve, solve_all, write_cases};
+pub use selection::{Request, choose};

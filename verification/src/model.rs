@@ -1,5 +1,6 @@
 //! Models of a problem: cases from text, stages run to their ends, ledgers.
 
+use std::fmt;
 use std::path::Path;
 
 use enmm::io;
@@ -7,7 +8,7 @@ use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::step::StepReport;
 
-use crate::{Row, Tolerance, Values};
+use crate::{Problem, Row, Tolerance, Values};
 
 /// Why a problem could not be solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,12 @@ pub struct Trouble(pub String);
 impl<E: std::error::Error> From<E> for Trouble {
     fn from(error: E) -> Self {
         Self(error.to_string())
+    }
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.0)
     }
 }
 
@@ -32,6 +39,11 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// The default values of a problem under the explicit integrator.
+    pub fn of(problem: &Problem, quick: bool) -> Self {
+        Self { values: Values::of(problem), integrator: Integrator::Explicit, quick, cases: Vec::new() }
+    }
+
     /// The value of a parameter.
     pub fn get(&self, name: &str) -> f64 {
         self.values.get(name)

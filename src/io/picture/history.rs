@@ -225,7 +225,7 @@ fn unit_title(unit: &str, exponent: i32) -> String {
 }
 
 /// Of the places in one column of pixels only the first, the lowest, the highest and the last: the line looks the same.
-fn thinned(places: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
+pub(super) fn thinned(places: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
     let mut thin: Vec<Pixel> = Vec::new();
     let mut column: Vec<Pixel> = Vec::new();
     for place in places {
