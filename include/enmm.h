@@ -416,8 +416,8 @@ typedef struct enmm_block_state {
 } enmm_block_state;
 
 /**
- * Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping equals
- * contact_work + support_work + external_work + baseline + residual.
+ * Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping + yielding
+ * equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.
  */
 typedef struct enmm_energies {
   /**
@@ -472,6 +472,18 @@ typedef struct enmm_energies {
    * Energy that appeared from nowhere: the error of the time steps.
    */
   double residual;
+  /**
+   * Energy that yielding rock took.
+   */
+  double yielding;
+  /**
+   * Work of bolts on the blocks.
+   */
+  double bolt_work;
+  /**
+   * Work of quiet boundaries and free-field columns: less what waves carry away.
+   */
+  double radiation;
 } enmm_energies;
 
 /**

@@ -192,8 +192,8 @@ pub struct enmm_block_state {
     pub largest_penetration: f64,
 }
 
-/// Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping equals
-/// contact_work + support_work + external_work + baseline + residual.
+/// Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping + yielding
+/// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct enmm_energies {
@@ -223,6 +223,12 @@ pub struct enmm_energies {
     pub contact_dissipation: f64,
     /// Energy that appeared from nowhere: the error of the time steps.
     pub residual: f64,
+    /// Energy that yielding rock took.
+    pub yielding: f64,
+    /// Work of bolts on the blocks.
+    pub bolt_work: f64,
+    /// Work of quiet boundaries and free-field columns: less what waves carry away.
+    pub radiation: f64,
 }
 
 /// Sums and extremes over the model.
@@ -378,9 +384,9 @@ sized! {
         angular_velocity mean_stress_xx mean_stress_yy mean_stress_xy area mass kinetic_energy strain_energy
         contact_count reserved largest_penetration
     }
-    enmm_energies 104 {
+    enmm_energies 128 {
         struct_size kinetic strain potential stored friction contact_work support_work damping external_work baseline
-        contact_dissipation residual
+        contact_dissipation residual yielding bolt_work radiation
     }
     enmm_totals 72 {
         struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts

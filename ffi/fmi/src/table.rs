@@ -105,6 +105,12 @@ pub enum Total {
     FrictionHeat,
     /// Energy taken by damping (J/m).
     DampingLoss,
+    /// Energy taken by yielding rock (J/m).
+    YieldingLoss,
+    /// Work of bolts (J/m).
+    BoltWork,
+    /// Work of quiet boundaries and free-field columns (J/m).
+    Radiation,
     /// Work of loads and inputs (J/m).
     ExternalWork,
     /// Energy that appeared from nowhere (J/m).
@@ -565,6 +571,9 @@ const TOTALS: &[TotalRow] = &[
     (Total::StoredEnergy, "stored_energy", "Energy in contact and support springs", "J/m", Type::Real),
     (Total::FrictionHeat, "friction_heat", "Energy turned into heat by slip", "J/m", Type::Real),
     (Total::DampingLoss, "damping_loss", "Energy taken by damping", "J/m", Type::Real),
+    (Total::YieldingLoss, "yielding_loss", "Energy taken by yielding rock", "J/m", Type::Real),
+    (Total::BoltWork, "bolt_work", "Work of bolts on the blocks", "J/m", Type::Real),
+    (Total::Radiation, "radiation", "Work of quiet boundaries: less what waves carry away", "J/m", Type::Real),
     (Total::ExternalWork, "external_work", "Work of loads and inputs", "J/m", Type::Real),
     (Total::EnergyResidual, "energy_residual", "Energy that appeared from nowhere", "J/m", Type::Real),
     (Total::DisplacementMax, "displacement_max", "Largest displacement", "m", Type::Real),

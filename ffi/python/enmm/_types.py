@@ -92,7 +92,8 @@ class StepInfo(NamedTuple):
 class Energies(NamedTuple):
     """Energies now and works since the start (J per metre of thickness).
 
-    kinetic + strain + potential + damping equals contact_work + support_work + external_work + baseline + residual.
+    kinetic + strain + potential + damping + yielding equals contact_work + support_work + bolt_work + radiation +
+    external_work + baseline + residual.
     """
 
     kinetic: float
@@ -119,6 +120,12 @@ class Energies(NamedTuple):
     """Energy that contacts lost in other ways than slip."""
     residual: float
     """Energy that appeared from nowhere: the error of the time steps."""
+    yielding: float
+    """Energy that yielding rock took."""
+    bolt_work: float
+    """Work of bolts on the blocks."""
+    radiation: float
+    """Work of quiet boundaries and free-field columns: less what waves carry away."""
 
 
 class Totals(NamedTuple):

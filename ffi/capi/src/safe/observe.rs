@@ -34,6 +34,9 @@ impl Model {
             baseline: ledger.baseline,
             contact_dissipation: ledger.contact_dissipation(),
             residual: ledger.residual(),
+            yielding: ledger.yielding,
+            bolt_work: ledger.bolt_work,
+            radiation: ledger.radiation,
         }
     }
 
