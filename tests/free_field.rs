@@ -68,15 +68,15 @@ fn spread(mut simulation: Simulation, axis: usize, speed: f64, until: f64) -> [f
     [across, from_column]
 }
 
-/// S and P waves of 1 m/s come in at a quiet base, are doubled at the free surface and leave again. Mesh of 24 elements in
-/// the wave: dispersion takes (2π/n)²/12 = 0.6 % of it, twice at the top; 2 % is asked, on a lattice that lies along the
-/// sides and on one that does not. Without columns the sides spoil the wave by tens of per cent.
+/// S and P waves of 1 m/s come in at a quiet base, are doubled at the free surface and leave again. Mesh of 30 elements in
+/// the wave: dispersion takes (2π/n)²/12 = 0.4 % of it, twice at the top, where both pulses overlap; 2 % is asked, on a
+/// lattice that lies along the sides and on one that does not. Other sides spoil the wave by tens of per cent.
 #[test]
 fn a_plane_wave_stays_plane_between_columns_and_nowhere_else() {
     for (wave, axis, speed) in [([1.0, 0.0], 0, 1000.0), ([0.0, 1.0], 1, 3f64.sqrt() * 1000.0)] {
         let base = quiet_base(wave);
         let until = PERIOD + 2.2 * HEIGHT / speed;
-        let run = |sides: &str, angle: f64| spread(block(sides, &base, 5.0, angle), axis, speed, until);
+        let run = |sides: &str, angle: f64| spread(block(sides, &base, 4.0, angle), axis, speed, until);
         for angle in [0.0, 17.0] {
             let [across, from_column] = run(&both("free_field"), angle);
             println!("wave {wave:?}, lattice at {angle}°: across {across}, from the column {from_column}");
@@ -111,10 +111,12 @@ fn columns_stand_on_a_moving_base() {
     }
 }
 
-/// What the columns and the base carry away is in the ledger: after the wave has left nothing is.
+/// What the columns and the base carry away is in the ledger, which errs by ½(ω dt)² of the wave's strain energy (theory,
+/// Eq. 28): 1.2e-3 at the usual step, a quarter of it at half the step. After the wave has left nothing is.
 #[test]
 fn the_ledger_closes_between_columns() {
-    let mut simulation = block(&both("free_field"), &quiet_base([1.0, 0.0]), 5.0, 0.0);
+    let solver = "[solver]\ndt_safety = 0.45\n";
+    let mut simulation = block(&both("free_field"), &(quiet_base([1.0, 0.0]) + solver), 5.0, 0.0);
     let mut largest = 0.0f64;
     let mut worst = 0.0f64;
     for step in 0..(0.3 / simulation.slope().dt) as u64 {

@@ -131,8 +131,8 @@ impl OpenClose<'_> {
         let kick = self.options.kick;
         let velocity = row.approach + support.sample(self.increment);
         let a = row.viscosity;
-        let force = (row.target - a * velocity + a * kick * row.compliance * row.force)
-            / (1.0 + a * kick * row.compliance);
+        let force =
+            (row.target - a * velocity + a * kick * row.compliance * row.force) / (1.0 + a * kick * row.compliance);
         let change = force - row.force;
         support.push(change * kick, self.metric, self.increment);
         row.force = force;

@@ -91,10 +91,11 @@ impl VertexEdge {
 const CENTRED: f64 = 0.25;
 
 impl VertexEdge {
-    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. W8, W9): the force belongs to the
-    /// time at which it acts, so that a spring that the step resolves keeps its energy; a stiffer one gets a dashpot that
-    /// grows towards that of θ. The step is `dt` and the force acts for `kick` (s); `last` is the motion (m) normal and
-    /// shear in the last step.
+    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. W8, W9).
+    ///
+    /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
+    /// stiffer one gets a dashpot that grows towards that of θ. The step is `dt` and the force acts for `kick` (s);
+    /// `last` is the motion (m) normal and shear in the last step.
     pub fn centre(&mut self, physical: [bool; 2], dt: f64, kick: f64, last: [f64; 2]) {
         for k in (0..2).filter(|k| physical[*k]) {
             let stiff = self.stiffness[k] * self.compliance[k] * dt * kick;

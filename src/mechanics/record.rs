@@ -67,8 +67,9 @@ mod tests {
     #[test]
     fn a_velocity_keeps_its_last_value() {
         let velocity = Record(vec![[0.0, 0.0], [2.0, 3.0]]);
-        assert_eq!([(-1.0, 0.0), (0.0, 1.0), (1.0, 3.0), (3.0, 4.0)].map(|(a, b)| velocity.mean_rate(a, b)), [
-            0.0, 1.5, 0.75, 0.0
-        ]);
+        assert_eq!(
+            [(-1.0, 0.0), (0.0, 1.0), (1.0, 3.0), (3.0, 4.0)].map(|(a, b)| velocity.mean_rate(a, b)),
+            [0.0, 1.5, 0.75, 0.0]
+        );
     }
 }

@@ -11,7 +11,9 @@ use std::collections::BTreeMap;
 use crate::contact::{Boundary, BoundaryOptions, JointLaw, Resistance, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
-use crate::mechanics::{ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
+use crate::mechanics::{
+    ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
+};
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 

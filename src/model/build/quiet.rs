@@ -59,9 +59,9 @@ impl Ground<'_> {
         let mut made = Quiets::default();
         for (k, quiet) in self.case.quiets.iter().enumerate() {
             let pieces = self.places.boundary(&format!("quiet[{k}].edge"), quiet.edge)?;
-            let wave = quiet.wave.map(|wave| {
-                timed(self.case, &quiet.table, Vector::from(wave) * quiet.scale, quiet.stage.as_deref())
-            });
+            let wave = quiet
+                .wave
+                .map(|wave| timed(self.case, &quiet.table, Vector::from(wave) * quiet.scale, quiet.stage.as_deref()));
             let number = made.quiets.len() as u32;
             made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave, column: None });
             self.hold(&mut made.quiets[number as usize], quiet.axes, &pieces, fixities, supports);

@@ -10,12 +10,20 @@ pub const PROBLEM: Problem = Problem {
              constant deceleration; flat, and down an incline. Catches wrong impulses of jumps, inertia forces that \
              change no normal force, and friction that lags",
     parameters: &[
-        Parameter { name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity" },
+        Parameter {
+            name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity"
+        },
         Parameter { name: "pulse", unit: "g", default: 0.5, range: [0.05, 0.9], doc: "base acceleration over g" },
         Parameter { name: "time", unit: "s", default: 0.5, range: [0.05, 1.0], doc: "length of the pulse" },
         Parameter { name: "resistance", unit: "g", default: 0.2, range: [0.05, 0.6], doc: "friction on the flat base" },
         Parameter { name: "a_deg", unit: "°", default: 20.0, range: [1.0, 40.0], doc: "dip of the incline" },
-        Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 50.0], doc: "friction angle on the incline" },
+        Parameter {
+            name: "phi_deg",
+            unit: "°",
+            default: 30.0,
+            range: [5.0, 50.0],
+            doc: "friction angle on the incline",
+        },
     ],
     quick: true,
     implicit: true,
@@ -79,7 +87,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             title: format!("C4, {name}: slip under a pulse of {pulse} g for {time} s"),
             axes: ["time (s)".into(), "slip (m)".into()],
             series: vec![
-                Series { name: "exact".into(), points: points.iter().map(|p| [p[0], way(p[0])]).collect(), marks: false },
+                Series {
+                    name: "exact".into(),
+                    points: points.iter().map(|p| [p[0], way(p[0])]).collect(),
+                    marks: false,
+                },
                 Series { name: "computed".into(), points, marks: true },
             ],
             ..Plot::default()

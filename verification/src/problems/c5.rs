@@ -14,7 +14,9 @@ pub const PROBLEM: Problem = Problem {
              block; two inclines on which it slides down, and a flat base on which it slides both ways. Catches slip \
              that starts or stops late, normal forces without the base's part, and drift",
     parameters: &[
-        Parameter { name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity" },
+        Parameter {
+            name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity"
+        },
         Parameter { name: "a_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip, first incline" },
         Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 50.0], doc: "friction, both inclines" },
         Parameter { name: "a0", unit: "g", default: 0.5, range: [0.05, 0.9], doc: "amplitude, first incline" },

@@ -15,7 +15,13 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
         Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
         Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter { name: "elements", unit: "", default: 40.0, range: [10.0, 200.0], doc: "mesh sizes in a wave length" },
+        Parameter {
+            name: "elements",
+            unit: "",
+            default: 40.0,
+            range: [10.0, 200.0],
+            doc: "mesh sizes in a wave length",
+        },
         Parameter { name: "k", unit: "", default: 1.0, range: [0.02, 50.0], doc: "one more ratio K" },
     ],
     quick: true,
@@ -134,10 +140,8 @@ impl Joint {
             let name = format!("{wave:?}{place}, K = {ratio}");
             let motion = self.run(setup, &name, Some(stiffness), &rows, until)?;
             let back: Vec<f64> = motion.velocity[0].iter().zip(&open.velocity[0]).map(|(v, i)| v - i).collect();
-            let measured = [
-                amplitude(&motion, &motion.velocity[1]) / incident[1],
-                amplitude(&motion, &back) / incident[0],
-            ];
+            let measured =
+                [amplitude(&motion, &motion.velocity[1]) / incident[1], amplitude(&motion, &back) / incident[0]];
             for ((k, which), exact) in ["|T|", "|R|"].into_iter().enumerate().zip(coefficients(ratio)) {
                 found[k].push([ratio, measured[k]]);
                 // A coefficient near zero is judged against the incident wave.
@@ -199,7 +203,11 @@ impl Joint {
             title: format!("D1: {wave:?} velocity step behind one joint"),
             axes: ["time (s)".into(), "v_t/v0".into()],
             series: vec![
-                Series { name: "exact".into(), points: points.iter().map(|p| [p[0], exact(p[0])]).collect(), marks: false },
+                Series {
+                    name: "exact".into(),
+                    points: points.iter().map(|p| [p[0], exact(p[0])]).collect(),
+                    marks: false,
+                },
                 Series { name: "computed".into(), points, marks: true },
             ],
             ..Plot::default()

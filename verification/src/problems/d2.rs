@@ -16,7 +16,13 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
         Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
         Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter { name: "elements", unit: "", default: 60.0, range: [20.0, 200.0], doc: "mesh sizes in a wave length" },
+        Parameter {
+            name: "elements",
+            unit: "",
+            default: 60.0,
+            range: [20.0, 200.0],
+            doc: "mesh sizes in a wave length",
+        },
         Parameter { name: "ratio", unit: "", default: 0.5, range: [0.05, 0.95], doc: "strength over incident stress" },
     ],
     quick: true,
@@ -95,9 +101,9 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
     let found = [through.sqrt(), reflected.sqrt(), (1.0 - through - reflected).max(0.0).sqrt()];
     let reason = "2 % asked; the joint's own stiffness is 200 zω, the mesh rounds the kinks of the clipped sine";
     for ((which, exact), found) in ["T", "R", "A"].into_iter().zip(coefficients(ratio)).zip(found) {
-        outcome.rows.push(
-            Row::new(format!("{name}: {which}"), "", found, exact).within(Tolerance::Relative(0.02), reason),
-        );
+        outcome
+            .rows
+            .push(Row::new(format!("{name}: {which}"), "", found, exact).within(Tolerance::Relative(0.02), reason));
     }
     outcome.rows.push(Row::ledger(&motion.last));
     let stress: Vec<f64> = motion.velocity[1].iter().map(|v| v / VELOCITY).collect();
@@ -111,7 +117,11 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
         title: format!("D2: stress that passes, {name}"),
         axes: ["time (s)".into(), "stress over that of the incident wave".into()],
         series: vec![
-            Series { name: "clipped sine".into(), points: points.iter().map(|p| [p[0], clipped(p[0])]).collect(), marks: false },
+            Series {
+                name: "clipped sine".into(),
+                points: points.iter().map(|p| [p[0], clipped(p[0])]).collect(),
+                marks: false,
+            },
             Series { name: "computed".into(), points, marks: true },
         ],
         ..Plot::default()
