@@ -16,7 +16,7 @@ struct Drop {
 
 /// A block of 1 m × 1 m and `mass` (kg/m) falls `height` (m) on a joint of `stiffness` (N/m per metre).
 ///
-/// The rock is 10000 times stiffer than the joint. θ = 1 is the backward-Euler spring.
+/// The rock is 10000 times stiffer than the joint.
 fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
     let low = height;
     let mut simulation = simulation(&format!(
@@ -24,7 +24,7 @@ fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
          islands = [[[0.0, {low}], [1.0, {low}], [1.0, {high}], [0.0, {high}]]]\n[mesh]\nsize = 1.1\norigin = \
          [0.03, 0.02]\n\
          [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = {stiffness:e}\n[[fix]]\nblock = [0.1, -0.9]\n{}{}\
-         [solver]\ncontact_theta = 1.0\ncontact_tolerance = 1e-9\nsweeps_max = 100\ndt_max = {dt:e}\n",
+         [solver]\ncontact_tolerance = 1e-9\nsweeps_max = 100\ndt_max = {dt:e}\n",
         rock(1e4 * stiffness, mass),
         dynamic("fall", 10.0, 0.0),
         high = height + 1.0,
@@ -51,11 +51,9 @@ fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
 
 /// v = √(2gH), deepest = mg/k + √((mg/k)² + 2mgH/k): 3.132092 m/s and 4.976858 mm for 2500 kg on 1e9 N/m from 0.5 m.
 ///
-/// The block's own spring (some 1e4 k in series, and waves) takes 2e-4 of the depth; backward Euler damps the half
-/// swing by half its loss of energy, πω dt/2: 2e-3 at the smallest step of ω dt = 6e-4. 3e-3 is asked, and less for v.
-///
-/// The implicit spring loses the share πω dt of the energy in the half swing (its damping ratio is ω dt/2): the loss
-/// falls with dt, and from two steps the extrapolated loss is nil to 1e-3, the waves that the block takes along.
+/// The block's own spring (some 1e4 k in series, and waves) takes 2e-4 of the depth: 1e-3 is asked. A joint's own stiffness
+/// is a centred spring, which keeps its energy at any step that resolves it: what is lost are the waves that the block
+/// takes along, some 1e-4.
 #[test]
 fn a_mass_on_a_spring_keeps_its_energy() {
     for (mass, stiffness, height) in [(2500.0, 1e9, 0.5), (2000.0, 4e8, 0.2)] {
@@ -67,12 +65,8 @@ fn a_mass_on_a_spring_keeps_its_energy() {
         for (dt, drop) in steps.iter().zip(&drops) {
             println!("ω dt {:e}: v {}, depth {}, lost {}", dt * omega, drop.speed, drop.depth / deepest, drop.lost);
             assert!((drop.speed / f64::sqrt(2.0 * G * height) - 1.0).abs() < 1e-3, "{}", drop.speed);
-            let loss = std::f64::consts::PI * omega * dt;
-            assert!((drop.lost / loss - 1.0).abs() < 0.35, "lost {} at ω dt = {}", drop.lost, omega * dt);
+            assert!(drop.lost.abs() < 1e-3, "lost {} at ω dt = {}", drop.lost, omega * dt);
+            assert!((drop.depth / deepest - 1.0).abs() < 1e-3, "{} of {deepest}", drop.depth);
         }
-        let last = &drops[2];
-        assert!((last.depth / deepest - 1.0).abs() < 3e-3, "{} of {deepest}", last.depth);
-        let limit = 2.0 * last.lost - drops[1].lost;
-        assert!(limit.abs() < 1e-3, "lost {limit} at dt = 0");
     }
 }

@@ -63,6 +63,8 @@ pub struct Narrow<'a> {
     pub size: f64,
     /// Gap (m) below which a contact takes part in the iteration.
     pub reach: f64,
+    /// θ of the contact springs.
+    pub theta: f64,
     /// Nodes and sides with the side's rock between them, sorted.
     pub behind: &'a [[u32; 2]],
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
@@ -460,6 +462,8 @@ impl Narrow<'_> {
             compliance,
             law,
             approach: [0.0; 2],
+            forward: [self.theta; 2],
+            lag: [0.0; 2],
             torn: false,
             fresh: pick.held.is_none(),
         }

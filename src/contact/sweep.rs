@@ -147,10 +147,12 @@ impl OpenClose<'_> {
         let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
         let shear_velocity = contact.approach[1] + relative.dot(&tangent);
         let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
-        let [a, b] = [0, 1].map(|k| contact.stiffness[k] * self.options.theta * dt);
+        let [a, b] = [0, 1].map(|k| contact.stiffness[k] * contact.forward[k] * dt);
+        let gap = contact.gap + contact.lag[0];
+        let stored = contact.history.shear_stored - contact.stiffness[1] * contact.lag[1];
         let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
-        let normal = (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
-        let shear = (contact.history.shear_stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
+        let normal = (-contact.stiffness[0] * gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
+        let shear = (stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
         if step != [0.0; 2] {

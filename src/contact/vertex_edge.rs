@@ -70,6 +70,10 @@ pub struct VertexEdge {
     pub law: u32,
     /// Predicted relative velocity normal and shear without contact forces (m/s).
     pub approach: [f64; 2],
+    /// Share of the step's motion, normal and shear, that the springs feel ahead: θ, or that of a joint's own spring.
+    pub forward: [f64; 2],
+    /// Motion (m) normal and shear that is added to what the springs feel: minus a share of that of the last step.
+    pub lag: [f64; 2],
     /// Whether the normal force asked for more tension than the joint has.
     pub torn: bool,
     /// Whether the contact is seen for the first time.
@@ -83,7 +87,24 @@ impl VertexEdge {
     }
 }
 
+/// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
+const CENTRED: f64 = 0.25;
+
 impl VertexEdge {
+    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. W8, W9).
+    ///
+    /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
+    /// stiffer one gets a dashpot that grows towards that of θ. The step is `dt` and the force acts for `kick` (s);
+    /// `last` is the motion (m) normal and shear in the last step.
+    pub fn centre(&mut self, physical: [bool; 2], dt: f64, kick: f64, last: [f64; 2]) {
+        for k in (0..2).filter(|k| physical[*k]) {
+            let stiff = self.stiffness[k] * self.compliance[k] * dt * kick;
+            let dashpot = if stiff > 1.0 { self.forward[k] * (1.0 - 1.0 / stiff) } else { 0.0 };
+            self.forward[k] = CENTRED + dashpot;
+            self.lag[k] = -CENTRED * last[k];
+        }
+    }
+
     /// Penetration (m) that the springs resist: without what was there at first sight.
     pub fn loaded_penetration(&self) -> f64 {
         self.penetration - self.history.offset

@@ -153,7 +153,14 @@ impl Simulation {
             && [state.stage_start, state.dt_last, state.part].iter().all(|t| t.is_finite() && *t >= 0.0)
             && state.bolts.len() == own.bolts.len()
             && state.plastic.len() == own.plastic.len()
-            && state.columns.len() == own.columns.len()
+            && state.columns.len() == slope.columns.len()
+            && state
+                .columns
+                .iter()
+                .zip(&slope.columns)
+                .all(|(state, column)| [state.displacement.len(), state.velocity.len()] == [column.node_count(); 2])
+            && state.stage_starts.len() == state.stage as usize + 1
+            && state.stage_starts.iter().all(|t| t.is_finite() && *t >= 0.0)
             && (state.acceleration.is_empty() || state.acceleration.len() == covers)
             && state.near.fits(boundary)
             && inputs_fit(&state.drive.from)

@@ -254,6 +254,7 @@ impl Step<'_> {
         let clock = Instant::now();
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
+        let (is_dynamic, kick) = (matches!(self.regime, Regime::Dynamic { .. }), 0.5 * (state.dt_last + dt));
         let narrow = Narrow {
             boundary: &slope.boundary,
             place: &scratch.place,
@@ -270,6 +271,7 @@ impl Step<'_> {
             history: &state.contacts,
             size,
             reach: REACH * size + 8.0 * dt * scratch.speed_max,
+            theta: slope.theta,
             behind: &state.near.behind,
             first: state.step == 0,
             in_situ: slope.in_situ.as_ref(),
@@ -278,6 +280,11 @@ impl Step<'_> {
         contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
+            let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
+            if physical != [false; 2] {
+                let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
+                contact.centre(physical, dt, kick, last);
+            }
         }
         self.load_supports(dt);
         self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();

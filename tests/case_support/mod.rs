@@ -126,6 +126,23 @@ edge = [[0.0, 2.0], [10.0, 3.0]]
 pressure = 1e4
 pressure_end = 5e3
 
+[[base_motion]]
+kind = "velocity"
+axis = "y"
+table = [[0.0, 0.0], [1.0, 0.5]]
+scale = 2.0
+
+[[quiet]]
+edge = [[0.0, 0.0], [10.0, 0.0]]
+axes = "xy"
+wave = [0.5, 0.0]
+table = [[0.0, 0.0], [1.0, 1.0]]
+scale = 2.0
+
+[[free_field]]
+edge = [[0.0, 0.0], [0.0, 5.0]]
+axes = "x"
+
 [[initial_velocity]]
 block = [3.0, 3.0]
 velocity = [0.1, 0.0]
