@@ -1,8 +1,10 @@
 //! All problems in the order of the manual; one file each.
 
+mod b4;
 mod c1;
+mod continuum;
 
 use crate::Problem;
 
 /// Every problem.
-pub const ALL: &[Problem] = &[c1::PROBLEM];
+pub const ALL: &[Problem] = &[b4::PROBLEM, c1::PROBLEM];
