@@ -10,7 +10,9 @@ pub type Field<'a> = &'a dyn Fn(Point) -> [f64; 3];
 /// Pieces of a far edge that carry the mean traction of the known field each.
 const PIECES: usize = 16;
 /// Reach of the fit of stresses over the mesh size.
-const REACH: f64 = 3.0;
+const REACH: f64 = 3.5;
+/// Way of the load in the time in which a hole is opened, over the side of the model.
+const TRANSITS: f64 = 6.0;
 
 /// A list of points as a case writes it.
 pub fn list(points: &[[f64; 2]]) -> String {
@@ -59,41 +61,60 @@ impl QuarterPlate {
         )
     }
 
-    /// Tractions of a known field on both far edges: the plate deforms as if it went on for ever.
-    pub fn far_tractions(&self, field: Field) -> String {
-        let b = self.half;
-        let right = edge_tractions([b, 0.0], [b, b], Vector::x(), field);
-        right + &edge_tractions([0.0, b], [b, b], Vector::y(), field)
-    }
-
-    /// A pressure (Pa) on the wall of the hole.
-    pub fn wall_pressure(&self, pressure: f64) -> String {
-        let points = quarter_circle(self.radius, self.mesh);
-        let piece = |ends: &[[f64; 2]]| {
-            format!("[[load]]\nkind = \"pressure\"\nedge = {}\npressure = {pressure:e}\n", list(ends))
-        };
-        points.windows(2).map(piece).collect()
+    /// The stages of a hole that is opened: from the stress `before` to the one `after` in a slow dynamic stage, so
+    /// that no shock runs out, then to rest; with the loads on far edges and wall that go with both fields.
+    ///
+    /// The plate deforms as if it went on for ever, since its far edges bear the tractions of the infinite one.
+    pub fn opened(&self, before: Field, after: Field, speed: f64) -> String {
+        let ramp = TRANSITS * self.half / speed;
+        let table = smooth_rise(ramp);
+        let far = |k: usize| self.half * k as f64 / PIECES as f64;
+        let right: Vec<[f64; 2]> = (0..=PIECES).map(|k| [self.half, far(k)]).collect();
+        let top: Vec<[f64; 2]> = (0..=PIECES).rev().map(|k| [far(k), self.half]).collect();
+        let wall = quarter_circle(self.radius, self.mesh);
+        let loads = [right, top, wall].map(|line| line_tractions(&line, before, after, &table)).concat();
+        format!(
+            "{loads}[[stage]]\nname = \"open\"\nkind = \"dynamic\"\ndamping = 1.0\nduration = {:e}\n\
+             [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = {:e}\n",
+            1.2 * ramp,
+            50.0 * ramp
+        )
     }
 }
 
-/// Loads on the pieces of an edge: the mean of the field's traction on each, by Simpson's rule.
-fn edge_tractions(from: [f64; 2], to: [f64; 2], normal: Vector, field: Field) -> String {
-    let (a, b) = (Point::from(from), Point::from(to));
-    let traction = |p: Point| {
-        let [xx, yy, xy] = field(p);
-        Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y)
+/// 3x² − 2x³ as a table over `ramp` (s).
+pub fn smooth_rise(ramp: f64) -> String {
+    let row = |k: u32| {
+        let x = f64::from(k) / 16.0;
+        [x * ramp, x * x * (3.0 - 2.0 * x)]
     };
-    let piece = |k: usize| {
-        let [p, q] = [k, k + 1].map(|k| a + (b - a) * k as f64 / PIECES as f64);
-        let mean = (traction(p) + traction((p + q) * 0.5) * 4.0 + traction(q)) / 6.0;
-        let ends = list(&[[p.x, p.y], [q.x, q.y]]);
-        format!("[[load]]\nkind = \"traction\"\nedge = {ends}\ntraction = [{:e}, {:e}]\n", mean.x, mean.y)
+    list(&(0..=16).map(row).collect::<Vec<_>>())
+}
+
+/// Loads on the pieces of a line that has the rock on its left: the mean of a field's traction on each, by Simpson's
+/// rule, and the change to another field with a table.
+fn line_tractions(line: &[[f64; 2]], before: Field, after: Field, table: &str) -> String {
+    let piece = |ends: &[[f64; 2]]| {
+        let [p, q] = [0, 1].map(|k| Point::from(ends[k]));
+        let along = (q - p).normalize();
+        let traction = |field: Field, p: Point| {
+            let [xx, yy, xy] = field(p);
+            Vector::new(xx * along.y - xy * along.x, xy * along.y - yy * along.x)
+        };
+        let mean = |field: Field| {
+            (traction(field, p) + traction(field, (p + q) * 0.5) * 4.0 + traction(field, q)) / 6.0
+        };
+        let (first, change) = (mean(before), mean(after) - mean(before));
+        let load = |t: Vector| {
+            format!("[[load]]\nkind = \"traction\"\nedge = {}\ntraction = [{:e}, {:e}]\n", list(ends), t.x, t.y)
+        };
+        format!("{}{}table = {table}\n", load(first), load(change))
     };
-    (0..PIECES).map(piece).collect()
+    line.windows(2).map(piece).collect()
 }
 
 /// Stress xx, yy, xy (Pa) at a point: a parabola in x and y through the stresses at the centroids of the elements within
-/// three mesh sizes by least squares, weighted by area and nearness, and extrapolated where the point is on a boundary.
+/// three and a half mesh sizes by least squares, weighted by area and nearness, and extrapolated where the point is on a boundary.
 pub fn stress_at(simulation: &Simulation, point: Point) -> [f64; 3] {
     let (slope, state) = (simulation.slope(), simulation.state());
     let covers = &slope.covers;
