@@ -153,10 +153,15 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let mut worst = StepReport::default();
     for b in angles {
         let test = test(setup, &strength, b)?;
-        let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), strength.with_joint(b.to_radians()));
-        let reason = "a slow push of 200 transits leaves waves of some 1/200 of the strength, and dilating rock widens by \
-                      some Kp over the stiffness ratio before the plateau is read: 1 %";
-        rows.push(row.within(Tolerance::Relative(0.01), reason));
+        let exact = strength.with_joint(b.to_radians());
+        let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), exact);
+        rows.push(if exact < strength.cap() {
+            row.within(Tolerance::Relative(0.01), "a push of 200 transits leaves waves of 1/200 of the strength, twice")
+        } else {
+            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield as an \
+                          upper bound does";
+            row.within(Tolerance::Relative(0.02), reason)
+        });
         marks.push([b, test.strength()]);
         let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
         if share(&test.report) >= share(&worst) {
