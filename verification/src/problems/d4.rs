@@ -32,6 +32,8 @@ const ANGLES: [f64; 7] = [15.0, 20.0, 25.0, 35.0, 40.0, 45.0, 60.0];
 const DENSITY: f64 = 2000.0;
 /// Shortening at the end over the one at which rock of full strength yields.
 const SHORTENING: f64 = 1.6;
+/// Time of the push over that of a wave through the sample.
+const TRANSITS: f64 = 800.0;
 /// Part of the run over which the load is averaged.
 const PLATEAU: f64 = 0.05;
 
@@ -138,7 +140,8 @@ fn test(setup: &mut Setup, strength: &Strength, b_deg: f64) -> Result<Test, Trou
     let height = height_of(&simulation);
     let total = SHORTENING * height / setup.get("stiffness");
     let transit = height / (setup.get("stiffness") * strength.cap() / DENSITY).sqrt();
-    let steps = ((200.0 * transit / simulation.slope().dt / 20.0).ceil() as u64) * 20;
+    let transits = if setup.quick { 500.0 } else { TRANSITS };
+    let steps = ((transits * transit / simulation.slope().dt / 20.0).ceil() as u64) * 20;
     press(&mut simulation, width, total, steps)
 }
 
@@ -156,11 +159,13 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let exact = strength.with_joint(b.to_radians());
         let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), exact);
         rows.push(if exact < strength.cap() {
-            row.within(Tolerance::Relative(0.01), "a push of 200 transits leaves waves of 1/200 of the strength, twice")
+            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 transits, and \
+                          some 0.5 % where the joint is shallow and the load sensitive";
+            row.within(Tolerance::Relative(0.005), reason)
         } else {
             let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield as an \
                           upper bound does";
-            row.within(Tolerance::Relative(0.02), reason)
+            row.within(Tolerance::Relative(0.01), reason)
         });
         marks.push([b, test.strength()]);
         let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
