@@ -45,10 +45,6 @@ region = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0]]
 density = 2650
 young = 5e10
 poisson = 0.25
-friction_deg = 45.0
-cohesion = 5e6
-dilation_deg = 10.0
-tension = 2e6
 
 [rock.marl]
 density = 2200.0
@@ -226,6 +222,16 @@ sweeps_max = 12
 penetration_limit = 0.5
 failure_displacement = 0.1
 memory_limit = 1000000000
+
+[rock.clay]
+density = 2000.0
+young = 1e8
+poisson = 0.3
+friction_deg = 25.0
+cohesion = 2e4
+dilation_deg = 5.0
+tension = 1e4
+region = [[0.0, 3.0], [10.0, 3.0], [10.0, 5.0]]
 "#;
 
 /// Returns the valid case with `from` replaced by `to`; `from` must occur.

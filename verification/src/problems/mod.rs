@@ -1,12 +1,22 @@
 //! All problems in the order of the manual; one file each.
 
+mod a1;
+mod a2;
+mod a3;
+mod a4;
+mod b4;
 mod b5;
 mod b6;
+mod b7;
+mod b8;
 mod c1;
 mod c4;
 mod c5;
+mod continuum;
 mod d1;
 mod d2;
+mod d4;
+mod dice;
 mod newmark;
 mod slider;
 mod strip;
@@ -14,5 +24,20 @@ mod strip;
 use crate::Problem;
 
 /// Every problem.
-pub const ALL: &[Problem] =
-    &[b5::PROBLEM, b6::PROBLEM, c1::PROBLEM, c4::PROBLEM, c5::PROBLEM, d1::PROBLEM, d2::PROBLEM];
+pub const ALL: &[Problem] = &[
+    a1::PROBLEM,
+    a2::PROBLEM,
+    a3::PROBLEM,
+    a4::PROBLEM,
+    b4::PROBLEM,
+    b5::PROBLEM,
+    b6::PROBLEM,
+    b7::PROBLEM,
+    b8::PROBLEM,
+    c1::PROBLEM,
+    c4::PROBLEM,
+    c5::PROBLEM,
+    d1::PROBLEM,
+    d2::PROBLEM,
+    d4::PROBLEM,
+];

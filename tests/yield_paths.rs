@@ -1,0 +1,113 @@
+//! Claim: rock yields at the Mohr–Coulomb strength along any strain path, flows at its dilation angle, and does both in
+//! every element of a cut mesh and in any rotated frame.
+
+mod common;
+
+use common::simulation;
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+
+const COHESION: f64 = 1e6;
+
+/// A held square cut by two joints and a turned mesh: displacements are given, and stay.
+fn held(strength: &str) -> Simulation {
+    simulation(&format!(
+        "title = \"path\"\n[domain]\noutline = [[0, 0], [2, 0], [2, 2], [0, 2]]\n[mesh]\nsize = 0.6\nangle_deg = 13\n\
+         [[joint]]\npoints = [[-1, 0.4], [3, 1.3]]\n[[joint]]\npoints = [[0.7, -1], [1.1, 3]]\n[gravity]\ny = 0\n\
+         [rock.rock]\ndensity = 2500\nyoung = 2e9\npoisson = 0.3\ncohesion = {COHESION:e}\n{strength}\n[joint_law.joint]\n\
+         friction_deg = 30\n[[fix]]\nbox = [-2, -2, 4, 4]\n[[stage]]\nname = \"hold\"\nkind = \"dynamic\"\nduration = 10\n"
+    ))
+}
+
+/// Gives the rock a uniform strain xx, yy turned by `angle` (rad) as a whole, lets it yield, and returns the stress of
+/// its elements turned back, which must be the same in all.
+fn strained(simulation: &mut Simulation, strain: [f64; 2], angle: f64) -> [f64; 3] {
+    let (s, c) = angle.sin_cos();
+    let mut state = simulation.state().clone();
+    let place = |x: &Vector| {
+        let y = Vector::new(x.x * (1.0 + strain[0]), x.y * (1.0 + strain[1]));
+        Vector::new(c * y.x - s * y.y, s * y.x + c * y.y) - x
+    };
+    state.displacement = simulation.slope().covers.star_position.iter().map(place).collect();
+    simulation.restore(state);
+    simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+    let (slope, state) = (simulation.slope(), simulation.state());
+    let back = |[xx, yy, xy]: [f64; 3]| {
+        let both = 2.0 * s * c * xy;
+        [c * c * xx + s * s * yy + both, s * s * xx + c * c * yy - both, s * c * (yy - xx) + (c * c - s * s) * xy]
+    };
+    let first = back(slope.stress(state, 0));
+    for e in 0..slope.covers.element_count() {
+        let other = back(slope.stress(state, e));
+        // Rounding of displacements of 1 m over cut elements of a mesh of 0.6 m: 1e-15·E.
+        assert!((0..3).all(|k| (other[k] - first[k]).abs() < 1e-3), "{e}: {other:?} {first:?}");
+    }
+    first
+}
+
+/// Shortens the rock along y in steps while the stress along x stays `lateral` (Pa): secant steps on a copy. Returns
+/// the last stress and the strains xx, yy of the last two steps.
+fn biaxial(simulation: &mut Simulation, lateral: f64, step: f64, count: i32) -> ([f64; 3], [[f64; 2]; 2]) {
+    let (mut across, mut path, mut stress) = (0.0, [[0.0; 2]; 2], [0.0; 3]);
+    for k in 1..=count {
+        let yy = step * f64::from(k);
+        let angle = 0.01 * f64::from(k);
+        let start = simulation.state().clone();
+        let mut at = |xx: f64| {
+            simulation.restore(start.clone());
+            strained(simulation, [xx, yy], angle)
+        };
+        let (mut a, mut b) = (across, across - 0.5 * step);
+        let (mut low, mut high) = (at(a)[0] - lateral, at(b)[0] - lateral);
+        for _ in 0..60 {
+            if (high - low).abs() < 1e-9 * COHESION || low.abs() < 1e-9 * COHESION {
+                break;
+            }
+            let next = a - low * (b - a) / (high - low);
+            (b, high) = (a, low);
+            (a, low) = (next, at(next)[0] - lateral);
+        }
+        stress = at(a);
+        across = a;
+        path = [path[1], [a, yy]];
+    }
+    (stress, path)
+}
+
+/// At failure σyy = −(Kp·p + 2c·√Kp) with Kp = (1 + sin φ)/(1 − sin φ), and then dεxx/dεyy = −(1 + sin ψ)/(1 − sin ψ), for
+/// stresses no longer change and so all strain is plastic. The stress out of the plane stays the middle one. Rounding of
+/// strains of 1e-2 is 1e-16·E/c = 1e-13; the search for the lateral strain stops at 1e-9.
+#[test]
+fn biaxial_compression_has_strength_and_dilation() {
+    for (phi, psi, lateral) in [(30.0f64, 0.0f64, -2e6), (40.0, 12.0, -5e5), (25.0, 25.0, -1e6), (0.0, 0.0, -1e6)] {
+        let mut simulation = held(&format!("friction_deg = {phi}\ndilation_deg = {psi}"));
+        let (stress, [before, after]) = biaxial(&mut simulation, lateral, -5e-4, 24);
+        let ratio = |degrees: f64| (1.0 + degrees.to_radians().sin()) / (1.0 - degrees.to_radians().sin());
+        let exact = ratio(phi) * lateral - 2.0 * COHESION * ratio(phi).sqrt();
+        assert!((stress[1] / exact - 1.0).abs() < 1e-8, "φ = {phi}: {} against {exact}", stress[1]);
+        let slope = (after[0] - before[0]) / (after[1] - before[1]);
+        assert!((slope + ratio(psi)).abs() < 1e-5 * ratio(psi), "ψ = {psi}: {slope} against {}", -ratio(psi));
+    }
+}
+
+/// In plane stress the strength is that of uniaxial compression, 2c·√Kp, though two stresses are zero; pulled, the
+/// rock gives way at its tensile strength; the elements have yielded, which outputs tell.
+#[test]
+fn plane_stress_and_tension_cut_off() {
+    let mut simulation = held("friction_deg = 35\nplane = \"stress\"");
+    let (stress, _) = biaxial(&mut simulation, 0.0, -5e-4, 16);
+    let sine = 35f64.to_radians().sin();
+    let exact = -2.0 * COHESION * ((1.0 + sine) / (1.0 - sine)).sqrt();
+    assert!((stress[1] / exact - 1.0).abs() < 1e-8, "{} against {exact}", stress[1]);
+    for plane in ["strain", "stress"] {
+        let mut pulled = held(&format!("friction_deg = 35\ntension = 2e5\nplane = \"{plane}\""));
+        assert_eq!(pulled.yielded_elements(), 0);
+        let (stress, _) = biaxial(&mut pulled, 0.0, 2e-5, 16);
+        assert!((stress[1] - 2e5).abs() < 1e-3, "{plane}: {}", stress[1]);
+        assert_eq!(pulled.yielded_elements(), pulled.slope().covers.element_count());
+        let snapshot = pulled.snapshot();
+        assert!(snapshot.plastic_strain.iter().all(|p| *p > 1e-5), "outputs show it");
+        let shown = snapshot.stress.iter().map(|s| s[0] + s[1]).fold(0.0f64, f64::max);
+        assert!((shown - 2e5).abs() < 1.0, "the picture shows true stress: {shown}");
+    }
+}

@@ -1,0 +1,138 @@
+//! A1: patch tests on covers that any joints cut.
+
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+use enmm::state::State;
+
+use super::dice::Dice;
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "A1",
+    title: "Patch tests on cut covers",
+    source: "rigid motion of any size strains nothing, and a uniform strain has the stress of Hooke's law in every \
+             element, cut or not; catches wrong weights, gradients and rotations",
+    parameters: &[
+        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
+        Parameter { name: "joints", unit: "", default: 12.0, range: [0.0, 200.0], doc: "random joints" },
+        Parameter { name: "mesh", unit: "m", default: 0.8, range: [0.2, 3.0], doc: "mesh size in a rock of 12 m" },
+        Parameter { name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh" },
+        Parameter { name: "mesh_x", unit: "m", default: 0.3, range: [-100.0, 100.0], doc: "shift of the mesh along x" },
+        Parameter { name: "mesh_y", unit: "m", default: -0.2, range: [-100.0, 100.0], doc: "shift of the mesh along y" },
+        Parameter { name: "turn_deg", unit: "°", default: 30.0, range: [-360.0, 360.0], doc: "rotation of the rock" },
+        Parameter { name: "shift", unit: "m", default: 8.0, range: [-1e3, 1e3], doc: "translation of the rock" },
+        Parameter { name: "strain", unit: "", default: 2e-3, range: [1e-6, 1e-2], doc: "size of the uniform strain" },
+        Parameter { name: "young", unit: "Pa", default: 3e10, range: [1e6, 1e12], doc: "Young's modulus E" },
+        Parameter { name: "poisson", unit: "", default: 0.25, range: [-0.9, 0.49], doc: "Poisson's ratio" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+const OUTLINE: &str = "[[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], [4.0, 9.5], [-1.0, 5.0]]";
+
+fn case(setup: &Setup, seed: u64) -> String {
+    let mut dice = Dice::new(seed);
+    let joint = |_| {
+        let ends = [dice.between(-1.0, 11.0), dice.between(0.0, 9.0), dice.between(-1.0, 11.0), dice.between(0.0, 9.0)];
+        format!("[[joint]]\npoints = [[{:?}, {:?}], [{:?}, {:?}]]\n", ends[0], ends[1], ends[2], ends[3])
+    };
+    let joints: String = (0..setup.get("joints") as usize).map(joint).collect();
+    format!(
+        "title = \"Patch\"\n[domain]\noutline = {OUTLINE}\n[mesh]\nsize = {:?}\nangle_deg = {:?}\norigin = [{:?}, {:?}]\n\
+         {joints}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\npoisson = {:?}\n[joint_law.joint]\nfriction_deg = 30.0\n\
+         [[stage]]\nname = \"none\"\nkind = \"dynamic\"\nduration = 1.0\n",
+        setup.get("mesh"),
+        setup.get("mesh_angle_deg"),
+        setup.get("mesh_x"),
+        setup.get("mesh_y"),
+        setup.get("young"),
+        setup.get("poisson"),
+    )
+}
+
+/// The state in which every star has moved by `field` of its place.
+fn moved(simulation: &Simulation, field: impl Fn(Vector) -> Vector) -> State {
+    let mut state = simulation.state().clone();
+    state.displacement = simulation.slope().covers.star_position.iter().map(|x| field(*x)).collect();
+    state
+}
+
+/// Largest difference (Pa) of the stress of any element from an expected one.
+fn worst(simulation: &Simulation, state: &State, expected: [f64; 3]) -> f64 {
+    let slope = simulation.slope();
+    let of = |e: usize| {
+        let found = slope.stress(state, e);
+        (0..3).map(|k| (found[k] - expected[k]).abs()).fold(0.0, f64::max)
+    };
+    (0..slope.covers.element_count()).map(of).fold(0.0, f64::max)
+}
+
+/// Stress (Pa) of plane strain by Hooke's law.
+fn hooke(young: f64, poisson: f64, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+    let mu = young / (2.0 * (1.0 + poisson));
+    let volume = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) * (xx + yy);
+    [2.0 * mu * xx + volume, 2.0 * mu * yy + volume, 2.0 * mu * xy]
+}
+
+/// Errors over E of translation, rotation, uniform strain, and strain that then turns.
+fn errors(setup: &mut Setup, seed: u64) -> Result<([f64; 4], Simulation), Trouble> {
+    let (young, poisson, size) = (setup.get("young"), setup.get("poisson"), setup.get("strain"));
+    let text = case(setup, seed);
+    let simulation = setup.simulation(&format!("a1_{seed}"), text)?;
+    let shift = setup.get("shift");
+    let (s, c) = setup.get("turn_deg").to_radians().sin_cos();
+    let turn = |x: Vector| Vector::new(c * x.x - s * x.y, s * x.x + c * x.y);
+    let mut dice = Dice::new(seed + 1);
+    let strain = [0.0; 3].map(|_: f64| dice.between(-size, size));
+    let stretched = |x: Vector| Vector::new(strain[0] * x.x + strain[2] * x.y, strain[2] * x.x + strain[1] * x.y);
+    let [a, b, t] = hooke(young, poisson, strain);
+    let both = 2.0 * s * c * t;
+    let turned = [c * c * a + s * s * b - both, s * s * a + c * c * b + both, s * c * (a - b) + (c * c - s * s) * t];
+    let found = [
+        worst(&simulation, &moved(&simulation, |_| Vector::new(0.4 * shift, -shift)), [0.0; 3]),
+        worst(&simulation, &moved(&simulation, |x| turn(x) - x), [0.0; 3]),
+        worst(&simulation, &moved(&simulation, stretched), [a, b, t]),
+        worst(&simulation, &moved(&simulation, |x| turn(x + stretched(x)) - x), turned),
+    ];
+    Ok((found.map(|e| e / young), simulation))
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let seed = setup.get("seed") as u64;
+    let count = if setup.quick { 2 } else { 12 };
+    let mut series: [Vec<[f64; 2]>; 4] = Default::default();
+    let (mut most, mut elements, mut cut) = ([0.0f64; 4], 0, 0);
+    for k in 0..count {
+        let (found, simulation) = errors(setup, seed + k)?;
+        let covers = &simulation.slope().covers;
+        let full = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
+        elements += covers.element_count();
+        cut += covers.element_area.iter().filter(|area| **area < 0.999 * full).count();
+        for (n, error) in found.into_iter().enumerate() {
+            most[n] = most[n].max(error);
+            series[n].push([(seed + k) as f64, error]);
+        }
+    }
+    let scale = setup.get("shift").abs().max(12.0) / 12.0 * (1.0 / setup.get("mesh")).max(1.0);
+    let names = ["rigid translation", "rigid rotation", "uniform strain", "uniform strain, then rotation"];
+    let row = |n: usize| {
+        Row::new(format!("{}: largest stress error over E", names[n]), "", most[n], 0.0).within(
+            Tolerance::AtMost(1e-12 * scale),
+            "claim A1: 1e-12·E; rounding of displacements U is εU and of strain εU/h, which grows with U over 12 m and \
+             1 m over h",
+        )
+    };
+    let mut rows: Vec<Row> = (0..4).map(row).collect();
+    rows.push(Row::new("elements", "", elements as f64, elements as f64));
+    rows.push(Row::new("of which cut", "", cut as f64, cut as f64));
+    let line = |n: usize| Series { name: names[n].into(), points: series[n].clone(), marks: true };
+    let plot = Plot {
+        title: "Largest stress error of random patches".into(),
+        axes: ["seed".into(), "error over E".into()],
+        series: (0..4).map(line).collect(),
+        ..Plot::default()
+    };
+    Ok(Outcome { rows, plots: vec![plot] })
+}

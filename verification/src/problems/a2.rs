@@ -1,0 +1,102 @@
+//! A2: free fall.
+
+use enmm::geometry::Vector;
+use enmm::step::{StepReport, block_motion};
+
+use super::dice::Dice;
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "A2",
+    title: "Free fall",
+    source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and gravity \
+             that strains",
+    parameters: &[
+        Parameter { name: "g", unit: "m/s²", default: 9.81, range: [0.01, 100.0], doc: "gravity" },
+        Parameter { name: "direction_deg", unit: "°", default: -90.0, range: [-360.0, 360.0], doc: "its direction" },
+        Parameter { name: "t", unit: "s", default: 2.0, range: [0.05, 5.0], doc: "time of the fall" },
+        Parameter { name: "mesh", unit: "m", default: 0.7, range: [0.3, 2.0], doc: "mesh size beside blocks of 1 to 5 m" },
+        Parameter { name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh" },
+        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the shapes" },
+        Parameter { name: "young", unit: "Pa", default: 2e9, range: [1e6, 1e11], doc: "Young's modulus" },
+    ],
+    quick: true,
+    implicit: true,
+    run,
+};
+
+/// A rock with a dead-end joint, and two islands of random shape and a sliver well apart.
+fn case(setup: &Setup) -> String {
+    let mut dice = Dice::new(setup.get("seed") as u64);
+    let mut ring = |x: f64, y: f64, size: f64| {
+        let count = 3 + dice.between(0.0, 4.99) as usize;
+        let corner = |k: usize| {
+            let angle = std::f64::consts::TAU * (k as f64 + dice.between(0.0, 0.7)) / count as f64;
+            let radius = size * dice.between(0.5, 1.0);
+            format!("[{:?}, {:?}]", x + radius * angle.cos(), y + radius * angle.sin())
+        };
+        format!("[{}]", (0..count).map(corner).collect::<Vec<_>>().join(", "))
+    };
+    let islands = [ring(8.0, 1.5, 2.0), ring(7.0, 7.0, 0.6), "[[0.0, 6.0], [5.0, 6.05], [5.0, 6.11], [0.0, 6.06]]".into()];
+    let (s, c) = setup.get("direction_deg").to_radians().sin_cos();
+    let g = setup.get("g");
+    format!(
+        "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n[mesh]\n\
+         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], [3.0, 3.0]]\n\
+         [gravity]\nx = {:e}\ny = {:e}\n[rock.rock]\ndensity = 2400.0\nyoung = {:e}\npoisson = 0.25\n[[stage]]\n\
+         name = \"fall\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = 0.1\n",
+        islands.join(", "),
+        setup.get("mesh"),
+        setup.get("mesh_angle_deg"),
+        g * c,
+        g * s,
+        setup.get("young"),
+    )
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let text = case(setup);
+    let mut simulation = setup.simulation("a2", text)?;
+    let wanted = if setup.quick { setup.get("t").min(0.5) } else { setup.get("t") };
+    let steps = simulation.steps_in(wanted).max(2);
+    let g = setup.get("g");
+    let (mut points, mut report) = (Vec::new(), StepReport::default());
+    for step in 1..=steps {
+        report = simulation.advance(step == steps)?;
+        if step.is_multiple_of((steps / 12).max(1)) {
+            points.push([simulation.time(), simulation.state().displacement[0].norm()]);
+        }
+    }
+    let t = simulation.time();
+    let (s, c) = setup.get("direction_deg").to_radians().sin_cos();
+    let fall = Vector::new(c, s) * (0.5 * g * t * t);
+    let (slope, state) = (simulation.slope(), simulation.state());
+    let off = state.displacement.iter().map(|u| (u - fall).norm()).fold(0.0, f64::max);
+    let stress = (0..slope.covers.element_count()).flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
+    let spin = |b: usize| block_motion(slope, state, &simulation.scratch().metric, b).2.abs();
+    let spin = (0..slope.covers.block_count()).map(spin).fold(0.0, f64::max);
+    let rows = vec![
+        Row::new("fall of the first cover", "m", state.displacement[0].norm(), fall.norm())
+            .within(Tolerance::Relative(1e-10), "exact under constant acceleration; rounding of each step adds up"),
+        Row::new("largest deviation of any cover over the fall", "", off / fall.norm(), 0.0)
+            .within(Tolerance::AtMost(1e-10), "the same"),
+        Row::new("largest stress over E", "", stress / setup.get("young"), 0.0).within(
+            Tolerance::AtMost(1e-12 * fall.norm().max(1.0) / setup.get("mesh").min(1.0)),
+            "rounding of a fall U is εU, of the strain εU/h",
+        ),
+        Row::new("largest spin of a block over its speed", "1/m", spin / (g * t), 0.0)
+            .within(Tolerance::AtMost(1e-11), "rounding of velocities over the size of a block"),
+        Row::ledger(&report),
+    ];
+    let exact = (0..=60).map(|k| t * f64::from(k) / 60.0).map(|t| [t, 0.5 * g * t * t]).collect();
+    let plot = Plot {
+        title: "Fall of a cover".into(),
+        axes: ["time [s]".into(), "fall [m]".into()],
+        series: vec![
+            Series { name: "exact".into(), points: exact, marks: false },
+            Series { name: "computed".into(), points, marks: true },
+        ],
+        ..Plot::default()
+    };
+    Ok(Outcome { rows, plots: vec![plot] })
+}

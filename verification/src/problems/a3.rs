@@ -1,0 +1,150 @@
+//! A3: free spin.
+
+use enmm::geometry::{Point, Vector};
+use enmm::model::Simulation;
+use enmm::step::block_motion;
+
+use super::dice::Dice;
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "A3",
+    title: "Free spin",
+    source: "a block that is pushed by a moment spins with the inertia of its true polygon, and keeps angular momentum, \
+             kinetic energy and area; catches wrong inertia of cut covers and stress rates that are not objective",
+    parameters: &[
+        Parameter { name: "w0", unit: "rad/s", default: 0.8, range: [0.05, 20.0], doc: "angular velocity" },
+        Parameter { name: "turns", unit: "", default: 10.0, range: [0.25, 20.0], doc: "turns" },
+        Parameter { name: "corners", unit: "", default: 5.0, range: [3.0, 12.0], doc: "corners of the block" },
+        Parameter { name: "size", unit: "m", default: 1.2, range: [0.1, 20.0], doc: "radius of the block" },
+        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of its shape" },
+        Parameter { name: "mesh", unit: "", default: 0.4, range: [0.1, 3.0], doc: "mesh size over radius" },
+        Parameter { name: "young", unit: "Pa", default: 2e10, range: [1e8, 1e12], doc: "Young's modulus" },
+        Parameter { name: "density", unit: "kg/m³", default: 2500.0, range: [100.0, 1e4], doc: "density" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+/// Length of the push (s).
+const PUSH: f64 = 2e-3;
+
+/// Area, centroid and polar moment of area about it of a polygon, by Green's theorem.
+fn moments(points: &[[f64; 2]]) -> (f64, Point, f64) {
+    let (mut area, mut first, mut polar) = (0.0, Vector::zeros(), 0.0);
+    let origin = Point::from(points[0]);
+    for k in 0..points.len() {
+        let [p, q] = [points[k], points[(k + 1) % points.len()]].map(|p| Point::from(p) - origin);
+        let cross = p.perp(&q);
+        area += cross / 2.0;
+        first += (p + q) * (cross / 6.0);
+        polar += cross * (p.dot(&p) + p.dot(&q) + q.dot(&q)) / 12.0;
+    }
+    (area, origin + first / area, polar - first.norm_squared() / area)
+}
+
+/// A star-shaped polygon about the origin.
+fn shape(setup: &Setup) -> Vec<[f64; 2]> {
+    let mut dice = Dice::new(setup.get("seed") as u64);
+    let (count, size) = (setup.get("corners") as usize, setup.get("size"));
+    let corner = |k: usize| {
+        let angle = std::f64::consts::TAU * (k as f64 + dice.between(-0.25, 0.25)) / count as f64;
+        let radius = size * dice.between(0.6, 1.0);
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    (0..count).map(corner).collect()
+}
+
+/// Area (m²) of the boundary loop now, and the way from its first point to the one opposite.
+fn now(simulation: &Simulation) -> (f64, Vector) {
+    let (places, boundary) = (simulation.places(), &simulation.slope().boundary);
+    let corner = |k: usize| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
+    ((0..places.len()).map(corner).sum(), places[places.len() / 2] - places[0])
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let (outline, w0, density) = (shape(setup), setup.get("w0"), setup.get("density"));
+    let (area, centre, polar) = moments(&outline);
+    let text = format!(
+        "title = \"Spin\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\nangle_deg = 11.0\norigin = [0.1, 0.2]\n\
+         [gravity]\ny = 0.0\n[rock.rock]\ndensity = {density:e}\nyoung = {:e}\npoisson = 0.25\n[[load]]\nkind = \"block\"\n\
+         point = [{:?}, {:?}]\nmoment = {:e}\ntable = [[0.0, 0.0], [{half:e}, 1.0], [{PUSH:e}, 0.0]]\n[solver]\n\
+         communication_step = {half:e}\n[[stage]]\nname = \"spin\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.1\n",
+        setup.get("mesh") * setup.get("size"),
+        setup.get("young"),
+        centre.x,
+        centre.y,
+        w0 * density * polar / (0.5 * PUSH),
+        half = 0.5 * PUSH,
+    );
+    let mut simulation = setup.simulation("a3", text)?;
+    let settle = simulation.steps_in(0.1f64.max(2.0 * PUSH));
+    for _ in 0..settle {
+        simulation.advance(false)?;
+    }
+    let turns = if setup.quick { setup.get("turns").min(0.5) } else { setup.get("turns") };
+    let steps = simulation.steps_in(turns * std::f64::consts::TAU / w0);
+    let every = (steps / 400).max(1);
+    let motion = |s: &Simulation| block_motion(s.slope(), s.state(), &s.scratch().metric, 0);
+    let (momentum, (_, _, spin, kinetic)) = (simulation.momentum().1, motion(&simulation));
+    let (mut angle, mut arm, mut curve) = (0.0, now(&simulation).1, Vec::new());
+    for k in 1..=steps {
+        simulation.advance(false)?;
+        if k.is_multiple_of(every) || k == steps {
+            let next = now(&simulation).1;
+            angle += arm.perp(&next).atan2(arm.dot(&next));
+            arm = next;
+            let turned = angle / std::f64::consts::TAU;
+            curve.push([turned, simulation.momentum().1 / momentum - 1.0, motion(&simulation).3 / kinetic - 1.0]);
+        }
+    }
+    let time = steps as f64 * simulation.slope().dt;
+    let drift = [simulation.momentum().1 / momentum, motion(&simulation).3 / kinetic, now(&simulation).0 / area];
+    let ledger = Row::ledger(&simulation.advance(true)?);
+    let strain = density * (w0 * setup.get("size")).powi(2) / setup.get("young");
+    let most = 1e-6 + 3.0 * strain;
+    let reason = "claim A3: 1e-6, and three times ρω²R²/E for the strain by centrifugal force, which is no rigid motion";
+    let exact = density * polar * w0;
+    let mut rows = vec![
+        Row::new("angular momentum after the push", "kg·m²/s", momentum, exact).within(Tolerance::Relative(most), reason),
+        Row::new("spin after the push, L/J of the true polygon", "rad/s", spin, w0).within(Tolerance::Relative(most), reason),
+        Row::new("period", "s", std::f64::consts::TAU * time / angle, std::f64::consts::TAU / w0)
+            .within(Tolerance::Relative(most), reason),
+        Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * exact * w0).within(Tolerance::Relative(2.0 * most), reason),
+    ];
+    for (name, value) in ["angular momentum", "kinetic energy", "area"].into_iter().zip(drift) {
+        let row = Row::new(format!("{name} after {turns} turns over that before"), "", value, 1.0);
+        rows.push(row.within(Tolerance::Relative(most), reason));
+    }
+    rows.push(ledger);
+    Ok(Outcome { rows, plots: vec![plot(&curve, turns)] })
+}
+
+fn plot(curve: &[[f64; 3]], turns: f64) -> Plot {
+    let line = |k: usize, name: &str| Series {
+        name: name.into(),
+        points: curve.iter().map(|p| [p[0], p[k]]).collect(),
+        marks: false,
+    };
+    let exact = Series { name: "exact".into(), points: vec![[0.0, 0.0], [turns, 0.0]], marks: false };
+    Plot {
+        title: "Drift of a free spin".into(),
+        axes: ["turns".into(), "change relative to the start".into()],
+        series: vec![exact, line(1, "angular momentum"), line(2, "kinetic energy")],
+        ..Plot::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rectangle b × h has the polar moment bh(b² + h²)/12 about its centre.
+    #[test]
+    fn moments_of_a_rectangle() {
+        let (area, centre, polar) = moments(&[[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]]);
+        assert!((area - 6.0).abs() < 1e-12 && (centre - Point::new(2.5, 2.0)).norm() < 1e-12);
+        assert!((polar - 6.0 * 13.0 / 12.0).abs() < 1e-12, "{polar}");
+    }
+}

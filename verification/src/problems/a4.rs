@@ -1,0 +1,106 @@
+//! A4: momentum and energy of colliding blocks.
+
+use enmm::model::Simulation;
+use enmm::step::StepReport;
+
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "A4",
+    title: "Momentum and energy of a set of contacts",
+    source: "contacts push in opposite pairs at one point, so that linear and angular momentum keep to round-off, and \
+             every joule is accounted for; catches wrong action and reaction, and energy from nowhere",
+    parameters: &[
+        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
+        Parameter { name: "spacing", unit: "m", default: 0.8, range: [0.4, 2.0], doc: "spacing of the joints" },
+        Parameter { name: "friction_deg", unit: "°", default: 30.0, range: [0.0, 70.0], doc: "friction of the joints" },
+        Parameter { name: "damping", unit: "", default: 0.1, range: [0.1, 1.0], doc: "damping ratio of the blocks" },
+        Parameter { name: "speed", unit: "m/s", default: 3.0, range: [0.1, 5.0], doc: "speed of the projectiles" },
+        Parameter { name: "spin", unit: "rad/s", default: 1.0, range: [-5.0, 5.0], doc: "spin of the first" },
+        Parameter { name: "mesh", unit: "m", default: 0.7, range: [0.25, 1.5], doc: "mesh size" },
+        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
+        Parameter { name: "steps", unit: "", default: 3000.0, range: [200.0, 20000.0], doc: "steps" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+/// Rock cut by two sets of joints, and two islands that fly into it, spinning; no gravity.
+fn case(setup: &Setup) -> String {
+    let get = |name| setup.get(name);
+    let seed = get("seed") as u64;
+    format!(
+        "title = \"Collision\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]\n\
+         islands = [[[-2.0, 0.4], [-0.2, 1.1], [-1.6, 2.3]], [[4.3, 1.2], [5.4, 0.8], [5.9, 2.2], [4.6, 2.4]]]\n[mesh]\n\
+         size = {:?}\nangle_deg = 13.0\n[[joint_set]]\ndip_deg = 10.0\nspacing = {:?}\nseed = {seed}\n[[joint_set]]\n\
+         dip_deg = 85.0\ndip_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n[gravity]\n\
+         y = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n[[initial_velocity]]\nblock = [-1.2, 1.2]\n\
+         velocity = [{:?}, 0.5]\nangular_velocity = {:?}\n[[initial_velocity]]\nblock = [5.0, 1.6]\nvelocity = [{:?}, 0.3]\n\
+         angular_velocity = -2.0\n[[stage]]\nname = \"collide\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = {:?}\n",
+        get("mesh"),
+        get("spacing"),
+        1.25 * get("spacing"),
+        get("friction_deg"),
+        get("young"),
+        get("speed"),
+        get("spin"),
+        -0.7 * get("speed"),
+        get("damping"),
+    )
+}
+
+/// Largest change of linear and angular momentum over M|v| and M|v|·5 m, and the report with the worst ledger.
+fn collide(simulation: &mut Simulation, steps: u64, curve: &mut Curve) -> Result<([f64; 2], StepReport), Trouble> {
+    let (linear, angular) = simulation.momentum();
+    let mass: f64 = simulation.slope().metric.total.iter().sum();
+    let scale = mass * 0.5;
+    let (mut worst, mut report) = ([0.0f64; 2], StepReport::default());
+    let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
+    for k in 0..steps {
+        let now = simulation.advance(k % 20 == 19)?;
+        let (p, l) = simulation.momentum();
+        worst[0] = worst[0].max((p - linear).norm() / scale);
+        worst[1] = worst[1].max((l - angular).abs() / (5.0 * scale));
+        if now.dt > 0.0 {
+            let ledger = &now.ledger;
+            curve.push([now.time, ledger.kinetic, ledger.strain + ledger.stored, ledger.friction, ledger.residual()]);
+            if share(&now) >= share(&report) {
+                report = now;
+            }
+        }
+    }
+    Ok((worst, report))
+}
+
+/// Time (s), kinetic energy, energy of springs and rock, friction, residual (J/m).
+type Curve = Vec<[f64; 5]>;
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let text = case(setup);
+    let mut simulation = setup.simulation("a4", text)?;
+    let steps = if setup.quick { setup.get("steps").min(1000.0) } else { setup.get("steps") };
+    let mut curve = Curve::new();
+    let (worst, report) = collide(&mut simulation, steps as u64, &mut curve)?;
+    let reason = "impulses come in opposite pairs at one point: rounding alone, some √(3e5)·2e-16 over the run; 1e-11";
+    let within = |row: Row| row.within(Tolerance::AtMost(1e-11), reason);
+    let judged = simulation.state().counters.judged as f64;
+    let rows = vec![
+        within(Row::new("largest change of linear momentum over M·0.5 m/s", "", worst[0], 0.0)),
+        within(Row::new("largest change of angular momentum over M·0.5 m/s·5 m", "", worst[1], 0.0)),
+        Row::new("contacts judged", "", judged, judged),
+        Row::ledger(&report),
+    ];
+    let line = |k: usize, name: &str| Series {
+        name: name.into(),
+        points: curve.iter().map(|p| [p[0], p[k]]).collect(),
+        marks: false,
+    };
+    let plot = Plot {
+        title: "Energies of a collision".into(),
+        axes: ["time [s]".into(), "energy [J/m]".into()],
+        series: vec![line(1, "kinetic"), line(2, "stored"), line(3, "friction"), line(4, "residual (exact: 0)")],
+        ..Plot::default()
+    };
+    Ok(Outcome { rows, plots: vec![plot] })
+}
