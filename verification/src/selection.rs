@@ -96,7 +96,10 @@ fn named(all: &'static [Problem], names: &[String]) -> Result<Vec<&'static Probl
 fn implicit(problems: Vec<&'static Problem>, names: &[String]) -> Result<Vec<&'static Problem>, Trouble> {
     let named = |p: &Problem| names.iter().any(|name| name.eq_ignore_ascii_case(p.id));
     if let Some(not) = problems.iter().find(|p| !p.implicit && named(p)) {
-        return Err(Trouble(format!("{}: not solved with the implicit integrator; see --list for those that are", not.id)));
+        return Err(Trouble(format!(
+            "{}: not solved with the implicit integrator; see --list for those that are",
+            not.id
+        )));
     }
     Ok(problems.into_iter().filter(|p| p.implicit).collect())
 }
@@ -105,8 +108,10 @@ fn implicit(problems: Vec<&'static Problem>, names: &[String]) -> Result<Vec<&'s
 fn parse<'a>(all: &[Problem], text: &'a str) -> Result<Change<'a>, Trouble> {
     let (name, value) =
         text.split_once('=').ok_or_else(|| Trouble(format!("--set {text}: must be NAME=VALUE or ID.NAME=VALUE")))?;
-    let value: f64 =
-        value.trim().parse().map_err(|_| Trouble(format!("--set {text}: {value:?} is no number: write such as 0.5")))?;
+    let value: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| Trouble(format!("--set {text}: {value:?} is no number: write such as 0.5")))?;
     let (id, name) = match name.trim().split_once('.') {
         Some((id, name)) => (Some(id), name),
         None => (None, name.trim()),
