@@ -176,7 +176,7 @@ struct Fate {
 fn fate(setup: &mut Setup, arch: &Arch, name: &str) -> Result<Fate, Trouble> {
     let radius = setup.get("R");
     let unit = (radius / G).sqrt();
-    let time = unit * setup.get("time") * if setup.quick { 0.5 } else { 1.0 };
+    let time = unit * setup.get("time") * if setup.quick { 0.4 } else { 1.0 };
     let mut simulation = setup.simulation(name, case(setup, arch, 2.0 * time))?;
     let mut path = vec![[0.0; 2]];
     let sinks = |s: &Simulation| s.monitor(0).0.dot(&Vector::new(0.0, -1.0));
@@ -200,8 +200,9 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (mut rows, mut found) = (Vec::new(), Vec::new());
     for n in numbers {
         let exact = Arch::limit(n);
+        let bracket = if setup.quick { [0.06, 0.18] } else { [0.03, 0.3] };
         let width = exact * if setup.quick { 1e-2 } else { 4e-3 };
-        let limit = bisect([0.03, 0.3], width, |t| Ok(fate(setup, &Arch { n, t }, &format!("n{n}_t{t:.5}"))?.falls))?;
+        let limit = bisect(bracket, width, |t| Ok(fate(setup, &Arch { n, t }, &format!("n{n}_t{t:.5}"))?.falls))?;
         found.push([n as f64, limit]);
         let row = Row::new(format!("least t/R of {n} voussoirs"), "", limit, exact);
         rows.push(row.within(Tolerance::Relative(1e-2), "half the width of the bisection, 2e-3 (quick form 5e-3), and the springs of the joints: each gives way by some ρ·g·R·h/E, which over n joints and the lever R/t moves the line of thrust by 5e-3 of t"));

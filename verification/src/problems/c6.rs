@@ -44,7 +44,7 @@ pub const PROBLEM: Problem = Problem {
             name: "stiffness",
             unit: "",
             default: 1e7,
-            range: [1e6, 1e9],
+            range: [3e6, 1e9],
             doc: "Young's modulus over ρ·g·h; the formulas are those of rigid blocks",
         },
         Parameter {
