@@ -1,10 +1,12 @@
-//! `enmm`: runs, checks and packs case files. Exit status: 0 done, 2 bad input, 3 numerical failure, 130 interrupted.
+//! `enmm`: runs, checks and packs case files. Exit status: 0 done, 1 a verification problem that
+//! does not pass, 2 bad input, 3 numerical failure, 130 interrupted.
 
 mod bench;
 mod check;
 mod fmu;
 mod progress;
 mod run;
+mod verify;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -40,6 +42,8 @@ enum Command {
     },
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
+    /// Solves problems with known answers and prints computed beside exact values.
+    Verify(verify::Arguments),
     /// Times standard models: element updates and contacts per second, share of each part of the step.
     Bench {
         /// Print one JSON object.
@@ -55,6 +59,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
+        Command::Verify(arguments) => verify::verify(&arguments),
         Command::Bench { json } => bench::run(json),
         Command::Schema => schema(),
     }

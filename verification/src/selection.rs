@@ -38,18 +38,20 @@ impl Change<'_> {
 /// Chooses problems of `all` and sets their parameters, in the order of `all`.
 ///
 /// A full ID means that problem alone, anything shorter all whose IDs begin with it. Without `only`, values choose the
-/// problems that know all of them. With `only`, every chosen problem must know a value that names no ID, so that no
+/// problems that know all of them, and those of an ID that problem. With `only`, every chosen problem must know a value that names no ID, so that no
 /// value is dropped in silence.
 ///
 /// # Errors
 /// An unknown ID with the nearest one, an unknown parameter with those there are, a value out of range, an integrator
 /// that a problem named by its ID is not solved with.
 pub fn choose(all: &'static [Problem], request: &Request) -> Result<Vec<Job>, Trouble> {
-    let changes = request.set.iter().map(|text| parse(all, text)).collect::<Result<Vec<_>, _>>()?;
     let mut problems = named(all, &request.only)?;
+    let changes = request.set.iter().map(|text| parse(all, &problems, text)).collect::<Result<Vec<_>, _>>()?;
     if request.only.is_empty() {
         problems.retain(|p| !request.quick || p.quick);
-        problems.retain(|p| changes.iter().all(|change| change.fits(p)));
+        let (of_one, of_all): (Vec<&Change>, Vec<&Change>) = changes.iter().partition(|change| change.id.is_some());
+        problems.retain(|p| of_all.iter().all(|change| change.fits(p)));
+        problems.retain(|p| of_one.is_empty() || of_one.iter().any(|change| change.concerns(p)));
     }
     let integrator = request.integrator.unwrap_or(Integrator::Explicit);
     if integrator == Integrator::Implicit {
@@ -96,41 +98,39 @@ fn named(all: &'static [Problem], names: &[String]) -> Result<Vec<&'static Probl
 fn implicit(problems: Vec<&'static Problem>, names: &[String]) -> Result<Vec<&'static Problem>, Trouble> {
     let named = |p: &Problem| names.iter().any(|name| name.eq_ignore_ascii_case(p.id));
     if let Some(not) = problems.iter().find(|p| !p.implicit && named(p)) {
-        return Err(Trouble(format!("{}: not solved with the implicit integrator; see --list for those that are", not.id)));
+        return Err(Trouble(format!(
+            "{}: not solved with the implicit integrator; see --list for those that are",
+            not.id
+        )));
     }
     Ok(problems.into_iter().filter(|p| p.implicit).collect())
 }
 
-/// Reads `NAME=VALUE` or `ID.NAME=VALUE`; some problem must know the name.
-fn parse<'a>(all: &[Problem], text: &'a str) -> Result<Change<'a>, Trouble> {
-    let (name, value) =
-        text.split_once('=').ok_or_else(|| Trouble(format!("--set {text}: must be NAME=VALUE or ID.NAME=VALUE")))?;
-    let value: f64 =
-        value.trim().parse().map_err(|_| Trouble(format!("--set {text}: {value:?} is no number: write such as 0.5")))?;
-    let (id, name) = match name.trim().split_once('.') {
+/// Reads `NAME=VALUE` or `ID.NAME=VALUE`; one of the chosen problems, or the one of the ID, must know the name.
+fn parse<'a>(all: &'static [Problem], chosen: &[&'static Problem], text: &'a str) -> Result<Change<'a>, Trouble> {
+    let trouble = |message: String| Trouble(format!("--set {text}: {message}"));
+    let parts = text.split_once('=').ok_or_else(|| trouble("must be NAME=VALUE or ID.NAME=VALUE".to_owned()))?;
+    let number = parts.1.trim();
+    let value: f64 = number.parse().map_err(|_| trouble(format!("{number:?} is no number: write such as 0.5")))?;
+    let (id, name) = match parts.0.trim().split_once('.') {
         Some((id, name)) => (Some(id), name),
-        None => (None, name.trim()),
+        None => (None, parts.0.trim()),
     };
     let change = Change { id, name, value };
-    if let Some(id) = id {
-        named_once(all, id)?;
+    let of_id: Vec<&Problem> = all.iter().filter(|p| id.is_some() && change.concerns(p)).collect();
+    if let Some(id) = id.filter(|_| of_id.is_empty()) {
+        let near = nearest(id, all.iter().map(|p| p.id)).unwrap_or_default();
+        return Err(trouble(format!("no problem {id:?}: the nearest is {near}, --list shows all")));
     }
-    if !all.iter().any(|p| change.fits(p)) {
-        let mut known: Vec<&str> = Vec::new();
-        for parameter in all.iter().filter(|p| change.concerns(p)).flat_map(|p| p.parameters) {
-            if !known.contains(&parameter.name) {
-                known.push(parameter.name);
-            }
+    let asked = if id.is_some() { &of_id } else { chosen };
+    if asked.iter().any(|p| change.fits(p)) {
+        return Ok(change);
+    }
+    let mut known: Vec<&str> = Vec::new();
+    for parameter in asked.iter().flat_map(|p| p.parameters) {
+        if !known.contains(&parameter.name) {
+            known.push(parameter.name);
         }
-        return Err(Trouble(format!("--set {text}: no parameter {name:?}; there are {}", list(known))));
     }
-    Ok(change)
-}
-
-fn named_once(all: &[Problem], id: &str) -> Result<(), Trouble> {
-    if all.iter().any(|p| p.id.eq_ignore_ascii_case(id)) {
-        return Ok(());
-    }
-    let near = nearest(id, all.iter().map(|p| p.id)).unwrap_or_default();
-    Err(Trouble(format!("--set {id}: no problem {id:?}: the nearest is {near}, --list shows all")))
+    Err(trouble(format!("no parameter {name:?}; there are {}", list(known))))
 }

@@ -86,7 +86,8 @@ pub fn table(problem: &ProblemRecord) -> String {
     if rows.len() > 1 {
         lines.extend(columns(&rows).into_iter().map(|line| format!("    {line}")));
     }
-    let reasons = problem.missed().map(|row| format!("    MISSED {}: the tolerance is for: {}", row.quantity, row.reason));
+    let reasons =
+        problem.missed().map(|row| format!("    MISSED {}: the tolerance is for: {}", row.quantity, row.reason));
     lines.extend(reasons);
     let wall = problem.wall.map_or_else(String::new, |wall| format!(", {wall:.1} s"));
     lines.push(match &problem.trouble {

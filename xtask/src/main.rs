@@ -16,6 +16,9 @@ usage: cargo xtask TASK
                    --quick leaves out the last three
   python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
+  verify           solves the full set of verification problems and writes docs/verification.md
+                   with its plots; fails when a value is missed that the report did not state
+  compare          runs the comparison of the explicit with the implicit integrator
   schema           writes docs/case.schema.json
   header           writes include/enmm.h
   install --prefix DIR
@@ -30,6 +33,8 @@ fn main() -> ExitCode {
         ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
         ["python"] => Ok(tasks::python(&house)),
         ["long"] => Ok(tasks::long(&house)),
+        ["verify"] => tasks::verification(&house, "report").map(|()| ExitCode::SUCCESS),
+        ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),

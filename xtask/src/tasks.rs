@@ -65,6 +65,14 @@ pub fn long(house: &House) -> ExitCode {
     steps.close()
 }
 
+/// Runs a program of the verification crate: `report` writes the manual, `compare` sets the integrators side by side.
+///
+/// # Errors
+/// When it does not build, or ends with another status than 0.
+pub fn verification(house: &House, program: &str) -> Result<(), String> {
+    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program]))
+}
+
 /// Writes the schema of the case file as the command line tells it.
 ///
 /// # Errors

@@ -36,7 +36,8 @@ fn write(directory: &Path) -> Result<Vec<String>, Trouble> {
     let paths = report::write(&record, &solved, directory)?;
     report::remove_stale_plots(&record, directory)?;
     say(&format!("wrote {} files into {}", paths.len(), directory.display()));
-    let quick: Vec<String> = report::new_misses(&quick, &record).into_iter().map(|m| format!("quick form: {m}")).collect();
+    let quick: Vec<String> =
+        report::new_misses(&quick, &record).into_iter().map(|m| format!("quick form: {m}")).collect();
     Ok(report::new_misses(&record, &before).into_iter().chain(quick).collect())
 }
 

@@ -9,13 +9,18 @@ mod b5;
 mod b6;
 mod b7;
 mod b8;
+mod block;
 mod c1;
+mod c11;
 mod c4;
 mod c5;
+mod c6;
+mod c7;
 mod continuum;
 mod d1;
 mod d2;
 mod d4;
+mod d5;
 mod dice;
 mod newmark;
 mod slider;
@@ -37,7 +42,11 @@ pub const ALL: &[Problem] = &[
     c1::PROBLEM,
     c4::PROBLEM,
     c5::PROBLEM,
+    c6::PROBLEM,
+    c7::PROBLEM,
+    c11::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,
     d4::PROBLEM,
+    d5::PROBLEM,
 ];
