@@ -14,7 +14,7 @@ mod vertex_edge;
 pub use bolt::BoltState;
 pub use boundary::{Boundary, BoundaryOptions, Corner};
 pub use entrance::{Narrow, entrance_edges};
-pub use law::{JointLaw, Limits};
+pub use law::{Closure, JointLaw, Limits, RoughLimit, Roughness};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use support::{Support, SupportRow};

@@ -145,7 +145,12 @@ impl OpenClose<'_> {
         let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
         let [a, b] = [0, 1].map(|k| contact.stiffness[k] * self.options.theta * dt);
         let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
-        let normal = (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
+        let normal = if contact.closure_max.is_infinite() {
+            (-contact.stiffness[0] * contact.gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa)
+        } else {
+            let reach = self.options.theta * dt;
+            contact.closure().solve(-contact.gap - reach * (normal_velocity - wa * old_normal), reach * wa)
+        };
         let shear = (contact.history.shear_stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];

@@ -7,7 +7,7 @@ mod rock;
 
 use std::collections::BTreeMap;
 
-use crate::contact::{Boundary, BoundaryOptions, JointLaw, Support};
+use crate::contact::{Boundary, BoundaryOptions, JointLaw, Roughness, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
@@ -147,6 +147,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
         residual_tension: law.residual_tension,
         dilation: tangent(law.dilation_deg),
         dilation_slip: law.dilation_slip.unwrap_or(f64::INFINITY),
+        closure_max: law.closure_max.unwrap_or(f64::INFINITY),
+        roughness: (law.kind == case::JointLawKind::BartonBandis).then(|| Roughness {
+            angle: law.friction_deg.to_radians(),
+            jrc: law.jrc.unwrap_or_default(),
+            jcs: law.jcs.unwrap_or_default(),
+        }),
     }
 }
 

@@ -267,6 +267,9 @@ impl Simulation {
             if let Some(degrees) = change.friction_deg {
                 law.friction = degrees.to_radians().tan();
                 law.residual_friction = law.friction;
+                if let Some(roughness) = &mut law.roughness {
+                    roughness.angle = degrees.to_radians();
+                }
             }
             if let Some(cohesion) = change.cohesion {
                 (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);

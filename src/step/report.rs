@@ -1,6 +1,5 @@
 //! Energies, momenta and what a step reports.
 
-use crate::contact::ContactState;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, Deformation, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
@@ -59,15 +58,11 @@ pub(super) fn potential(slope: &Slope, state: &State) -> f64 {
 
 /// Energy (J/m) stored in the springs of contacts and supports.
 pub(super) fn stored(slope: &Slope, scratch: &Scratch) -> f64 {
-    let contact = |c: &crate::contact::VertexEdge| {
-        let normal = if c.gap < 0.0 || c.history.state != ContactState::Open { c.gap } else { 0.0 };
-        0.5 * (c.stiffness[0] * normal * normal + c.history.shear_stored.powi(2) / c.stiffness[1])
-    };
     let support = |row: &crate::contact::SupportRow| {
         let support = &slope.supports[row.support as usize];
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
-    scratch.contacts.iter().map(contact).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>()
+    scratch.contacts.iter().map(crate::contact::VertexEdge::stored_energy).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>()
 }
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.

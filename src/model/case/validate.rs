@@ -2,6 +2,7 @@
 //! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
 
 mod checks;
+mod joints;
 mod loads;
 mod ports;
 mod stages;
@@ -212,7 +213,8 @@ fn joint_law(key: &Key, law: &JointLaw) -> Check {
     optional(key, "residual_cohesion", law.residual_cohesion, Law::STRENGTH, "Pa", "leave it out for the peak")?;
     number(key, "residual_tension", law.residual_tension, Law::STRENGTH, "Pa", "0 for a broken joint")?;
     number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
-    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")
+    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")?;
+    joints::validate_kind(key, law)
 }
 
 fn gravity(key: &Key, gravity: &Gravity) -> Check {
