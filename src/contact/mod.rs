@@ -11,7 +11,7 @@ mod support;
 mod sweep;
 mod vertex_edge;
 
-pub use bolt::BoltState;
+pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner};
 pub use entrance::{Narrow, entrance_edges};
 pub use law::{Closure, JointLaw, Limits, RoughLimit, Roughness};

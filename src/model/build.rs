@@ -1,5 +1,6 @@
 //! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
 
+mod bolts;
 mod geometry;
 mod place;
 mod ports;
@@ -7,7 +8,7 @@ mod rock;
 
 use std::collections::BTreeMap;
 
-use crate::contact::{Boundary, BoundaryOptions, JointLaw, Roughness, Support};
+use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Roughness, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt};
@@ -52,6 +53,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let monitors = monitors(case, &places)?;
+    let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
     let slope = Slope {
@@ -66,6 +68,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         default_law: plane.default_law,
         fixities,
         supports,
+        bolts,
         loads,
         ports,
         water,
@@ -82,7 +85,8 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     };
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
     let state = initial_state(case, &slope, &places)?;
-    let warnings = warnings(&plane.arrangement.report);
+    let mut warnings = warnings(&plane.arrangement.report);
+    warnings.extend(bolt_warnings);
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 
@@ -299,7 +303,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(slope)),
-        bolts: Vec::new(),
+        bolts: vec![BoltState::default(); slope.bolts.len()],
         plastic: Vec::new(),
         columns: Vec::new(),
         acceleration: Vec::new(),

@@ -1,6 +1,6 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{Boundary, JointLaw, Support};
+use crate::contact::{BoltSegment, Boundary, JointLaw, Support};
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{Elasticity, Load, Metric, PreStress, StressField};
@@ -84,6 +84,8 @@ pub struct Slope {
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.
     pub supports: Vec<Support>,
+    /// Free lengths of all bolts.
+    pub bolts: Vec<BoltSegment>,
     /// Loads.
     pub loads: Vec<Load>,
     /// Ports.

@@ -14,7 +14,7 @@ pub use report::{StepReport, block_motion, energies, momentum};
 
 use std::time::Instant;
 
-use crate::contact::{self, Narrow, OpenClose, SearchView, SweepOptions, SweepReport, VertexEdge};
+use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
@@ -273,6 +273,16 @@ impl Step<'_> {
             row.approach = support.sample(&scratch.predicted);
             row.force = state.support_force[k];
         }
+        scratch.bolts.clear();
+        for (k, (segment, bolt)) in slope.bolts.iter().zip(&state.bolts).enumerate() {
+            if bolt.active && !bolt.broken {
+                let (displacement, predicted) = (&state.displacement, &scratch.predicted);
+                let (metric, motion) = (&scratch.metric, &scratch.motion);
+                let star = &slope.covers.star_position;
+                let view = BoltView { star, displacement, predicted, metric, motion };
+                scratch.bolts.push(segment.row(k as u32, bolt, &view));
+            }
+        }
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -287,7 +297,8 @@ impl Step<'_> {
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
         let iteration =
             OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
-        let swept = contact::open_close(iteration, &mut scratch.contacts, &slope.supports, &mut scratch.rows);
+        let (contacts, rows, bolts) = (&mut scratch.contacts, &mut scratch.rows, &mut scratch.bolts);
+        let swept = contact::open_close(iteration, contacts, &slope.supports, rows, bolts);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
     }

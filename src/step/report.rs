@@ -1,5 +1,6 @@
 //! Energies, momenta and what a step reports.
 
+use crate::contact::{BoltSegment, BoltState};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, Deformation, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
@@ -63,6 +64,15 @@ pub(super) fn stored(slope: &Slope, scratch: &Scratch) -> f64 {
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
     scratch.contacts.iter().map(crate::contact::VertexEdge::stored_energy).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>()
+}
+
+/// Energy (J/m) stored in bolts.
+pub(super) fn bolt_stored(slope: &Slope, state: &State) -> f64 {
+    let star = &slope.covers.star_position;
+    let of = |(segment, bolt): (&BoltSegment, &BoltState)| {
+        segment.energy(bolt, segment.span(star, &state.displacement).norm())
+    };
+    slope.bolts.iter().zip(&state.bolts).map(of).sum()
 }
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.

@@ -1,6 +1,7 @@
 //! Checks of everything that can be known from the case alone: signs, ranges, alternatives, references. What needs the
 //! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
 
+mod bolts;
 mod checks;
 mod joints;
 mod loads;
@@ -43,6 +44,7 @@ impl Case {
         gravity(&root.field("gravity"), &self.gravity)?;
         loads::validate_fixes(&root.field("fix"), &self.fixes)?;
         loads::validate_loads(&root.field("load"), &self.loads)?;
+        bolts::validate_bolts(&root.field("bolt"), &self.bolts)?;
         for (i, start) in self.initial_velocities.iter().enumerate() {
             initial_velocity(&root.field("initial_velocity").index(i), start)?;
         }
@@ -54,6 +56,7 @@ impl Case {
         }
         ports::validate_ports(&root.field("port"), &self.ports)?;
         stages::validate_stages(&root.field("stage"), self)?;
+        bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
         output(&root.field("output"), &self.output)?;
         solver(&root.field("solver"), &self.solver)
