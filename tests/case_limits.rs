@@ -49,9 +49,20 @@ fn numbers_of_schema(root: &Value, node: &Value, name: &str, found: &mut BTreeSe
     }
 }
 
-/// The valid case, and the same with the other of two keys that exclude each other.
+/// A law of the kind that the valid case does not have.
+const ROUGH: &str = r#"
+[joint_law.bandis]
+kind = "barton_bandis"
+friction_deg = 28.0
+normal_stiffness = 1e10
+jrc = 10.0
+jcs = 1e8
+closure_max = 1e-4
+"#;
+
+/// The valid case, and the same with the other of keys that exclude each other.
 fn cases_as_json() -> [Value; 2] {
-    let other = CASE.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1);
+    let other = CASE.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
     [CASE.to_owned(), other]
         .map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
 }

@@ -1,4 +1,35 @@
-//! Rock bolts: elastic–plastic bars between two material points, judged in the open–close iteration.
+//! Rock bolts: elastic–plastic bars between two material points, judged in the open–close iteration (Eqs. J9–J13).
+
+use crate::cover::Weights;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::Metric;
+
+use super::Pair;
+
+/// A free length of a bar between two material points; forces per metre of depth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoltSegment {
+    /// Bolt of the case that it belongs to.
+    pub bolt: u32,
+    /// Blocks of both points.
+    pub blocks: [u32; 2],
+    /// Covers of both points.
+    pub covers: [[u32; 3]; 2],
+    /// Weights of those covers at the points.
+    pub weights: [Weights; 2],
+    /// Reference places of both points (m).
+    pub points: [Point; 2],
+    /// Stiffness EA over free length and spacing (N/m per metre).
+    pub stiffness: f64,
+    /// Tension at which the bar yields (N/m); infinite for never.
+    pub yield_force: f64,
+    /// Elongation at which the bar breaks (m); infinite for never.
+    pub rupture: f64,
+    /// Tension when it is installed (N/m).
+    pub pretension: f64,
+    /// Whether it is there from the start.
+    pub active: bool,
+}
 
 /// What a bar segment remembers from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -9,6 +40,173 @@ pub struct BoltState {
     pub broken: bool,
     /// Length (m) at which it bears no force: grows when the bar yields.
     pub rest: f64,
+    /// The same when it was installed (m).
+    pub natural: f64,
     /// Tension at the end of the last step (N/m).
     pub force: f64,
+}
+
+/// A bar segment during one step.
+#[derive(Debug, Clone, Copy)]
+pub struct BoltRow {
+    /// Index of the segment.
+    pub segment: u32,
+    /// Its two points.
+    pub pair: Pair,
+    /// Unit vector from the second point to the first.
+    pub direction: Vector,
+    /// Length at the step's start (m).
+    pub length: f64,
+    /// Length at which it bears no force (m).
+    pub rest: f64,
+    /// Stiffness (N/m per metre).
+    pub stiffness: f64,
+    /// Tension at which the bar yields (N/m).
+    pub yield_force: f64,
+    /// Inverse effective mass along the direction (m/kg).
+    pub compliance: f64,
+    /// Predicted rate of the length (m/s).
+    pub approach: f64,
+    /// Tension (N/m).
+    pub force: f64,
+}
+
+impl BoltSegment {
+    /// From the second point to the first (m), for stars at `star` that are displaced by `displacement`.
+    pub fn span(&self, star: &[Point], displacement: &[Vector]) -> Vector {
+        let [a, b] = [0, 1].map(|k| self.place(k, star, displacement));
+        a - b
+    }
+
+    fn place(&self, k: usize, star: &[Point], displacement: &[Vector]) -> Point {
+        let place = |i: u32| star[i as usize] + displacement[i as usize];
+        self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| place(i) * w).sum()
+    }
+
+    /// The state of a segment that is installed at its present length (m): it bears its pretension (Eq. J9).
+    pub fn install(&self, length: f64) -> BoltState {
+        let rest = length - self.pretension / self.stiffness;
+        BoltState { active: true, broken: false, rest, natural: rest, force: self.pretension }
+    }
+
+    /// Energy (J/m) that the bar stores at a length (m).
+    pub fn energy(&self, state: &BoltState, length: f64) -> f64 {
+        let stretch = (length - state.rest).max(0.0);
+        if state.active && !state.broken { 0.5 * self.stiffness * stretch * stretch } else { 0.0 }
+    }
+
+    /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without forces.
+    pub fn row(&self, index: u32, state: &BoltState, slope: &BoltView) -> BoltRow {
+        let places = [0, 1].map(|k| self.place(k, slope.star, slope.displacement));
+        let span = places[0] - places[1];
+        let length = span.norm();
+        let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
+        let arms = [0, 1].map(|k| places[k] - slope.motion[self.blocks[k] as usize].centre);
+        let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
+        let [compliance] = pair.weigh(slope.metric, [direction]);
+        BoltRow {
+            segment: index,
+            approach: pair.difference(slope.predicted).dot(&direction),
+            pair,
+            direction,
+            length,
+            rest: state.rest,
+            stiffness: self.stiffness,
+            yield_force: self.yield_force,
+            compliance,
+            force: state.force,
+        }
+    }
+
+    /// The state after a step at whose end the bar is `length` (m) long: it yields and breaks by that (Eqs. J11, J12).
+    pub fn after(&self, state: &BoltState, length: f64, force: f64) -> BoltState {
+        let broken = length - state.natural > self.rupture;
+        let rest = state.rest.max(length - self.yield_force / self.stiffness);
+        BoltState { broken, rest, force: if broken { 0.0 } else { force }, ..*state }
+    }
+}
+
+/// What a segment reads to take part in a step.
+pub struct BoltView<'a> {
+    /// Star positions (m).
+    pub star: &'a [Point],
+    /// Displacements (m).
+    pub displacement: &'a [Vector],
+    /// Velocities without contact forces (m/s).
+    pub predicted: &'a [Vector],
+    /// Masses.
+    pub metric: &'a Metric,
+    /// Centroids of the blocks.
+    pub motion: &'a [crate::mechanics::BlockMotion],
+}
+
+impl BoltRow {
+    /// Tension (N/m) that the bar answers with, from the rate of its length (m/s) under all impulses so far, its own
+    /// `force` included: the contacts' implicit spring, between slack and yield (Eq. J10). A bar is no penalty: θ grows
+    /// from 0 for one that the step resolves to the contacts' for one that is stiff in it, κ = k·W·dt² being large, so
+    /// that a soft bar loses no energy to the scheme.
+    pub fn answer(&self, rate: f64, dt: f64, kick: f64, theta: f64) -> f64 {
+        let wa = self.compliance * kick;
+        let kappa = self.stiffness * wa * dt;
+        let a = self.stiffness * dt * (theta * kappa / (1.0 + kappa));
+        let trial = (self.stiffness * (self.length - self.rest) + a * (rate + wa * self.force)) / (1.0 + a * wa);
+        trial.clamp(0.0, self.yield_force)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar() -> BoltSegment {
+        BoltSegment {
+            bolt: 0,
+            blocks: [0; 2],
+            covers: [[0; 3]; 2],
+            weights: [[1.0, 0.0, 0.0]; 2],
+            points: [Point::zeros(), Point::new(1.0, 0.0)],
+            stiffness: 100.0,
+            yield_force: 20.0,
+            rupture: 0.5,
+            pretension: 5.0,
+            active: true,
+        }
+    }
+
+    #[test]
+    fn a_bar_yields_unloads_elastically_and_breaks() {
+        let bar = bar();
+        let new = bar.install(1.0);
+        assert_eq!((new.rest, new.natural, new.force), (0.95, 0.95, 5.0));
+        let stretched = bar.after(&new, 1.25, 20.0);
+        // 20 of 30 are elastic: the rest length grows by 10/100.
+        assert!((stretched.rest - 1.05).abs() < 1e-15 && !stretched.broken);
+        assert!((bar.energy(&stretched, 1.25) - 2.0).abs() < 1e-12);
+        let back = bar.after(&stretched, 1.1, 5.0);
+        assert_eq!(back.rest, stretched.rest);
+        let gone = bar.after(&back, 1.46, 20.0);
+        assert!(gone.broken && gone.force == 0.0 && bar.energy(&gone, 1.46) == 0.0);
+    }
+
+    #[test]
+    fn the_answer_is_the_force_at_the_end_of_the_step() {
+        let row = BoltRow {
+            segment: 0,
+            pair: Pair::default(),
+            direction: Vector::x(),
+            length: 1.0,
+            rest: 0.9,
+            stiffness: 100.0,
+            yield_force: 20.0,
+            compliance: 0.3,
+            approach: 0.0,
+            force: 4.0,
+        };
+        let (dt, rate) = (0.1, 0.2);
+        let force = row.answer(rate, dt, dt, 4.0);
+        // κ = 100·0.3·0.01 = 0.3, and the change of force changes the rate: T = k·(l + θ·dt·(u − W·dt·(T − T0)) − rest).
+        let end = 1.0 + 4.0 * 0.3 / 1.3 * dt * (rate - 0.3 * dt * (force - 4.0));
+        assert!((force - 100.0 * (end - 0.9)).abs() < 1e-12);
+        assert_eq!([row.answer(-1e3, dt, dt, 4.0), row.answer(1e3, dt, dt, 4.0)], [0.0, 20.0]);
+    }
 }

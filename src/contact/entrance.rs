@@ -4,7 +4,7 @@ use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
-use super::{Boundary, Candidate, ContactHistory, ContactState, Corner, JointLaw, Pair, VertexEdge};
+use super::{Boundary, Candidate, Closure, ContactHistory, ContactState, Corner, JointLaw, Pair, VertexEdge};
 
 /// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
 const ENTRANCE_SINE: f64 = 0.17;
@@ -446,7 +446,9 @@ impl Narrow<'_> {
         let (length, penalty_length) = self.tributary(node, pick);
         let law = self.law(node, edge);
         let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
-        let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, stiffness, normal));
+        let closure_max = self.laws[law as usize].closure_max;
+        let closure = Closure { stiffness: stiffness[0], most: closure_max };
+        let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, closure, normal));
         let history = ContactHistory { edge: pick.edge, ..history };
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
@@ -459,6 +461,7 @@ impl Narrow<'_> {
             normal,
             length,
             stiffness,
+            closure_max,
             compliance,
             law,
             approach: [0.0; 2],
@@ -484,14 +487,7 @@ impl Narrow<'_> {
         law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
     }
 
-    fn first_sight(
-        &self,
-        node: usize,
-        pick: &Pick,
-        length: f64,
-        stiffness: [f64; 2],
-        normal: Vector,
-    ) -> ContactHistory {
+    fn first_sight(&self, node: usize, pick: &Pick, length: f64, closure: Closure, normal: Vector) -> ContactHistory {
         let mut history = ContactHistory {
             node: node as u32,
             side: pick.side,
@@ -512,7 +508,7 @@ impl Narrow<'_> {
             let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
-            history.rest = history.normal_force / stiffness[0];
+            history.rest = closure.under(history.normal_force);
             history.shear_force = -traction.dot(&pick.tangent);
             history.shear_stored = history.shear_force;
             history.state = ContactState::Lock;

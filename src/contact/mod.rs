@@ -11,10 +11,10 @@ mod support;
 mod sweep;
 mod vertex_edge;
 
-pub use bolt::BoltState;
+pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner};
 pub use entrance::{Narrow, entrance_edges};
-pub use law::{JointLaw, Limits};
+pub use law::{Closure, JointLaw, Limits, RoughLimit, Roughness};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use support::{Resistance, Support, SupportRow};

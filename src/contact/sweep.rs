@@ -3,7 +3,7 @@
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
-use super::{ContactState, Pair, Support, SupportRow, VertexEdge};
+use super::{BoltRow, ContactState, Pair, Support, SupportRow, VertexEdge};
 
 /// Share of the largest normal force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
@@ -65,15 +65,19 @@ pub fn open_close(
     contacts: &mut [VertexEdge],
     supports: &[Support],
     rows: &mut [SupportRow],
+    bolts: &mut [BoltRow],
 ) -> SweepReport {
     iteration.warm_start(contacts, supports, rows);
+    bolts.iter().for_each(|bolt| iteration.push(&bolt.pair, bolt.direction * (-bolt.force * iteration.options.kick)));
     let mut report = SweepReport::default();
-    while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty()) {
+    while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty() && bolts.is_empty())
+    {
         let largest = contacts.iter().map(|c| c.history.normal_force.abs()).fold(f64::MIN_POSITIVE, f64::max);
         let change = iteration.sweep_contacts(contacts, LIGHT * largest);
         let support_change = iteration.sweep_supports(supports, rows);
+        let bolt_change = iteration.sweep_bolts(bolts, LIGHT * largest);
         report.sweeps += 1;
-        report.unsettled = change.max(support_change);
+        report.unsettled = change.max(support_change).max(bolt_change);
         if report.unsettled <= iteration.options.tolerance {
             break;
         }
@@ -126,6 +130,26 @@ impl OpenClose<'_> {
         first.unwrap_or(0.0)
     }
 
+    /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack ones.
+    fn sweep_bolts(&mut self, bolts: &mut [BoltRow], floor: f64) -> f64 {
+        let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
+        let floor = floor.max(LIGHT * largest);
+        let mut change = 0.0f64;
+        for bolt in bolts {
+            let relative = self.increment_at(&bolt.pair, 0) - self.increment_at(&bolt.pair, 1);
+            let rate = bolt.approach + relative.dot(&bolt.direction);
+            let SweepOptions { dt, kick, theta, .. } = self.options;
+            let force = bolt.answer(rate, dt, kick, theta);
+            let step = force - bolt.force;
+            if step != 0.0 {
+                self.push(&bolt.pair, bolt.direction * (-step * kick));
+                change = change.max(step.abs() / force.max(floor));
+                bolt.force = force;
+            }
+        }
+        change
+    }
+
     /// Updates the force of one support; returns its change (N/m).
     fn bear(&mut self, support: &Support, row: &mut SupportRow) -> f64 {
         let kick = self.options.kick;
@@ -151,7 +175,12 @@ impl OpenClose<'_> {
         let gap = contact.gap + contact.lag[0];
         let stored = contact.history.shear_stored - contact.stiffness[1] * contact.lag[1];
         let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
-        let normal = (-contact.stiffness[0] * gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa);
+        let normal = if contact.closure_max.is_infinite() {
+            (-contact.stiffness[0] * gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa)
+        } else {
+            let reach = contact.forward[0] * dt;
+            contact.closure().solve(-gap - reach * (normal_velocity - wa * old_normal), reach * wa)
+        };
         let shear = (stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
         contact.decide(normal, shear);
         let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];

@@ -2,7 +2,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Limits, Pair};
+use super::{Closure, Limits, Pair};
 
 /// What a contact does at the end of a step.
 #[doc(alias = "sliding")]
@@ -60,8 +60,10 @@ pub struct VertexEdge {
     pub penetration: f64,
     /// Tributary length (m).
     pub length: f64,
-    /// Springs normal and shear (N/m per metre).
+    /// Springs normal (initial stiffness) and shear (N/m per metre).
     pub stiffness: [f64; 2],
+    /// Greatest closure of the normal spring (m); infinite for a linear one.
+    pub closure_max: f64,
     /// Inverse effective masses normal and shear (m/kg).
     pub compliance: [f64; 2],
     /// Limits of the joint law for this length.
@@ -103,6 +105,17 @@ impl VertexEdge {
             self.forward[k] = CENTRED + dashpot;
             self.lag[k] = -CENTRED * last[k];
         }
+    }
+
+    /// The normal spring.
+    pub fn closure(&self) -> Closure {
+        Closure { stiffness: self.stiffness[0], most: self.closure_max }
+    }
+
+    /// Energy (J/m) that the springs store at the step's start.
+    pub fn stored_energy(&self) -> f64 {
+        let closure = if self.gap < 0.0 || self.history.state != ContactState::Open { -self.gap } else { 0.0 };
+        self.closure().energy(closure) + 0.5 * self.history.shear_stored.powi(2) / self.stiffness[1]
     }
 
     /// Penetration (m) that the springs resist: without what was there at first sight.

@@ -47,6 +47,8 @@ enum LawKey {
     Tension,
     NormalStiffness,
     ShearStiffness,
+    Jrc,
+    Jcs,
 }
 
 /// Why a parameter cannot be set.
@@ -100,11 +102,18 @@ fn law_parameters(case: &Case, name: &str, law: &JointLaw) -> Vec<Parameter> {
     let friction = changed(|c| c.friction_deg).unwrap_or(law.friction_deg).to_radians();
     let cohesion = changed(|c| c.cohesion).unwrap_or(law.cohesion);
     let tension = changed(|c| c.tension).unwrap_or(law.tension);
-    let mut list = vec![
-        of(LawKey::Friction, "friction", "rad", "Friction angle", friction, (0.0, 1.57)),
-        of(LawKey::Cohesion, "cohesion", "Pa", "Cohesion", cohesion, (0.0, 1e12)),
-        of(LawKey::Tension, "tension", "Pa", "Tensile strength", tension, (0.0, 1e12)),
-    ];
+    let mut list = match (law.jrc, law.jcs) {
+        (Some(jrc), Some(jcs)) => vec![
+            of(LawKey::Friction, "friction", "rad", "Residual friction angle", friction, (0.0, 1.22)),
+            of(LawKey::Jrc, "jrc", "", "Joint roughness coefficient", jrc, (0.0, 30.0)),
+            of(LawKey::Jcs, "jcs", "Pa", "Joint wall compressive strength", jcs, (1e-3, 1e12)),
+        ],
+        _ => vec![
+            of(LawKey::Friction, "friction", "rad", "Friction angle", friction, (0.0, 1.57)),
+            of(LawKey::Cohesion, "cohesion", "Pa", "Cohesion", cohesion, (0.0, 1e12)),
+            of(LawKey::Tension, "tension", "Pa", "Tensile strength", tension, (0.0, 1e12)),
+        ],
+    };
     let stiffness = (1e-3, 1e18);
     if let Some(value) = law.normal_stiffness {
         list.push(of(LawKey::NormalStiffness, "normal_stiffness", "Pa/m", "Normal stiffness", value, stiffness));
@@ -176,7 +185,7 @@ fn set_law(case: &mut Case, name: &str, key: LawKey, value: f64) {
         LawKey::Friction => (|c| c.friction_deg, value.to_degrees()),
         LawKey::Cohesion => (|c| c.cohesion, value),
         LawKey::Tension => (|c| c.tension, value),
-        LawKey::NormalStiffness | LawKey::ShearStiffness => (|_| None, value),
+        LawKey::NormalStiffness | LawKey::ShearStiffness | LawKey::Jrc | LawKey::Jcs => (|_| None, value),
     };
     if let Some((stage, _)) = change_of(case, name, get) {
         let changes = case.stages[stage].law_changes.iter_mut();
@@ -196,6 +205,8 @@ fn set_law(case: &mut Case, name: &str, key: LawKey, value: f64) {
         LawKey::Tension => law.tension = value,
         LawKey::NormalStiffness => law.normal_stiffness = Some(value),
         LawKey::ShearStiffness => law.shear_stiffness = Some(value),
+        LawKey::Jrc => law.jrc = Some(value),
+        LawKey::Jcs => law.jcs = Some(value),
     }
 }
 

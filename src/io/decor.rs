@@ -30,6 +30,7 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
             format!("{} physical covers", covers.cover_count()),
             format!("mesh size {} m", covers.mesh.size),
         ],
+        bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
         trace_segments: joints.map(|piece| ([piece.a, piece.b], slope.trace_law[piece.trace as usize])).collect(),
     }
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checkpoint::engine_version;
 use super::files::{at_path, write_atomic};
+use crate::contact::{BoltSegment, BoltState};
 use crate::model::Simulation;
 use crate::model::case::StageKind;
 use crate::state::{Ledger, Seconds};
@@ -55,6 +56,8 @@ pub struct Summary {
     pub energy: EnergyRecord,
     /// Elements that have yielded.
     pub yielded_elements: usize,
+    /// Bolts at the end, in the order of the case.
+    pub bolts: Vec<BoltRecord>,
     /// Largest penetration of all steps (m).
     pub penetration_max: f64,
     /// The same over the mesh size.
@@ -164,6 +167,65 @@ pub struct StageRecord {
     pub penetration_max: f64,
 }
 
+/// What a bar segment does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BarState {
+    /// It is not installed, or a block that held it is gone.
+    Absent,
+    /// It bears no force.
+    Slack,
+    /// It is in tension and has never yielded.
+    Elastic,
+    /// It has yielded.
+    Yielded,
+    /// It has broken.
+    Broken,
+}
+
+/// A free length of a bolt at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BoltRecord {
+    /// Name; null for a bolt without one.
+    pub name: Option<String>,
+    /// Index of the bolt in the case.
+    pub bolt: u32,
+    /// Middle of the free length in the reference configuration (m).
+    pub place: [f64; 2],
+    /// Tension of one bar (N).
+    pub force: f64,
+    /// Lasting elongation of the bar (m).
+    pub plastic_elongation: f64,
+    /// What it does.
+    pub state: BarState,
+}
+
+impl BoltRecord {
+    fn of(simulation: &Simulation) -> Vec<Self> {
+        let segments = simulation.slope().bolts.iter().zip(&simulation.state().bolts);
+        let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
+            let case = &simulation.case().bolts[segment.bolt as usize];
+            let middle = (segment.points[0] + segment.points[1]) * 0.5;
+            let state = match bolt {
+                BoltState { broken: true, .. } => BarState::Broken,
+                BoltState { active: false, .. } => BarState::Absent,
+                _ if bolt.rest > bolt.natural => BarState::Yielded,
+                _ if bolt.force > 0.0 => BarState::Elastic,
+                _ => BarState::Slack,
+            };
+            Self {
+                name: case.name.clone(),
+                bolt: segment.bolt,
+                place: [middle.x, middle.y],
+                force: bolt.force * case.spacing,
+                plastic_elongation: bolt.rest - bolt.natural,
+                state,
+            }
+        };
+        segments.map(record).collect()
+    }
+}
+
 /// Internal steps (s).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StepSizes {
@@ -221,6 +283,10 @@ pub struct EnergyRecord {
     pub yielding: f64,
     /// Work of bolts.
     pub bolt_work: f64,
+    /// Energy stored in bolts.
+    pub bolt_stored: f64,
+    /// Energy dissipated by bolts.
+    pub bolt_dissipation: f64,
     /// Work of quiet boundaries and free-field columns.
     pub radiation: f64,
     /// Work of loads.
@@ -245,6 +311,8 @@ impl From<&Ledger> for EnergyRecord {
             damping: ledger.damping,
             yielding: ledger.yielding,
             bolt_work: ledger.bolt_work,
+            bolt_stored: ledger.bolt_stored,
+            bolt_dissipation: ledger.bolt_dissipation(),
             radiation: ledger.radiation,
             external_work: ledger.external_work,
             baseline: ledger.baseline,
@@ -331,6 +399,7 @@ impl Summary {
             },
             energy: EnergyRecord::from(record.ledger),
             yielded_elements: simulation.yielded_elements(),
+            bolts: BoltRecord::of(simulation),
             penetration_max: counters.penetration_max,
             penetration_max_relative: counters.penetration_max / slope.covers.mesh.size,
             wall_seconds: record.wall,

@@ -1,5 +1,6 @@
 //! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
 
+mod bolts;
 mod geometry;
 mod place;
 mod ports;
@@ -8,7 +9,7 @@ mod rock;
 
 use std::collections::BTreeMap;
 
-use crate::contact::{Boundary, BoundaryOptions, JointLaw, Resistance, Support};
+use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance, Roughness, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
@@ -58,6 +59,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let monitors = monitors(case, &places)?;
+    let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
     let slope = Slope {
@@ -79,6 +81,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         quiets,
         columns,
         free_field,
+        bolts,
         loads,
         ports,
         water,
@@ -98,6 +101,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let state = initial_state(case, &slope, &places)?;
     let mut warnings = warnings(&plane.arrangement.report);
     warnings.extend(rock::overstressed(case, &slope));
+    warnings.extend(bolt_warnings);
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 
@@ -162,6 +166,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
         residual_tension: law.residual_tension,
         dilation: tangent(law.dilation_deg),
         dilation_slip: law.dilation_slip.unwrap_or(f64::INFINITY),
+        closure_max: law.closure_max.unwrap_or(f64::INFINITY),
+        roughness: (law.kind == case::JointLawKind::BartonBandis).then(|| Roughness {
+            angle: law.friction_deg.to_radians(),
+            jrc: law.jrc.unwrap_or_default(),
+            jcs: law.jcs.unwrap_or_default(),
+        }),
     }
 }
 
@@ -310,7 +320,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(slope)),
-        bolts: Vec::new(),
+        bolts: vec![BoltState::default(); slope.bolts.len()],
         plastic: rock::plastic(slope),
         columns: slope.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
         acceleration: Vec::new(),

@@ -1,6 +1,6 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
-use crate::contact::VertexEdge;
+use crate::contact::{BoltState, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Inputs, Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
@@ -220,6 +220,7 @@ impl Simulation {
         self.excavate(stage)?;
         self.change_laws(stage);
         self.change_fixities(stage);
+        self.change_bolts(stage)?;
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
         let (slope, state) = (&self.built.slope, &mut self.built.state);
@@ -274,6 +275,9 @@ impl Simulation {
             if let Some(degrees) = change.friction_deg {
                 law.friction = degrees.to_radians().tan();
                 law.residual_friction = law.friction;
+                if let Some(roughness) = &mut law.roughness {
+                    roughness.angle = degrees.to_radians();
+                }
             }
             if let Some(cohesion) = change.cohesion {
                 (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);
@@ -305,6 +309,30 @@ impl Simulation {
                 }
             }
         }
+    }
+
+    /// Installs the bolts of a stage, and those of the start in the first one; bars in blocks that are gone go as well.
+    fn change_bolts(&mut self, stage: usize) -> Result<(), Invalid> {
+        let (slope, state) = (&self.built.slope, &mut self.built.state);
+        let install = &self.case.stages[stage].install;
+        for (segment, bolt) in slope.bolts.iter().zip(&mut state.bolts) {
+            let name = self.case.bolts[segment.bolt as usize].name.as_ref();
+            let position = install.iter().position(|wanted| Some(wanted) == name);
+            let gone = segment.blocks.iter().any(|&b| state.removed[b as usize]);
+            if let (Some(k), true) = (position, gone) {
+                let message =
+                    format!("an end of bolt {:?} is in a block that has been removed: leave it out", install[k]);
+                return Err(Invalid { key: format!("stage[{stage}].install[{k}]"), message });
+            }
+            if gone {
+                *bolt = BoltState { active: false, force: 0.0, ..*bolt };
+            } else if position.is_some() || stage == 0 && segment.active {
+                let length = segment.span(&slope.covers.star_position, &state.displacement).norm();
+                *bolt = segment.install(length);
+                state.ledger.bolt_installed += segment.energy(bolt, length);
+            }
+        }
+        Ok(())
     }
 
     /// Displacement and velocity of a monitor.

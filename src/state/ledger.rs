@@ -25,6 +25,10 @@ pub struct Ledger {
     pub yielding: f64,
     /// Work of bolts.
     pub bolt_work: f64,
+    /// Energy stored in bolts now.
+    pub bolt_stored: f64,
+    /// Energy that bolts were installed with by their pretension.
+    pub bolt_installed: f64,
     /// Work of quiet boundaries and free-field columns: minus what they carry away, plus what their waves bring.
     pub radiation: f64,
     /// Work of loads, and of gravity while it is ramped.
@@ -49,6 +53,11 @@ impl Ledger {
     /// Energy dissipated by contact springs: dashpots, impacts and the numerical damping of the implicit spring.
     pub fn contact_dissipation(&self) -> f64 {
         -(self.contact_work + self.support_work) - self.stored - self.friction
+    }
+
+    /// Energy dissipated by bolts: yielding, rupture, and the numerical damping of the implicit spring.
+    pub fn bolt_dissipation(&self) -> f64 {
+        self.bolt_installed - self.bolt_work - self.bolt_stored
     }
 
     /// Energy that appeared from nowhere; zero but for discretisation.

@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{BlockPush, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{BlockPush, BoltRow, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
@@ -29,6 +29,8 @@ pub struct Scratch {
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).
     pub columns: Vec<Vec<Vector>>,
+    /// Bar segments of this step.
+    pub bolts: Vec<BoltRow>,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.

@@ -1,6 +1,6 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{Boundary, JointLaw, Support};
+use crate::contact::{BoltSegment, Boundary, JointLaw, Support};
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, PreStress, Record, StressField};
@@ -153,6 +153,8 @@ pub struct Slope {
     pub columns: Vec<Column>,
     /// What the columns give to the dashpots beside them, in the order of the supports.
     pub free_field: Vec<FreeFieldPoint>,
+    /// Free lengths of all bolts.
+    pub bolts: Vec<BoltSegment>,
     /// Loads.
     pub loads: Vec<Load>,
     /// Ports.

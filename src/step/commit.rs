@@ -25,6 +25,12 @@ impl Step<'_> {
         for (u, v) in state.displacement.iter_mut().zip(&self.scratch.predicted) {
             *u += v * dt;
         }
+        for row in &self.scratch.bolts {
+            let segment = &self.slope.bolts[row.segment as usize];
+            let bolt = &mut state.bolts[row.segment as usize];
+            let length = segment.span(&self.slope.covers.star_position, &state.displacement).norm();
+            *bolt = segment.after(bolt, length, row.force);
+        }
         state.velocity.copy_from_slice(&self.scratch.predicted);
         state.ledger.add_works(&works, 1.0);
         state.dt_last = dt;
@@ -81,6 +87,10 @@ impl Step<'_> {
             let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
             *work += row.force * velocity * kick_dt;
         }
+        for row in &scratch.bolts {
+            let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&scratch.predicted);
+            works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick_dt);
+        }
         let extra = self.acceleration(dt) - slope.gravity;
         for i in 0..state.velocity.len() {
             let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
@@ -99,6 +109,7 @@ impl Step<'_> {
         ledger.strain = report::strain(slope, state);
         ledger.potential = report::potential(slope, state);
         ledger.stored = report::stored(slope, state, scratch);
+        ledger.bolt_stored = report::bolt_stored(slope, state);
         let contacts = scratch.contacts.iter();
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
         StepReport {

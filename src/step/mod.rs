@@ -16,7 +16,7 @@ pub use report::{StepReport, block_motion, energies, momentum};
 
 use std::time::Instant;
 
-use crate::contact::{self, Narrow, OpenClose, SearchView, SweepOptions, SweepReport, VertexEdge};
+use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
@@ -287,7 +287,24 @@ impl Step<'_> {
             }
         }
         self.load_supports(dt);
+        self.load_bolts();
         self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// Bolts that bear in this step.
+    fn load_bolts(&mut self) {
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let view = BoltView {
+            star: &slope.covers.star_position,
+            displacement: &state.displacement,
+            predicted: &scratch.predicted,
+            metric: &scratch.metric,
+            motion: &scratch.motion,
+        };
+        let rows = slope.bolts.iter().zip(&state.bolts).enumerate();
+        let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
+        scratch.bolts.clear();
+        scratch.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
     }
 
     /// Open–close iteration on the predicted velocities.
@@ -301,7 +318,8 @@ impl Step<'_> {
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
         let iteration =
             OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
-        let swept = contact::open_close(iteration, &mut scratch.contacts, &slope.supports, &mut scratch.rows);
+        let (contacts, rows, bolts) = (&mut scratch.contacts, &mut scratch.rows, &mut scratch.bolts);
+        let swept = contact::open_close(iteration, contacts, &slope.supports, rows, bolts);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
     }

@@ -1,6 +1,6 @@
 //! Energies, momenta and what a step reports.
 
-use crate::contact::{ContactState, Support};
+use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
@@ -56,10 +56,6 @@ pub(super) fn potential(slope: &Slope, state: &State) -> f64 {
 
 /// Energy (J/m) stored in the springs of contacts and supports.
 pub(super) fn stored(slope: &Slope, state: &State, scratch: &Scratch) -> f64 {
-    let contact = |c: &crate::contact::VertexEdge| {
-        let normal = if c.gap < 0.0 || c.history.state != ContactState::Open { c.gap } else { 0.0 };
-        0.5 * (c.stiffness[0] * normal * normal + c.history.shear_stored.powi(2) / c.stiffness[1])
-    };
     let support = |row: &crate::contact::SupportRow| {
         let support = &slope.supports[row.support as usize];
         if support.is_dashpot() {
@@ -67,9 +63,19 @@ pub(super) fn stored(slope: &Slope, state: &State, scratch: &Scratch) -> f64 {
         }
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
-    let springs = scratch.contacts.iter().map(contact).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>();
+    let contacts = scratch.contacts.iter().map(VertexEdge::stored_energy).sum::<f64>();
+    let supports = scratch.rows.iter().map(support).sum::<f64>();
     let kept = |(k, s): (usize, &Support)| 0.5 * state.support_force[k].powi(2) / s.stiffness;
-    springs + quiet::frozen(slope, state).map(kept).sum::<f64>()
+    contacts + supports + quiet::frozen(slope, state).map(kept).sum::<f64>()
+}
+
+/// Energy (J/m) stored in bolts.
+pub(super) fn bolt_stored(slope: &Slope, state: &State) -> f64 {
+    let star = &slope.covers.star_position;
+    let of = |(segment, bolt): (&BoltSegment, &BoltState)| {
+        segment.energy(bolt, segment.span(star, &state.displacement).norm())
+    };
+    slope.bolts.iter().zip(&state.bolts).map(of).sum()
 }
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.

@@ -139,6 +139,18 @@ scale = 2.0
 edge = [[0.0, 0.0], [0.0, 5.0]]
 axes = "x"
 
+[[bolt]]
+name = "anchor"
+points = [[3.0, 1.2], [3.0, 4.0]]
+anchorage = "grouted"
+young = 2e11
+area = 5e-4
+spacing = 2.0
+yield_force = 2e5
+rupture_strain = 0.1
+pretension = 5e4
+free_length = 0.2
+
 [[initial_velocity]]
 block = [3.0, 3.0]
 velocity = [0.1, 0.0]

@@ -74,6 +74,7 @@ pub fn sample(spacing: f64, mesh: f64) -> Sample {
             format!("{} physical covers", covers.values().map(BTreeSet::len).sum::<usize>()),
         ],
         trace_segments,
+        bolts: Vec::new(),
     };
     Sample { reference, decor }
 }

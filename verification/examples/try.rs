@@ -7,7 +7,10 @@ fn main() {
     let mut values = Values::of(problem);
     let mut quick = false;
     for a in args {
-        if a == "quick" { quick = true; continue }
+        if a == "quick" {
+            quick = true;
+            continue;
+        }
         let (n, v) = a.split_once('=').unwrap();
         values.set(problem, n, v.parse().unwrap()).unwrap_or_else(|e| panic!("{e:?}"));
     }
@@ -15,7 +18,15 @@ fn main() {
     let clock = std::time::Instant::now();
     let outcome = (problem.run)(&mut setup).unwrap_or_else(|e| panic!("{e:?}"));
     for r in &outcome.rows {
-        println!("{} {:70} {:>13.6e} {:>13.6e} err {:+.2e} {:?}", if r.passes() {"ok  "} else {"FAIL"}, r.quantity, r.computed, r.exact, r.error(), r.tolerance);
+        println!(
+            "{} {:70} {:>13.6e} {:>13.6e} err {:+.2e} {:?}",
+            if r.passes() { "ok  " } else { "FAIL" },
+            r.quantity,
+            r.computed,
+            r.exact,
+            r.error(),
+            r.tolerance
+        );
     }
     println!("{:.1} s, plots {}", clock.elapsed().as_secs_f64(), outcome.plots.len());
 }

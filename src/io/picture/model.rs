@@ -45,6 +45,8 @@ pub struct ModelDecor {
     pub counts: Vec<String>,
     /// Pieces of joint traces: both ends (m), and the index of the joint law in [`Snapshot::joint_laws`].
     pub trace_segments: Vec<([Point; 2], u32)>,
+    /// Head and far end (m) of each bolt.
+    pub bolts: Vec<[Point; 2]>,
 }
 
 /// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the place where
@@ -101,6 +103,7 @@ impl Model<'_> {
                 self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 2.2));
             }
         });
+        self.draw_bolts(sheet, view);
         draw_absence(sheet, view, &self.snapshot.elements);
         self.draw_supports(sheet, view);
         self.draw_monitors(sheet, view);
@@ -128,6 +131,19 @@ impl Model<'_> {
             }
             sheet.path(&path, Style::line(colour, width));
         }
+    }
+
+    /// A line with a plate at the head for each bolt.
+    fn draw_bolts(&self, sheet: &mut Svg, view: &View) {
+        let mut path = Path::default();
+        for ends in self.decor.bolts.iter().filter(|ends| ends.iter().all(is_drawable)) {
+            let [[x, y], [u, v]] = [view.pixel(&ends[0]), view.pixel(&ends[1])];
+            let length = (u - x).hypot(v - y).max(f64::MIN_POSITIVE);
+            let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
+            path.line([[x, y], [u, v]]);
+            path.line([[x + plate[0], y + plate[1]], [x - plate[0], y - plate[1]]]);
+        }
+        sheet.path(&path, Style::line(ACCENT, 2.6));
     }
 
     fn draw_stars(&self, sheet: &mut Svg, view: &View, radius: f64) {
@@ -211,6 +227,7 @@ impl Model<'_> {
             (!self.snapshot.boundaries.is_empty(), Sign::Line(INK), "block outline"),
             (held_blocks, Sign::Hatch, "block held"),
             (!self.decor.fixed.is_empty(), Sign::Support, "point held"),
+            (!self.decor.bolts.is_empty(), Sign::Line(ACCENT), "bolt"),
             (!self.decor.monitors.is_empty(), Sign::Monitor, "monitor or port"),
         ];
         let present = all.into_iter().filter(|(present, ..)| *present);

@@ -1,8 +1,10 @@
 //! Checks of everything that can be known from the case alone: signs, ranges, alternatives, references. What needs the
 //! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
 
+mod bolts;
 mod checks;
 mod ground;
+mod joints;
 mod loads;
 mod ports;
 mod stages;
@@ -46,6 +48,7 @@ impl Case {
         ground::validate_base_motions(&root.field("base_motion"), self)?;
         ground::validate_quiets(&root.field("quiet"), self)?;
         ground::validate_free_fields(&root.field("free_field"), &self.free_fields)?;
+        bolts::validate_bolts(&root.field("bolt"), &self.bolts)?;
         for (i, start) in self.initial_velocities.iter().enumerate() {
             initial_velocity(&root.field("initial_velocity").index(i), start)?;
         }
@@ -58,6 +61,7 @@ impl Case {
         }
         ports::validate_ports(&root.field("port"), &self.ports)?;
         stages::validate_stages(&root.field("stage"), self)?;
+        bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
         output(&root.field("output"), &self.output)?;
         solver(&root.field("solver"), &self.solver)
@@ -253,7 +257,8 @@ fn joint_law(key: &Key, law: &JointLaw) -> Check {
     optional(key, "residual_cohesion", law.residual_cohesion, Law::STRENGTH, "Pa", "leave it out for the peak")?;
     number(key, "residual_tension", law.residual_tension, Law::STRENGTH, "Pa", "0 for a broken joint")?;
     number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
-    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")
+    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")?;
+    joints::validate_kind(key, law)
 }
 
 fn gravity(key: &Key, gravity: &Gravity) -> Check {

@@ -16,9 +16,17 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
         Parameter { name: "joints", unit: "", default: 12.0, range: [0.0, 200.0], doc: "random joints" },
         Parameter { name: "mesh", unit: "m", default: 0.8, range: [0.2, 3.0], doc: "mesh size in a rock of 12 m" },
-        Parameter { name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh" },
+        Parameter {
+            name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh"
+        },
         Parameter { name: "mesh_x", unit: "m", default: 0.3, range: [-100.0, 100.0], doc: "shift of the mesh along x" },
-        Parameter { name: "mesh_y", unit: "m", default: -0.2, range: [-100.0, 100.0], doc: "shift of the mesh along y" },
+        Parameter {
+            name: "mesh_y",
+            unit: "m",
+            default: -0.2,
+            range: [-100.0, 100.0],
+            doc: "shift of the mesh along y",
+        },
         Parameter { name: "turn_deg", unit: "°", default: 30.0, range: [-360.0, 360.0], doc: "rotation of the rock" },
         Parameter { name: "shift", unit: "m", default: 8.0, range: [-1e3, 1e3], doc: "translation of the rock" },
         Parameter { name: "strain", unit: "", default: 2e-3, range: [1e-6, 1e-2], doc: "size of the uniform strain" },

@@ -104,14 +104,18 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let ledger = Row::ledger(&simulation.advance(true)?);
     let strain = density * (w0 * setup.get("size")).powi(2) / setup.get("young");
     let most = 1e-6 + 3.0 * strain;
-    let reason = "claim A3: 1e-6, and three times ρω²R²/E for the strain by centrifugal force, which is no rigid motion";
+    let reason =
+        "claim A3: 1e-6, and three times ρω²R²/E for the strain by centrifugal force, which is no rigid motion";
     let exact = density * polar * w0;
     let mut rows = vec![
-        Row::new("angular momentum after the push", "kg·m²/s", momentum, exact).within(Tolerance::Relative(most), reason),
-        Row::new("spin after the push, L/J of the true polygon", "rad/s", spin, w0).within(Tolerance::Relative(most), reason),
+        Row::new("angular momentum after the push", "kg·m²/s", momentum, exact)
+            .within(Tolerance::Relative(most), reason),
+        Row::new("spin after the push, L/J of the true polygon", "rad/s", spin, w0)
+            .within(Tolerance::Relative(most), reason),
         Row::new("period", "s", std::f64::consts::TAU * time / angle, std::f64::consts::TAU / w0)
             .within(Tolerance::Relative(most), reason),
-        Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * exact * w0).within(Tolerance::Relative(2.0 * most), reason),
+        Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * exact * w0)
+            .within(Tolerance::Relative(2.0 * most), reason),
     ];
     for (name, value) in ["angular momentum", "kinetic energy", "area"].into_iter().zip(drift) {
         let row = Row::new(format!("{name} after {turns} turns over that before"), "", value, 1.0);

@@ -13,7 +13,9 @@ pub const PROBLEM: Problem = Problem {
     parameters: &[
         Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
         Parameter { name: "spacing", unit: "m", default: 0.8, range: [0.4, 2.0], doc: "spacing of the joints" },
-        Parameter { name: "friction_deg", unit: "°", default: 30.0, range: [0.0, 70.0], doc: "friction of the joints" },
+        Parameter {
+            name: "friction_deg", unit: "°", default: 30.0, range: [0.0, 70.0], doc: "friction of the joints"
+        },
         Parameter { name: "damping", unit: "", default: 0.1, range: [0.1, 1.0], doc: "damping ratio of the blocks" },
         Parameter { name: "speed", unit: "m/s", default: 3.0, range: [0.1, 5.0], doc: "speed of the projectiles" },
         Parameter { name: "spin", unit: "rad/s", default: 1.0, range: [-5.0, 5.0], doc: "spin of the first" },

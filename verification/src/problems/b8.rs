@@ -18,7 +18,9 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "pi", unit: "Pa", default: 0.0, range: [0.0, 1e8], doc: "pressure on the wall" },
         Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "friction angle" },
         Parameter { name: "cohesion", unit: "Pa", default: 3e6, range: [1e2, 1e9], doc: "cohesion" },
-        Parameter { name: "psi_deg", unit: "°", default: 10.0, range: [0.0, 55.0], doc: "dilation angle, at most phi" },
+        Parameter {
+            name: "psi_deg", unit: "°", default: 10.0, range: [0.0, 55.0], doc: "dilation angle, at most phi"
+        },
         Parameter { name: "radius", unit: "m", default: 1.0, range: [0.1, 20.0], doc: "radius of the opening" },
         Parameter { name: "domain", unit: "", default: 6.0, range: [3.0, 12.0], doc: "half domain over radius" },
         Parameter { name: "mesh", unit: "", default: 0.07, range: [0.05, 0.3], doc: "mesh size over radius" },
@@ -130,11 +132,8 @@ impl Opening {
 
 fn solve(setup: &mut Setup, opening: &Opening, mesh: f64) -> Result<(Simulation, StepReport), Trouble> {
     let get = |name| setup.get(name);
-    let plate = QuarterPlate {
-        radius: opening.radius,
-        half: get("domain") * opening.radius,
-        mesh: mesh * opening.radius,
-    };
+    let plate =
+        QuarterPlate { radius: opening.radius, half: get("domain") * opening.radius, mesh: mesh * opening.radius };
     if opening.plastic_radius() > 0.8 * plate.half {
         let share = opening.plastic_radius() / opening.radius;
         return Err(Trouble(format!("the plastic radius is {share:.2} R, the domain must be 1.25 times as large")));
@@ -186,7 +185,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let row = Row::new("convergence of the wall", "m", -simulation.monitor(0).0.y, opening.convergence());
     let judged = opening.middle_is_out_of_plane();
     rows.push(if judged {
-        row.within(Tolerance::Relative(0.6 * mesh), "plastic strain at the wall of elements that are known to one h: 0.6·h/R")
+        row.within(
+            Tolerance::Relative(0.6 * mesh),
+            "plastic strain at the wall of elements that are known to one h: 0.6·h/R",
+        )
     } else {
         row.within(Tolerance::Shown, "rock flows out of the plane as well, for which the formula does not hold")
     });
@@ -199,7 +201,8 @@ fn stress_rows(simulation: &Simulation, opening: &Opening, mesh: f64) -> Vec<Row
     let (wall, edge) = (opening.radius, opening.plastic_radius());
     let reason = "stress of one element: the radial stress changes by h·(hoop − radial)/r over it, and where rock yields \
                   the hoop stress by Kp times as much; a parabola fitted over 3.5 h rounds the kink at the edge off";
-    let places = [(wall, "wall"), (0.5 * (wall + edge), "middle of the zone"), (edge, "its edge"), (2.0 * edge, "beyond")];
+    let places =
+        [(wall, "wall"), (0.5 * (wall + edge), "middle of the zone"), (edge, "its edge"), (2.0 * edge, "beyond")];
     let mut rows = Vec::new();
     for (r, name) in places {
         let (computed, exact) = (found(simulation, r, std::f64::consts::FRAC_PI_4), opening.stress(r));
@@ -236,8 +239,16 @@ fn plot(simulation: &Simulation, opening: &Opening) -> Plot {
 mod tests {
     use super::*;
 
-    const OPENING: Opening =
-        Opening { p0: 30.0, pi: 1.0, radius: 2.0, kp: 3.0, kpsi: 1.4, strength: 12.0, shear_modulus: 2800.0, poisson: 0.2 };
+    const OPENING: Opening = Opening {
+        p0: 30.0,
+        pi: 1.0,
+        radius: 2.0,
+        kp: 3.0,
+        kpsi: 1.4,
+        strength: 12.0,
+        shear_modulus: 2800.0,
+        poisson: 0.2,
+    };
 
     /// Salençon's plastic radius R·[2(p₀(Kp − 1) + q)/((1 + Kp)(pᵢ(Kp − 1) + q))]^(1/(Kp − 1)), and stresses in equilibrium.
     #[test]

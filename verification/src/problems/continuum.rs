@@ -101,9 +101,8 @@ fn line_tractions(line: &[[f64; 2]], before: Field, after: Field, table: &str) -
             let [xx, yy, xy] = field(p);
             Vector::new(xx * along.y - xy * along.x, xy * along.y - yy * along.x)
         };
-        let mean = |field: Field| {
-            (traction(field, p) + traction(field, (p + q) * 0.5) * 4.0 + traction(field, q)) / 6.0
-        };
+        let mean =
+            |field: Field| (traction(field, p) + traction(field, (p + q) * 0.5) * 4.0 + traction(field, q)) / 6.0;
         let (first, change) = (mean(before), mean(after) - mean(before));
         let load = |t: Vector| {
             format!("[[load]]\nkind = \"traction\"\nedge = {}\ntraction = [{:e}, {:e}]\n", list(ends), t.x, t.y)

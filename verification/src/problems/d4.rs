@@ -13,14 +13,28 @@ pub const PROBLEM: Problem = Problem {
              axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong yield of the \
              rock and locking of blocks between plates",
     parameters: &[
-        Parameter { name: "b_deg", unit: "°", default: 30.0, range: [5.0, 85.0], doc: "joint from the axis of the load" },
+        Parameter {
+            name: "b_deg",
+            unit: "°",
+            default: 30.0,
+            range: [5.0, 85.0],
+            doc: "joint from the axis of the load",
+        },
         Parameter { name: "cohesion", unit: "Pa", default: 2e3, range: [1e2, 1e8], doc: "cohesion of the rock" },
         Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [0.0, 55.0], doc: "friction angle of the rock" },
         Parameter { name: "joint_cohesion", unit: "Pa", default: 2e3, range: [0.0, 1e8], doc: "cohesion of the joint" },
-        Parameter { name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint" },
+        Parameter {
+            name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint"
+        },
         Parameter { name: "width", unit: "m", default: 1.0, range: [0.1, 10.0], doc: "width of the sample" },
         Parameter { name: "mesh", unit: "", default: 0.25, range: [0.1, 0.5], doc: "mesh size over width" },
-        Parameter { name: "stiffness", unit: "", default: 1e4, range: [2e3, 1e5], doc: "Young's modulus over strength" },
+        Parameter {
+            name: "stiffness",
+            unit: "",
+            default: 1e4,
+            range: [2e3, 1e5],
+            doc: "Young's modulus over strength",
+        },
     ],
     quick: true,
     implicit: false,
@@ -210,9 +224,15 @@ mod tests {
     fn the_formula_gives_the_published_numbers() {
         let degrees = |d: f64| d.to_radians();
         let strength = Strength { rock: [2.0, degrees(40.0)], joint: [2.0, degrees(30.0)] };
-        for (b, published) in
-            [(20.0, 7.8785), (25.0, 7.1453), (30.0, 6.9282), (35.0, 7.1453), (40.0, 7.8785), (15.0, 8.578_028), (45.0, 8.578_028)]
-        {
+        for (b, published) in [
+            (20.0, 7.8785),
+            (25.0, 7.1453),
+            (30.0, 6.9282),
+            (35.0, 7.1453),
+            (40.0, 7.8785),
+            (15.0, 8.578_028),
+            (45.0, 8.578_028),
+        ] {
             assert!((strength.with_joint(degrees(b)) - published).abs() < 5e-5, "{b}");
         }
     }

@@ -275,6 +275,12 @@ impl<'a> Names<'a> {
         Self { what: "dynamic stage", remedy: "add [[stage]] with this `name` and `kind = \"dynamic\"`", known }
     }
 
+    /// Returns the named bolts of a case.
+    pub fn of_bolts(case: &'a Case) -> Self {
+        let known = case.bolts.iter().filter_map(|bolt| bolt.name.as_deref()).collect();
+        Self { what: "bolt", remedy: "add [[bolt]] with this `name`", known }
+    }
+
     /// Checks that `name` is known.
     ///
     /// # Errors

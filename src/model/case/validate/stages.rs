@@ -1,8 +1,9 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
+use super::joints;
 use crate::model::case::key::Key;
-use crate::model::case::{Case, LawChange, LawSwitch, Stage, StageKind};
+use crate::model::case::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
 /// Checks the stages of a case.
 ///
@@ -20,7 +21,7 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
         validate_motion(&key, stage)?;
         points(&key.field("excavate"), &stage.excavate, 0, "a list of blocks")?;
         stage.excavate_region.as_ref().map_or(Ok(()), |ring| region(&key.field("excavate_region"), ring))?;
-        validate_laws(&key, stage, &laws)?;
+        validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
     }
     unique(key, "stage", case.stages.iter().map(|stage| Some(stage.name.as_str())))
@@ -44,9 +45,13 @@ fn validate_motion(key: &Key, stage: &Stage) -> Check {
     optional(key, "damping", stage.damping, Range::from(0.0).to(1.0), "", "0 to 0.1 is usual")
 }
 
-fn validate_laws(key: &Key, stage: &Stage, laws: &Names) -> Check {
+fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {
     for (i, change) in stage.law_changes.iter().enumerate() {
-        validate_change(&key.field("law").index(i), change, laws)?;
+        let key = key.field("law").index(i);
+        validate_change(&key, change, laws)?;
+        if case.joint_laws.get(&change.law).is_some_and(|law| law.kind == JointLawKind::BartonBandis) {
+            joints::validate_rough_change(&key, change)?;
+        }
     }
     for (i, LawSwitch { from, to }) in stage.law_switches.iter().enumerate() {
         let key = key.field("switch_law").index(i);

@@ -1,6 +1,11 @@
 //! Joint laws: stiffness and strength of a joint.
 
-/// Mohr–Coulomb joint with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21).
+mod barton_bandis;
+
+pub use barton_bandis::{Closure, Roughness};
+
+/// A joint: Mohr–Coulomb with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21), or, with a
+/// roughness, Barton–Bandis (Eq. J1).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct JointLaw {
     /// Normal stiffness (Pa/m).
@@ -25,6 +30,10 @@ pub struct JointLaw {
     pub dilation: f64,
     /// Slip (m) at which dilation ends.
     pub dilation_slip: f64,
+    /// Greatest closure (m); infinite for a linear normal stiffness.
+    pub closure_max: f64,
+    /// Roughness of a Barton–Bandis joint; its `friction` is tan φr, and it has neither cohesion nor tension.
+    pub roughness: Option<Roughness>,
 }
 
 /// Forces (N/m) that a contact of some length can carry.
@@ -36,17 +45,39 @@ pub struct Limits {
     pub cohesion: f64,
     /// Tensile force (N/m).
     pub tension: f64,
+    /// What a Barton–Bandis joint has instead of friction and cohesion.
+    pub rough: Option<RoughLimit>,
+}
+
+/// Shear strength of a Barton–Bandis joint of some length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoughLimit {
+    /// Roughness.
+    pub roughness: Roughness,
+    /// Tributary length (m), which turns the normal force into a stress.
+    pub length: f64,
+    /// Factor on the shear strength.
+    pub factor: f64,
 }
 
 impl Limits {
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
     pub fn shear(&self, normal: f64) -> f64 {
-        (normal * self.friction + self.cohesion).max(0.0)
+        match &self.rough {
+            None => (normal * self.friction + self.cohesion).max(0.0),
+            Some(_) if normal <= 0.0 => 0.0,
+            Some(rough) => normal * rough.roughness.friction(normal / rough.length) * rough.factor,
+        }
     }
 
     /// Limits of joints whose strength is multiplied by `factor`.
     pub fn times(self, factor: f64) -> Self {
-        Self { friction: self.friction * factor, cohesion: self.cohesion * factor, tension: self.tension * factor }
+        Self {
+            friction: self.friction * factor,
+            cohesion: self.cohesion * factor,
+            tension: self.tension * factor,
+            rough: self.rough.map(|rough| RoughLimit { factor: rough.factor * factor, ..rough }),
+        }
     }
 }
 
@@ -58,7 +89,8 @@ impl JointLaw {
         } else {
             [self.residual_friction, self.residual_cohesion, self.residual_tension]
         };
-        Limits { friction, cohesion: cohesion * length, tension: tension * length }
+        let rough = self.roughness.map(|roughness| RoughLimit { roughness, length, factor: 1.0 });
+        Limits { friction, cohesion: cohesion * length, tension: tension * length, rough }
     }
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness

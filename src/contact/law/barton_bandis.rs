@@ -1,0 +1,111 @@
+//! Barton–Bandis joints: friction that grows as the normal stress falls, and hyperbolic closure (Eqs. J1–J5).
+
+/// Greatest friction angle (rad), which low normal stress does not exceed: 70°.
+pub const ANGLE_MAX: f64 = 70.0 * std::f64::consts::PI / 180.0;
+
+/// Rough joint faces.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Roughness {
+    /// Residual friction angle φr (rad).
+    pub angle: f64,
+    /// Joint roughness coefficient JRC (degrees per decade of JCS/σn).
+    pub jrc: f64,
+    /// Joint wall compressive strength JCS (Pa).
+    pub jcs: f64,
+}
+
+impl Roughness {
+    /// tan(min(φr + JRC·log10(JCS/σn), 70°)) under the normal stress σn > 0 (Pa); above JCS it is tan φr (Eq. J1).
+    pub fn friction(&self, stress: f64) -> f64 {
+        let dilation = (self.jrc * (self.jcs / stress).log10()).max(0.0).to_radians();
+        (self.angle + dilation).min(ANGLE_MAX).tan()
+    }
+}
+
+/// Normal spring whose force grows without bound as the closure v nears a greatest one: N = k·v/(1 − v/v_max). Loading
+/// and unloading run along the same curve. A greatest closure of infinity is the linear spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closure {
+    /// Initial stiffness k (N/m per metre).
+    pub stiffness: f64,
+    /// Greatest closure v_max (m).
+    pub most: f64,
+}
+
+impl Closure {
+    /// Closure (m) under a normal force (N/m): v = N/(k + N/v_max).
+    pub fn under(&self, force: f64) -> f64 {
+        force / (self.stiffness + force.max(0.0) / self.most)
+    }
+
+    /// Force (N/m) after a step in which it reduces the closure that it meets: solves v(N) + c·N = b, where b (m) is the
+    /// closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. J3).
+    pub fn solve(&self, b: f64, c: f64) -> f64 {
+        let linear = self.stiffness * b / (1.0 + c * self.stiffness);
+        if b <= 0.0 || self.most.is_infinite() {
+            return linear;
+        }
+        let (k, most) = (self.stiffness, self.most);
+        let half = 0.5 * (most + c * k * most - b);
+        let root = (half * half + c * k * most * b).sqrt();
+        if half >= 0.0 { k * most * b / (half + root) } else { (root - half) / c }
+    }
+
+    /// Energy (J/m) stored at closure v (m): k·v_max²·(−ln(1 − v/v_max) − v/v_max) (Eq. J4); of the linear spring for
+    /// tension. At v_max, which no finite force reaches, it is that of the last number below.
+    pub fn energy(&self, closure: f64) -> f64 {
+        if closure <= 0.0 || self.most.is_infinite() {
+            return 0.5 * self.stiffness * closure * closure;
+        }
+        let share = (closure / self.most).min(1.0 - f64::EPSILON);
+        // −ln(1 − x) − x loses its digits where x is small.
+        let series = share * share * (0.5 + share * (1.0 / 3.0 + share * (0.25 + share * 0.2)));
+        let term = if share < 1e-3 { series } else { -(-share).ln_1p() - share };
+        self.stiffness * self.most * self.most * term
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn friction_is_that_of_the_published_numbers_and_has_both_ends() {
+        // D3: JRC 10, JCS 100 MPa, φr 28°: τ = 1.110613 MPa at 1 MPa and 0.160033 MPa at 0.1 MPa.
+        let rough = Roughness { angle: 28f64.to_radians(), jrc: 10.0, jcs: 100e6 };
+        assert!((rough.friction(1e6) - 1.110613).abs() < 1e-6);
+        assert!((0.1 * rough.friction(0.1e6) - 0.160033).abs() < 1e-6);
+        assert_eq!(rough.friction(200e6), 28f64.to_radians().tan());
+        assert_eq!(rough.friction(1e-3), ANGLE_MAX.tan());
+    }
+
+    #[test]
+    fn force_closure_and_energy_belong_together() {
+        let curve = Closure { stiffness: 2e9, most: 1e-4 };
+        let force = |v: f64| 2e9 * v / (1.0 - v / 1e-4);
+        let mut work = 0.0;
+        for k in 0..9000 {
+            let v = (f64::from(k) + 0.5) * 1e-8;
+            work += force(v) * 1e-8;
+            assert!((curve.under(force(v)) - v).abs() < 1e-17);
+            assert!((curve.solve(v, 0.0) / force(v) - 1.0).abs() < 1e-12);
+        }
+        assert!((curve.energy(9e-5) / work - 1.0).abs() < 1e-6, "{} of {work}", curve.energy(9e-5));
+        assert!((curve.energy(0.999e-7) / curve.energy(1.001e-7) - (0.999f64 / 1.001).powi(2)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_solution_meets_its_equation_and_the_linear_limit() {
+        let curve = Closure { stiffness: 2e9, most: 1e-4 };
+        for (b, c) in [(5e-5, 1e-9), (5e-4, 1e-8), (3e-2, 1e-12), (1e-9, 1e-6), (3e-4, 1e-7)] {
+            let n = curve.solve(b, c);
+            assert!(n > 0.0 && (curve.under(n) + c * n - b).abs() < 1e-12 * b, "{b} {c} {n}");
+        }
+        let linear = Closure { stiffness: 2e9, most: f64::INFINITY };
+        assert_eq!(linear.solve(1e-5, 1e-9), 2e4 / 3.0);
+        assert_eq!(linear.under(2e4), 1e-5);
+        let far = Closure { stiffness: 2e9, most: 1e6 };
+        assert!((far.solve(1e-5, 1e-9) - 2e4 / 3.0).abs() < 1e-5);
+        assert!(curve.solve(-1e-5, 1e-9) < 0.0);
+    }
+}

@@ -1,0 +1,167 @@
+//! Bolts of a case: the free lengths of their bars, found on the uncut reference.
+
+use crate::contact::BoltSegment;
+use crate::geometry::{NONE, Point, Vector};
+use crate::model::case::{Anchorage, Bolt, Case, Invalid};
+
+use super::place::Places;
+
+/// Free length of a grouted bar at a joint, relative to the mesh size.
+const FREE_LENGTH: f64 = 0.1;
+/// Distance, relative to the mesh size, at which the rock on both sides of a crossing is looked up.
+const BESIDE: f64 = 1e-3;
+
+/// Segments of all bolts, and what the user should know of them.
+pub(super) fn bolts(case: &Case, places: &Places) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
+    let (mut segments, mut warnings) = (Vec::new(), Vec::new());
+    for (k, bolt) in case.bolts.iter().enumerate() {
+        let line = Line::new(&format!("bolt[{k}]"), bolt, places)?;
+        match bolt.anchorage {
+            Anchorage::Ends => segments.push(line.whole(k as u32, bolt)),
+            Anchorage::Grouted => {
+                let crossings = line.crossings();
+                if crossings.is_empty() {
+                    return Err(Invalid {
+                        key: format!("bolt[{k}].points"),
+                        message: "the bolt crosses no joint, so that it would do nothing: move its points to both \
+                                  sides of a joint, or set `anchorage = \"ends\"`"
+                            .into(),
+                    });
+                }
+                segments.extend(crossings.iter().map(|c| line.bridge(k as u32, bolt, c)));
+                let outside = line.outside();
+                if outside > 0.0 {
+                    let name = bolt.name.clone().unwrap_or_else(|| format!("bolt[{k}]"));
+                    warnings.push(format!("{outside:.3} m of the grouted bolt {name:?} lie outside the rock"));
+                }
+            }
+        }
+    }
+    Ok((segments, warnings))
+}
+
+/// A place where a bolt crosses a joint.
+struct Crossing {
+    /// Distance from the head (m).
+    along: f64,
+    /// Elements before and after it.
+    elements: [usize; 2],
+}
+
+/// A bolt on the reference configuration.
+struct Line<'a> {
+    places: &'a Places<'a>,
+    ends: [Point; 2],
+    elements: [usize; 2],
+    direction: Vector,
+    length: f64,
+    /// Where it meets joints and outlines: distance from the head (m), and whether both sides are one block there.
+    meetings: Vec<(f64, bool)>,
+}
+
+impl<'a> Line<'a> {
+    fn new(key: &str, bolt: &Bolt, places: &'a Places) -> Result<Self, Invalid> {
+        let ends = bolt.points.map(Point::from);
+        let mut elements = [0; 2];
+        for (k, element) in elements.iter_mut().enumerate() {
+            *element = places.element(&format!("{key}.points[{k}]"), bolt.points[k])?;
+        }
+        let length = (ends[1] - ends[0]).norm();
+        let direction = (ends[1] - ends[0]) / length;
+        let mut line = Self { places, ends, elements, direction, length, meetings: Vec::new() };
+        line.meet();
+        Ok(line)
+    }
+
+    /// Finds where the bolt meets pieces of block boundaries; places that coincide become one.
+    fn meet(&mut self) {
+        for piece in self.places.covers.outlines.pieces.iter().filter(|p| p.opposite == NONE || p.element < p.opposite)
+        {
+            let [a, b] = [piece.a, piece.b].map(|p| self.direction.perp(&(p - self.ends[0])));
+            if a * b > 0.0 || a == b {
+                continue;
+            }
+            let at = piece.a + (piece.b - piece.a) * (a / (a - b));
+            let along = (at - self.ends[0]).dot(&self.direction);
+            if (0.0..=self.length).contains(&along) {
+                self.meetings.push((along, piece.partial));
+            }
+        }
+        self.meetings.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let tolerance = self.places.tolerance;
+        self.meetings.dedup_by(|next, first| {
+            let same = next.0 - first.0 <= tolerance;
+            first.1 |= same && next.1;
+            same
+        });
+    }
+
+    fn at(&self, along: f64) -> Point {
+        self.ends[0] + self.direction * along
+    }
+
+    fn element_at(&self, along: f64) -> Option<usize> {
+        self.places.covers.element_near(self.at(along), self.places.tolerance)
+    }
+
+    /// The joints that the bolt crosses: rock on both sides, of two blocks or of one across a partial cut.
+    fn crossings(&self) -> Vec<Crossing> {
+        let mut crossings = Vec::new();
+        for (k, &(along, partial)) in self.meetings.iter().enumerate() {
+            let before = if k == 0 { 0.0 } else { self.meetings[k - 1].0 };
+            let after = self.meetings.get(k + 1).map_or(self.length, |m| m.0);
+            let beside = |room: f64| (0.25 * room).min(BESIDE * self.places.covers.mesh.size);
+            let sides = [along - beside(along - before), along + beside(after - along)].map(|at| self.element_at(at));
+            let [Some(first), Some(second)] = sides else { continue };
+            let block = |e: usize| self.places.covers.element_block[e];
+            if block(first) != block(second) || partial && first != second {
+                crossings.push(Crossing { along, elements: [first, second] });
+            }
+        }
+        crossings
+    }
+
+    /// Length (m) of the bolt that lies in no rock.
+    fn outside(&self) -> f64 {
+        let stations: Vec<f64> =
+            std::iter::once(0.0).chain(self.meetings.iter().map(|m| m.0)).chain([self.length]).collect();
+        let gaps = stations.windows(2).filter(|pair| pair[1] - pair[0] > 2.0 * self.places.tolerance);
+        gaps.filter(|pair| self.element_at(0.5 * (pair[0] + pair[1])).is_none()).map(|pair| pair[1] - pair[0]).sum()
+    }
+
+    /// One segment from end to end.
+    fn whole(&self, index: u32, bolt: &Bolt) -> BoltSegment {
+        self.segment(index, bolt, self.elements, self.ends, self.length)
+    }
+
+    /// A short segment across a joint; its points belong to the rock on both sides, as far as they reach.
+    fn bridge(&self, index: u32, bolt: &Bolt, crossing: &Crossing) -> BoltSegment {
+        let covers = self.places.covers;
+        let free = bolt.free_length.unwrap_or(FREE_LENGTH * covers.mesh.size);
+        let points = [-0.5, 0.5].map(|share| self.at(crossing.along + share * free));
+        self.segment(index, bolt, crossing.elements.map(|e| covers.host[e] as usize), points, free)
+    }
+
+    fn segment(
+        &self,
+        index: u32,
+        bolt: &Bolt,
+        elements: [usize; 2],
+        points: [Point; 2],
+        free_length: f64,
+    ) -> BoltSegment {
+        let covers = self.places.covers;
+        BoltSegment {
+            bolt: index,
+            blocks: elements.map(|e| covers.element_block[e]),
+            covers: elements.map(|e| covers.element_covers[e]),
+            weights: [0, 1].map(|k| covers.weights(elements[k], points[k])),
+            points,
+            stiffness: bolt.young * bolt.area / (free_length * bolt.spacing),
+            yield_force: bolt.yield_force.map_or(f64::INFINITY, |force| force / bolt.spacing),
+            rupture: bolt.rupture_strain.map_or(f64::INFINITY, |strain| strain * free_length),
+            pretension: bolt.pretension / bolt.spacing,
+            active: bolt.active,
+        }
+    }
+}

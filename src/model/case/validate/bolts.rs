@@ -1,0 +1,70 @@
+//! Checks of rock bolts: values, what fits the anchorage, and stages that install them.
+
+use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional, segment, unique};
+use crate::model::case::key::Key;
+use crate::model::case::{Anchorage, Bolt, Case};
+
+/// Checks the bolts of a case.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_bolts(key: &Key, bolts: &[Bolt]) -> Check {
+    for (i, bolt) in bolts.iter().enumerate() {
+        validate_bolt(&key.index(i), bolt)?;
+    }
+    unique(key, "bolt", bolts.iter().map(|bolt| bolt.name.as_deref()))
+}
+
+fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
+    segment(&key.field("points"), &bolt.points)?;
+    let force = Range::above(0.0).to(1e12);
+    let length = Range::above(0.0).to(COORDINATE_MAX);
+    number(key, "young", bolt.young, Range::above(0.0).to(1e15), "Pa", "steel has 2e11")?;
+    number(key, "area", bolt.area, Range::above(0.0).to(1e3), "m²", "a bar of 25 mm has 4.9e-4")?;
+    number(key, "spacing", bolt.spacing, length, "m", "1 for one bar per metre")?;
+    optional(key, "yield_force", bolt.yield_force, force, "N", "leave it out for a bar that never yields")?;
+    optional(key, "rupture_strain", bolt.rupture_strain, Range::above(0.0).to(1e6), "", "0.05 to 0.2 is usual")?;
+    number(key, "pretension", bolt.pretension, Range::from(0.0).to(1e12), "N", "0 for a bar without tension")?;
+    optional(key, "free_length", bolt.free_length, length, "m", "leave it out for a tenth of the mesh size")?;
+    if bolt.free_length.is_some() && bolt.anchorage == Anchorage::Ends {
+        let message = "a bar held at its ends is free between them; remove it, or set `anchorage = \"grouted\"`";
+        return fail(&key.field("free_length"), message);
+    }
+    if let Some(limit) = bolt.yield_force.filter(|&limit| bolt.pretension > limit) {
+        let message = format!(
+            "is {} N, must be at most {limit} N, at which the bar yields; lower it or raise `yield_force`",
+            bolt.pretension
+        );
+        return fail(&key.field("pretension"), message);
+    }
+    if bolt.name.is_none() && !bolt.active {
+        let message = "is false, and without a name no stage can install the bolt; add `name` or remove `active`";
+        return fail(&key.field("active"), message);
+    }
+    Ok(())
+}
+
+/// Checks that every bolt that a stage installs is known and not there yet.
+///
+/// # Errors
+/// The first name that cannot be used.
+pub fn validate_installs(key: &Key, case: &Case) -> Check {
+    let known = Names::of_bolts(case);
+    let active = case.bolts.iter().filter(|bolt| bolt.active);
+    let mut there: Vec<&str> = active.filter_map(|bolt| bolt.name.as_deref()).collect();
+    for (i, stage) in case.stages.iter().enumerate() {
+        for (k, name) in stage.install.iter().enumerate() {
+            let key = key.index(i).field("install").index(k);
+            known.must_hold(&key, name)?;
+            if there.contains(&name.as_str()) {
+                let remedy = "give it `active = false`, or remove it here";
+                return fail(
+                    &key,
+                    format!("bolt {name:?} is there already, from the start or an earlier stage; {remedy}"),
+                );
+            }
+            there.push(name);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,82 @@
+//! Checks of joint laws: what belongs to the kind, and what a stage may change of it.
+
+use super::checks::{Check, Range, fail, number, optional};
+use crate::model::case::key::Key;
+use crate::model::case::{JointLaw, JointLawKind, LawChange};
+
+/// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
+const RESIDUAL: Range = Range::from(0.0).to(70.0);
+
+/// Checks that a law has what its kind needs and nothing else.
+///
+/// # Errors
+/// The first key that does not fit the kind, or whose value cannot be used.
+pub fn validate_kind(key: &Key, law: &JointLaw) -> Check {
+    optional(key, "jrc", law.jrc, Range::from(0.0).to(30.0), "", "0 for smooth to 20 for very rough joints")?;
+    optional(key, "jcs", law.jcs, Range::above(0.0).to(1e12), "Pa", "up to the strength of the rock, 1e6 to 3e8")?;
+    optional(key, "closure_max", law.closure_max, Range::above(0.0).to(1e3), "m", "leave it out for linear closure")?;
+    match law.kind {
+        JointLawKind::MohrCoulomb => {
+            let given = [("jrc", law.jrc), ("jcs", law.jcs), ("closure_max", law.closure_max)];
+            let foreign = given.into_iter().find(|(_, value)| value.is_some()).map(|(name, _)| name);
+            foreign.map_or(Ok(()), |name| {
+                let remedy = "remove it, or set `kind = \"barton_bandis\"`";
+                fail(&key.field(name), format!("a law of kind mohr_coulomb does not have it; {remedy}"))
+            })
+        }
+        JointLawKind::BartonBandis => validate_rough(key, law),
+    }
+}
+
+fn validate_rough(key: &Key, law: &JointLaw) -> Check {
+    let strengths = [
+        ("cohesion", law.cohesion != 0.0),
+        ("tension", law.tension != 0.0),
+        ("residual_friction_deg", law.residual_friction_deg.is_some()),
+        ("residual_cohesion", law.residual_cohesion.is_some()),
+        ("residual_tension", law.residual_tension != 0.0),
+    ];
+    if let Some((name, _)) = strengths.iter().find(|(_, given)| *given) {
+        let message = "a law of kind barton_bandis has no such strength: `friction_deg`, `jrc` and `jcs` give it; remove \
+                       it, or set `kind = \"mohr_coulomb\"`";
+        return fail(&key.field(name), message);
+    }
+    for (name, value) in [("jrc", law.jrc), ("jcs", law.jcs)] {
+        if value.is_none() {
+            return fail(key, format!("a law of kind barton_bandis needs `{name}`, which is not given; add `{name}`"));
+        }
+    }
+    number(key, "friction_deg", law.friction_deg, RESIDUAL, "degrees", "the residual angle, 20 to 35 is usual")?;
+    if law.closure_max.is_some() && law.normal_stiffness.is_none() {
+        let message = "needs `normal_stiffness`, the stiffness at no closure, which is not given; add it";
+        return fail(&key.field("closure_max"), message);
+    }
+    if law.closure_max.is_some() && law.dilation_deg > 0.0 {
+        let message = format!(
+            "is {}°, but a joint with `closure_max` does not dilate, since slip could close it further than that; remove \
+             one of them",
+            law.dilation_deg
+        );
+        return fail(&key.field("dilation_deg"), message);
+    }
+    Ok(())
+}
+
+/// Checks what a stage changes of a Barton–Bandis law: its residual angle only.
+///
+/// # Errors
+/// Another value is given, or the angle cannot be used.
+pub fn validate_rough_change(key: &Key, change: &LawChange) -> Check {
+    for (name, value) in [("cohesion", change.cohesion), ("tension", change.tension)] {
+        if let Some(value) = value {
+            let message = format!(
+                "is {value} Pa, but {:?} is a barton_bandis law, of which a stage may change `friction_deg` (its \
+                 residual angle) only; remove it, or switch to another law with `switch_law`",
+                change.law
+            );
+            return fail(&key.field(name), message);
+        }
+    }
+    let hint = "the residual angle, 20 to 35 is usual";
+    optional(key, "friction_deg", change.friction_deg, RESIDUAL, "degrees", hint)
+}

@@ -1,0 +1,186 @@
+//! Rock bolts hang, yield, break and hold joints together as elastic–plastic bars do, at any stiffness, through
+//! checkpoints to the bit, and with a closed ledger.
+
+mod common;
+
+use common::claims::{advance, assert_ledger, block_at};
+use common::{run_stage, simulation};
+use enmm::model::Simulation;
+use enmm::model::case::Case;
+
+const G: f64 = 9.81;
+const AREA: f64 = 2.0 * 0.8;
+const DENSITY: f64 = 2500.0;
+
+/// A block of 2 m × 0.8 m that hangs below a held slab, from which a smooth joint parts it, and bolts.
+fn roof(bolts: &str, stages: &str) -> String {
+    format!(
+        "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\nislands = [[[0, -0.8], [2, -0.8], [2, \
+         0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n[joint_law.joint]\nfriction_deg = 0.0\n[rock.rock]\n\
+         density = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n[[fix]]\nblock = [-0.5, 0.5]\n{bolts}{stages}"
+    )
+}
+
+fn bolt(x: f64, young: f64, more: &str) -> String {
+    format!("[[bolt]]\npoints = [[{x:?}, -0.4], [{x:?}, 0.6]]\nyoung = {young:e}\narea = 1e-3\n{more}\n")
+}
+
+const SETTLE: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
+
+fn forces(simulation: &Simulation) -> Vec<f64> {
+    simulation.state().bolts.iter().map(|b| b.force).collect()
+}
+
+fn hang(simulation: &Simulation) -> f64 {
+    -simulation.motion_of(block_at(simulation, [1.03, -0.41])).displacement.y
+}
+
+/// Two bars off the middle by e1 and e2 share the weight by the lever; each gets longer by T·L/EA. The rock between
+/// joint and anchor strains by some 1e-6 of its size: nothing against the bars' 2e-3 (E·A = 1e7 N). Spacing 2 m halves.
+#[test]
+fn bars_share_the_weight_by_the_lever() {
+    let bars = bolt(0.5, 1e10, "") + &bolt(1.25, 2e10, "spacing = 2.0");
+    let mut sim = simulation(&roof(&bars, SETTLE));
+    let report = run_stage(&mut sim);
+    let weight = AREA * DENSITY * G;
+    // Moments about the middle x = 1, for the small turn that leaves both bars straight.
+    let exact = [weight * 0.25 / 0.75, weight * 0.5 / 0.75];
+    for (found, exact) in forces(&sim).iter().zip(exact) {
+        assert!((found / exact - 1.0).abs() < 5e-3, "{found} of {exact}");
+    }
+    let stretch = |k: usize| forces(&sim)[k] * 1.0 / 1e7;
+    let mean = stretch(0) + (stretch(1) - stretch(0)) * (0.5 / 0.75);
+    assert!((hang(&sim) / mean - 1.0).abs() < 5e-3, "{} of {mean}", hang(&sim));
+    assert_ledger(&report);
+}
+
+/// A bar that yields at 1.3 times the weight stops the fall of the block after a plastic way: dropped from rest with no
+/// tension, energy balance W·x = Y·x − Y²/2k gives x = Y²/(2k(Y − W)). Then it hangs by W on the unloaded bar. Stiffness
+/// and yield are those of the bar: rock strains 1e-5 of that, so 1 %.
+#[test]
+fn a_bar_that_yields_stops_the_block_after_its_plastic_way() {
+    let weight = AREA * DENSITY * G;
+    let (limit, stiffness) = (1.3 * weight, 1e-3 * 1e10);
+    let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\ndamping = 0.0\n";
+    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {limit:e}")), stage);
+    let mut sim = simulation(&text);
+    let mut deepest = 0.0f64;
+    let mut report = Default::default();
+    for _ in 0..sim.steps_in(0.5) / 20 {
+        report = advance(&mut sim, 20);
+        deepest = deepest.max(hang(&sim));
+    }
+    let exact = limit * limit / (2.0 * stiffness * (limit - weight));
+    println!("deepest {deepest} of {exact}; {:?}", sim.state().bolts);
+    assert!((deepest / exact - 1.0).abs() < 1e-2, "{deepest} of {exact}");
+    let bar = sim.state().bolts[0];
+    let plastic = limit * (bar.rest - bar.natural);
+    let ledger = report.ledger;
+    assert!((ledger.bolt_dissipation() / plastic - 1.0).abs() < 2e-2, "{} of {plastic}", ledger.bolt_dissipation());
+    assert!(ledger.contact_dissipation().abs() < 1e-3 * plastic);
+    assert_ledger(&report);
+}
+
+/// The same bar breaks when its elongation passes the rupture strain on the way, and the block falls freely from then.
+#[test]
+fn a_bar_breaks_at_its_rupture_strain() {
+    let weight = AREA * DENSITY * G;
+    let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\ndamping = 0.0\n";
+    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {:e}\nrupture_strain = 4e-3", 1.3 * weight)), stage);
+    let mut sim = simulation(&text);
+    while !sim.state().bolts[0].broken {
+        assert!(hang(&sim) < 4.1e-3, "it breaks at 4 mm");
+        advance(&mut sim, 1);
+    }
+    assert!(hang(&sim) > 3.9e-3);
+    let speed = |sim: &Simulation| -sim.motion_of(block_at(sim, [1.03, -0.41])).velocity.y;
+    let (before, start) = (speed(&sim), sim.time());
+    let report = advance(&mut sim, 1000);
+    let gain = speed(&sim) - before;
+    assert!((gain / (G * (sim.time() - start)) - 1.0).abs() < 1e-2, "it falls freely");
+    assert_eq!(forces(&sim), [0.0]);
+    assert_ledger(&report);
+}
+
+/// Grouted bars press the block against the slab by their pretension, less the weight; in a soft joint the bar gives as
+/// much as the joint opens. With stiff bars (2e11 Pa over 5 cm of free length: k·W·dt² of some hundreds) the step is the
+/// rock's own and the model is at rest. A stage installs a second bar, which has its pretension at once.
+#[test]
+fn grouted_bars_need_no_smaller_step_and_come_by_stage() {
+    let bars = bolt(0.5, 2e11, "anchorage = \"grouted\"\nname = \"first\"\npretension = 4e4")
+        + &bolt(1.5, 2e11, "anchorage = \"grouted\"\nname = \"second\"\npretension = 3e4\nactive = false");
+    let more = "[[stage]]\nname = \"install\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\ninstall = [\"second\"]\n";
+    let mut sim = simulation(&roof(&bars, &(SETTLE.to_owned() + more)));
+    let plain = simulation(&roof("", SETTLE));
+    assert_eq!(sim.slope().dt, plain.slope().dt);
+    run_stage(&mut sim);
+    assert!(forces(&sim)[0] > 3.5e4 && forces(&sim)[1] == 0.0, "{:?}", forces(&sim));
+    assert!(sim.next_stage().expect("it fits"));
+    assert_eq!(forces(&sim)[1], 3e4);
+    let report = run_stage(&mut sim);
+    let normal: f64 = sim.contacts().iter().map(|c| c.history.normal_force).sum();
+    let exact = forces(&sim).iter().sum::<f64>() - AREA * DENSITY * G;
+    assert!((normal / exact - 1.0).abs() < 1e-3, "{normal} of {exact}");
+    println!("{:?} {:e} {}", report, sim.time(), sim.state().counters.unsettled);
+    assert!(report.ledger.kinetic < 1e-6 && sim.at_rest(&report));
+    assert_ledger(&report);
+}
+
+#[test]
+fn a_saved_state_goes_on_with_the_same_bits() {
+    let weight = AREA * DENSITY * G;
+    let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\n";
+    let text = roof(&bolt(0.8, 1e10, &format!("yield_force = {:e}", 1.3 * weight)), stage);
+    let mut sim = simulation(&text);
+    advance(&mut sim, 300);
+    let mut other = simulation(&text);
+    let mut copy = other.state().clone();
+    copy.copy_from(sim.state());
+    assert!(other.fits(&copy));
+    other.restore(copy);
+    advance(&mut sim, 300);
+    advance(&mut other, 300);
+    assert_eq!(sim.state(), other.state());
+}
+
+fn refused(bolts: &str, stages: &str) -> String {
+    let text = roof(bolts, stages);
+    match enmm::io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
+        Err(error) => error.to_string(),
+        Ok(loaded) => {
+            let case: Case = loaded.case;
+            Simulation::new(case).map(|_| ()).expect_err("it is refused").to_string()
+        }
+    }
+}
+
+#[test]
+fn bolts_that_cannot_be_are_errors() {
+    let named = |more: &str| bolt(1.0, 2e11, more);
+    let install = |name: &str| SETTLE.to_owned() + &format!("install = [\"{name}\"]\n");
+    for (bolts, stages, words) in [
+        (bolt(9.0, 2e11, ""), SETTLE.into(), "bolt[0].points[0]: there is no rock"),
+        (named("").replace("0.6]]", "-0.2]]") + "anchorage = \"grouted\"\n", SETTLE.into(), "crosses no joint"),
+        (named("active = false"), SETTLE.into(), "no stage can install the bolt"),
+        (named("name = \"a\"\nactive = false"), install("b"), "no bolt is named \"b\""),
+        (named("name = \"a\""), install("a"), "is there already"),
+        (named("pretension = 3e5\nyield_force = 2e5"), SETTLE.into(), "at which the bar yields"),
+        (named("free_length = 0.1"), SETTLE.into(), "bolt[0].free_length"),
+        (named("name = \"a\"\nactive = false"), install("a") + "excavate = [[1.0, -0.4]]\n", "has been removed"),
+    ] {
+        let message = refused(&bolts, &stages);
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+/// A grouted bolt through an opening crosses its two joints and tells how much of it is in air.
+#[test]
+fn a_bolt_through_an_opening_warns() {
+    let text = roof(&bolt(1.0, 2e11, "anchorage = \"grouted\""), SETTLE)
+        .replace("points = [[1.0, -0.4]", "points = [[1.0, -1.5]")
+        .replace("islands = [", "islands = [[[0, -2], [2, -2], [2, -1.2], [0, -1.2]], ");
+    let sim = simulation(&text);
+    assert_eq!(sim.slope().bolts.len(), 1);
+    let warning = &sim.built().warnings.iter().find(|w| w.contains("outside the rock")).expect("a warning").clone();
+    assert!(warning.contains("0.400 m"), "{warning}");
+}
