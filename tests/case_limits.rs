@@ -49,24 +49,36 @@ fn numbers_of_schema(root: &Value, node: &Value, name: &str, found: &mut BTreeSe
     }
 }
 
-fn case_as_json() -> Value {
-    serde_json::to_value(parse_case(CASE, "slope.toml", Path::new("")).unwrap().case).unwrap()
+/// The valid case, and the same with the other of two keys that exclude each other.
+fn cases_as_json() -> [Value; 2] {
+    let other = CASE.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1);
+    [CASE.to_owned(), other]
+        .map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
 }
 
 #[test]
 fn every_number_of_the_schema_has_a_limit_at_both_ends() {
     let mut names = BTreeSet::new();
-    visit_numbers(&mut case_as_json(), "", &mut |name, _| names.extend([name.to_string()]));
+    for mut json in cases_as_json() {
+        visit_numbers(&mut json, "", &mut |name, _| names.extend([name.to_string()]));
+    }
     let mut expected = BTreeSet::new();
     let schema = schema();
     numbers_of_schema(&schema, &schema, "", &mut expected);
     let absent: Vec<_> = expected.difference(&names).collect();
     assert!(absent.is_empty(), "the case of this test must hold every numeric key, {absent:?} are absent");
 
+    for original in cases_as_json() {
+        refuses_extremes(&original);
+    }
+}
+
+/// Every number of a case is refused when it is far out of range.
+fn refuses_extremes(original: &Value) {
     let mut count = 0;
-    visit_numbers(&mut case_as_json(), "", &mut |_, _| count += 1);
+    visit_numbers(&mut original.clone(), "", &mut |_, _| count += 1);
     for (nth, extreme) in (0..count).flat_map(|nth| [(nth, 1e30), (nth, -1e30)]) {
-        let (mut json, mut at, mut changed) = (case_as_json(), 0, None);
+        let (mut json, mut at, mut changed) = (original.clone(), 0, None);
         visit_numbers(&mut json, "", &mut |name, value| {
             if at == nth && value.is_f64() {
                 *value = Value::from(extreme);

@@ -4,7 +4,7 @@ use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
 use super::Metric;
-use super::pressure::inward;
+use super::pressure::{inward, part};
 
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -24,6 +24,19 @@ impl TimeTable {
     }
 }
 
+/// An edge of the boundary with covers, weights and fluid pressure (Pa) of both ends, rock on its left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadedFace {
+    /// Covers of both ends.
+    pub covers: [[u32; 3]; 2],
+    /// Weights of both ends.
+    pub weights: [Weights; 2],
+    /// Shares of the way along the edge between which the fluid is.
+    pub span: [f64; 2],
+    /// Pressure (Pa) at both ends of that part, linear between, pushing into the rock.
+    pub pressure: [f64; 2],
+}
+
 /// Where and how a load acts, resolved to covers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadAction {
@@ -31,6 +44,8 @@ pub enum LoadAction {
     Forces(Vec<([u32; 3], Weights, Vector)>),
     /// Pressure (Pa) on pieces of boundary, given by the covers of their element and the weights of both ends.
     Pressure(Vec<([u32; 3], [Weights; 2])>, f64),
+    /// Fluid pressure on faces of joints.
+    Faces(Vec<LoadedFace>),
     /// Acceleration (m/s²) of all rock.
     Body(Vector),
     /// Force (N/m) and moment (N·m/m) about the centroid of a block.
@@ -78,6 +93,14 @@ impl Load {
                     let [a, b] = ends.map(|w| (0..3).map(|k| place(covers[k] as usize) * w[k]).sum::<Point>());
                     let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
                     spread(covers, &middle, inward(a, b) * (pressure * factor), force);
+                }
+            }
+            LoadAction::Faces(faces) => {
+                for LoadedFace { covers, weights, span, pressure } in faces {
+                    let [a, b] =
+                        [0, 1].map(|e| (0..3).map(|k| place(covers[e][k] as usize) * weights[e][k]).sum::<Point>());
+                    let forces = part(inward(a, b), *span, pressure.map(|p| p * factor));
+                    (0..2).for_each(|e| spread(&covers[e], &weights[e], forces[e], force));
                 }
             }
             LoadAction::Body(_) => {}

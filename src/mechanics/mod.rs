@@ -13,7 +13,7 @@ pub mod pressure;
 pub use column::ColumnState;
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
-pub use load::{Load, LoadAction, TimeTable, push_block, spread};
+pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::Metric;
 pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};
 pub use plasticity::PlasticStrain;

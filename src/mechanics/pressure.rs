@@ -27,6 +27,60 @@ pub fn hydrostatic(a: Point, b: Point, level: f64, weight: f64) -> [Vector; 2] {
     }
 }
 
+/// Forces (N/m) at both ends of the edge from `a` to `b` under still water of unit weight `weight` (N/m³) below a
+/// broken line from left to right, `rise` (m) above `table`: the pressure is the unit weight times the vertical depth
+/// below the line, which is level beyond its ends (Eq. J7). Exact: the edge is split where the line bends and where it
+/// is crossed.
+pub fn under_table(a: Point, b: Point, table: &[Point], rise: f64, weight: f64) -> [Vector; 2] {
+    let normal = inward(a, b) * weight;
+    let place = |s: f64| a + (b - a) * s;
+    let depth = |s: f64| surface(table, place(s).x) + rise - place(s).y;
+    let run = b.x - a.x;
+    let mut forces = [Vector::zeros(); 2];
+    let mut from = 0.0;
+    // Kinks in the order in which the edge passes under them.
+    let kink = |k: usize| if run > 0.0 { table[k].x } else { table[table.len() - 1 - k].x };
+    for k in 0..=table.len() {
+        let to = if k < table.len() && run != 0.0 { ((kink(k) - a.x) / run).clamp(0.0, 1.0) } else { 1.0 };
+        if to > from {
+            let piece = wet_part(normal, [from, to], [depth(from), depth(to)]);
+            (0..2).for_each(|end| forces[end] += piece[end]);
+            from = to;
+        }
+    }
+    forces
+}
+
+/// Height (m) of a broken line at `x` (m), level beyond its ends.
+fn surface(table: &[Point], x: f64) -> f64 {
+    let after = table.partition_point(|p| p.x <= x);
+    match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
+        (Some(p), Some(q)) => p.y + (q.y - p.y) * (x - p.x) / (q.x - p.x),
+        (Some(p), None) => p.y,
+        (None, Some(q)) => q.y,
+        (None, None) => f64::NEG_INFINITY,
+    }
+}
+
+/// The part of a piece of an edge that lies below the surface, with depths linear between its ends.
+fn wet_part(normal: Vector, [from, to]: [f64; 2], depth: [f64; 2]) -> [Vector; 2] {
+    let crossing = from + (to - from) * depth[0] / (depth[0] - depth[1]);
+    match depth.map(|d| d > 0.0) {
+        [false, false] => [Vector::zeros(); 2],
+        [true, true] => part(normal, [from, to], depth),
+        [true, false] => part(normal, [from, crossing], [depth[0], 0.0]),
+        [false, true] => part(normal, [crossing, to], [0.0, depth[1]]),
+    }
+}
+
+/// Forces (N/m) at both ends of an edge, given its inward normal as long as itself, under a pressure (Pa) on the part
+/// between two shares of its length that goes linearly from `ends[0]` to `ends[1]` (Eq. J8).
+pub fn part(normal: Vector, [from, to]: [f64; 2], ends: [f64; 2]) -> [Vector; 2] {
+    let resultant = 0.5 * (to - from) * (ends[0] + ends[1]);
+    let moment = (to - from) * (from * (2.0 * ends[0] + ends[1]) + to * (ends[0] + 2.0 * ends[1])) / 6.0;
+    [normal * (resultant - moment), normal * moment]
+}
+
 /// Normal into the rock, as long as the edge.
 pub fn inward(a: Point, b: Point) -> Vector {
     Vector::new(a.y - b.y, b.x - a.x)
@@ -50,6 +104,38 @@ mod tests {
         let centre = Point::new(1.75, 2.25);
         assert!((force - Vector::new(0.0, 9810.0 * area)).norm() < 1e-9, "{force}");
         assert!((moment - centre.x * 9810.0 * area).abs() < 1e-8, "{moment}");
+    }
+
+    #[test]
+    fn under_a_broken_line_forces_and_moments_are_those_of_a_fine_sum() {
+        let table = [Point::new(-1.0, 3.0), Point::new(0.5, 2.0), Point::new(2.0, 2.5), Point::new(4.0, 0.0)];
+        let edges = [[[-3.0, 1.0], [5.0, 1.5]], [[5.0, 0.3], [-2.0, 2.6]], [[1.0, -1.0], [1.0, 4.0]], [[0.6, 9.0], [0.7, 8.0]]];
+        for [a, b] in edges.map(|ends| ends.map(Point::from)) {
+            let found = under_table(a, b, &table, 0.25, 10.0);
+            let (mut sum, n) = ([Vector::zeros(); 2], 200_000);
+            for k in 0..n {
+                let s = (f64::from(k) + 0.5) / f64::from(n);
+                let p = a + (b - a) * s;
+                let pressure = 10.0 * (surface(&table, p.x) + 0.25 - p.y).max(0.0) / f64::from(n);
+                sum = [sum[0] + inward(a, b) * (pressure * (1.0 - s)), sum[1] + inward(a, b) * (pressure * s)];
+            }
+            for end in 0..2 {
+                assert!((found[end] - sum[end]).norm() < 1e-7, "{a} {b}: {} of {}", found[end], sum[end]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_level_table_and_a_level_agree() {
+        let level = [Point::new(0.0, 3.0), Point::new(1.0, 3.0)];
+        for [a, b] in [[[0.0, 0.0], [0.5, 5.0]], [[2.0, 4.0], [-1.0, 1.0]], [[0.0, 1.0], [3.0, 2.0]]] {
+            let (a, b) = (Point::from(a), Point::from(b));
+            let difference = under_table(a, b, &level, 0.5, 10.0)[0] - hydrostatic(a, b, 3.5, 10.0)[0];
+            assert!(difference.norm() < 1e-12);
+        }
+        let normal = inward(Point::new(0.0, 0.0), Point::new(2.0, 0.0));
+        assert_eq!(part(normal, [0.0, 1.0], [3.0, 9.0]).map(|f| f.y), [5.0, 7.0]);
+        assert_eq!(part(normal, [0.5, 1.0], [4.0, 4.0]).map(|f| f.y), [1.0, 3.0]);
     }
 
     #[test]

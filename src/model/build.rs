@@ -48,10 +48,10 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
     let laws = joint_laws(case, stiffness);
     let (fixities, supports) = fixities(case, &places, stiffness)?;
-    let loads = loads(case, &places)?;
-    let monitors = monitors(case, &places)?;
     let boundary = Boundary::new(&covers, &BoundaryOptions::default());
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
+    let loads = loads(case, &places, &faces)?;
+    let monitors = monitors(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
     let slope = Slope {
@@ -215,7 +215,7 @@ fn in_situ(case: &Case) -> Option<StressField> {
     case.in_situ.as_ref().map(field)
 }
 
-fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
+fn loads(case: &Case, places: &Places, faces: &ports::Faces) -> Result<Vec<Load>, Invalid> {
     let vector = |v: Option<[f64; 2]>| Vector::from(v.unwrap_or_default());
     let mut loads = Vec::new();
     for (k, load) in case.loads.iter().enumerate() {
@@ -235,7 +235,7 @@ fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
                 load.pressure.unwrap_or_default(),
             ),
             LoadKind::Body => LoadAction::Body(vector(load.acceleration)),
-            LoadKind::Joint => return Err(not_yet(&format!("{key}.kind"))),
+            LoadKind::Joint => LoadAction::Faces(faces.loaded(&key, load)?),
             LoadKind::Block => {
                 let block = places.block(&point().0, point().1)?;
                 LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
@@ -244,10 +244,6 @@ fn loads(case: &Case, places: &Places) -> Result<Vec<Load>, Invalid> {
         loads.push(Load { action, table: TimeTable(load.table.clone().unwrap_or_default()) });
     }
     Ok(loads)
-}
-
-fn not_yet(key: &str) -> Invalid {
-    Invalid { key: key.into(), message: "is not built yet".into() }
 }
 
 fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid> {

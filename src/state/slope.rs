@@ -44,13 +44,15 @@ pub struct Port {
     pub scalar: f64,
 }
 
-/// Water with a level surface.
+/// Water with a level or a sloping surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Water {
     /// Density (kg/m³).
     pub density: f64,
-    /// Height y of the surface at the start (m).
+    /// Height y of the surface at the start (m): of its highest point, when it slopes.
     pub level: f64,
+    /// Points of a sloping surface at the start (m), from left to right; empty for a level one.
+    pub table: Vec<Point>,
     /// Boundary edges that it reaches.
     pub edges: Vec<u32>,
 }

@@ -51,8 +51,13 @@ impl Faces<'_> {
         let Some(water) = &self.slope.water else { return };
         let level = self.state.drive.water_level(share);
         let weight = water.density * self.state.drive.gravity(share).norm() * ramp;
+        let rise = level - water.level;
         for &edge in &water.edges {
-            self.push(edge, |a, b| pressure::hydrostatic(a, b, level, weight), force);
+            if water.table.is_empty() {
+                self.push(edge, |a, b| pressure::hydrostatic(a, b, level, weight), force);
+            } else {
+                self.push(edge, |a, b| pressure::under_table(a, b, &water.table, rise, weight), force);
+            }
         }
     }
 

@@ -116,6 +116,12 @@ kind = "block"
 point = [3.0, 3.0]
 moment = 10.0
 
+[[load]]
+kind = "joint"
+edge = [[0.0, 2.0], [10.0, 3.0]]
+pressure = 1e4
+pressure_end = 5e3
+
 [[initial_velocity]]
 block = [3.0, 3.0]
 velocity = [0.1, 0.0]

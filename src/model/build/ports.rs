@@ -2,7 +2,8 @@
 
 use crate::contact::Boundary;
 use crate::geometry::{NONE, Point, Vector, segment};
-use crate::model::case::{Case, Invalid};
+use crate::mechanics::LoadedFace;
+use crate::model::case::{Case, Invalid, Load};
 use crate::state::{Port, PortKind, Water};
 
 use super::place::Places;
@@ -20,22 +21,58 @@ impl Faces<'_> {
         ends.iter().all(|&p| segment::distance(p, Point::from(a), Point::from(b)) <= self.tolerance)
     }
 
+    /// What a load of kind `joint` presses on: joint faces or the parts of them that lie on its segment.
+    pub fn loaded(&self, key: &str, load: &Load) -> Result<Vec<LoadedFace>, Invalid> {
+        let segment = load.edge.unwrap_or_default();
+        let joints = (0..self.boundary.len()).filter(|&k| self.boundary.trace[k] != NONE);
+        let faces: Vec<LoadedFace> = joints.filter_map(|k| self.loaded_face(k, segment, load)).collect();
+        if faces.is_empty() {
+            return Err(nothing_on(&format!("{key}.edge"), segment, true));
+        }
+        Ok(faces)
+    }
+
+    /// The part of an edge on a segment with the pressure at both of its ends.
+    fn loaded_face(&self, edge: usize, segment: [[f64; 2]; 2], load: &Load) -> Option<LoadedFace> {
+        let boundary = self.boundary;
+        let [a, b] = segment.map(Point::from);
+        let (length, along) = ((b - a).norm(), (b - a).normalize());
+        let ends = [edge, boundary.after(edge)];
+        let at = ends.map(|k| (boundary.reference[k] - a).dot(&along));
+        let off = |k: usize| (boundary.reference[k] - a).perp(&along).abs() > self.tolerance;
+        let inside = at.map(|s| s.clamp(0.0, length));
+        if ends.into_iter().any(off) || (inside[1] - inside[0]).abs() <= self.tolerance {
+            return None;
+        }
+        let first = load.pressure.unwrap_or_default();
+        let rise = load.pressure_end.unwrap_or(first) - first;
+        Some(LoadedFace {
+            covers: ends.map(|k| boundary.covers[k]),
+            weights: ends.map(|k| boundary.weights[k]),
+            span: inside.map(|s| (s - at[0]) / (at[1] - at[0])),
+            pressure: inside.map(|s| first + rise * s / length),
+        })
+    }
+
     /// Edges on a segment, of joints or of the outer boundary.
     fn on(&self, key: &str, segment: [[f64; 2]; 2], joints: bool) -> Result<Vec<u32>, Invalid> {
         let wanted = |k: &usize| (self.boundary.trace[*k] != NONE) == joints && self.lies_on(*k, segment);
         let edges: Vec<u32> = (0..self.boundary.len()).filter(wanted).map(|k| k as u32).collect();
         if edges.is_empty() {
-            let ([a, b], [c, d]) = (segment[0], segment[1]);
-            let (what, remedy) = if joints {
-                ("joint", "give two points of one straight joint that cuts rock")
-            } else {
-                ("outer boundary of the rock", "give two points of one straight side of the outline")
-            };
-            let message = format!("no {what} lies on the segment ({a}, {b})–({c}, {d}): {remedy}");
-            return Err(Invalid { key: key.into(), message });
+            return Err(nothing_on(key, segment, joints));
         }
         Ok(edges)
     }
+}
+
+/// No joint, or no outer boundary, lies on a segment.
+fn nothing_on(key: &str, [[a, b], [c, d]]: [[f64; 2]; 2], joints: bool) -> Invalid {
+    let (what, remedy) = if joints {
+        ("joint", "give two points of one straight joint that cuts rock")
+    } else {
+        ("outer boundary of the rock", "give two points of one straight side of the outline")
+    };
+    Invalid { key: key.into(), message: format!("no {what} lies on the segment ({a}, {b})–({c}, {d}): {remedy}") }
 }
 
 /// The ports of a case.
@@ -82,5 +119,6 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         *wet |= water.joints && faces.boundary.trace[edge] != NONE;
     }
     let edges = (0..wet.len()).filter(|&k| wet[k]).map(|k| k as u32).collect();
-    Ok(Some(Water { density: water.density, level: water.start_level(), edges }))
+    let table = super::geometry::points(water.table.as_deref().unwrap_or_default());
+    Ok(Some(Water { density: water.density, level: water.start_level(), table, edges }))
 }

@@ -84,17 +84,17 @@ enum Use {
     Must,
 }
 
-/// Returns the name of a kind and its use of `point`, `edge`, `force`, `moment`, `traction`, `pressure` and
-/// `acceleration`.
-fn fields_of(kind: LoadKind) -> (&'static str, [Use; 7]) {
+/// Returns the name of a kind and its use of `point`, `edge`, `force`, `moment`, `traction`, `pressure`,
+/// `pressure_end` and `acceleration`.
+fn fields_of(kind: LoadKind) -> (&'static str, [Use; 8]) {
     use Use::{May, Must, No};
     match kind {
-        LoadKind::Point => ("point", [Must, No, Must, No, No, No, No]),
-        LoadKind::Traction => ("traction", [No, Must, No, No, Must, No, No]),
-        LoadKind::Pressure => ("pressure", [No, Must, No, No, No, Must, No]),
-        LoadKind::Body => ("body", [No, No, No, No, No, No, Must]),
-        LoadKind::Block => ("block", [Must, No, May, May, No, No, No]),
-        LoadKind::Joint => ("joint", [No, Must, No, No, No, Must, No]),
+        LoadKind::Point => ("point", [Must, No, Must, No, No, No, No, No]),
+        LoadKind::Traction => ("traction", [No, Must, No, No, Must, No, No, No]),
+        LoadKind::Pressure => ("pressure", [No, Must, No, No, No, Must, No, No]),
+        LoadKind::Body => ("body", [No, No, No, No, No, No, No, Must]),
+        LoadKind::Block => ("block", [Must, No, May, May, No, No, No, No]),
+        LoadKind::Joint => ("joint", [No, Must, No, No, No, Must, May, No]),
     }
 }
 
@@ -107,6 +107,7 @@ fn validate_fields(key: &Key, load: &Load) -> Check {
         ("moment", load.moment.is_some()),
         ("traction", load.traction.is_some()),
         ("pressure", load.pressure.is_some()),
+        ("pressure_end", load.pressure_end.is_some()),
         ("acceleration", load.acceleration.is_some()),
     ];
     for ((name, there), wanted) in given.into_iter().zip(uses) {
@@ -142,5 +143,6 @@ fn validate_values(key: &Key, load: &Load) -> Check {
     }
     optional(key, "moment", load.moment, Range::within(1e18), "N·m/m", "counter-clockwise is positive")?;
     optional(key, "pressure", load.pressure, Range::within(1e12), "Pa", "into the rock is positive")?;
+    optional(key, "pressure_end", load.pressure_end, Range::within(1e12), "Pa", "leave it out for `pressure`")?;
     load.table.as_ref().map_or(Ok(()), |rows| table(&key.field("table"), rows))
 }

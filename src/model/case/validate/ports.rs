@@ -1,6 +1,6 @@
 //! Checks of water and ports.
 
-use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, segment, unique};
+use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, points, segment, unique};
 use crate::model::case::key::{Key, list};
 use crate::model::case::limits::VALUE_MAX;
 use crate::model::case::{Port, Water};
@@ -12,8 +12,35 @@ use crate::model::case::{Port, Water};
 pub fn validate_water(key: &Key, water: &Water) -> Check {
     optional(key, "level", water.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
     number(key, "density", water.density, Range::above(0.0).to(1e5), "kg/m³", "1000 is the default")?;
+    match (&water.level, &water.table) {
+        (Some(_), None) => {}
+        (None, Some(table)) => validate_table(&key.field("table"), table)?,
+        (given, _) => {
+            let count = if given.is_some() { 2 } else { 0 };
+            let message = format!(
+                "has {count} of `level` and `table`, must have exactly 1; give `level` for a level surface, or `table` \
+                 for a sloping one"
+            );
+            return fail(key, message);
+        }
+    }
     let Some(faces) = &water.faces else { return Ok(()) };
     faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))
+}
+
+/// Checks the points of a sloping surface.
+fn validate_table(key: &Key, table: &[[f64; 2]]) -> Check {
+    points(key, table, 2, "a water table")?;
+    for (i, pair) in table.windows(2).enumerate() {
+        if pair[1][0] <= pair[0][0] {
+            let message = format!(
+                "x is {} m, must be greater than {} m of the point before; give the points from left to right",
+                pair[1][0], pair[0][0]
+            );
+            return fail(&key.index(i + 1), message);
+        }
+    }
+    Ok(())
 }
 
 /// Checks the ports of a case.
