@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod fmu;
+mod fos;
 mod progress;
 mod run;
 
@@ -40,6 +41,8 @@ enum Command {
     },
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
+    /// Finds the factor of safety of a case by dividing its strength until it fails.
+    Fos(fos::Arguments),
     /// Times standard models: element updates and contacts per second, share of each part of the step.
     Bench {
         /// Print one JSON object.
@@ -55,6 +58,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
+        Command::Fos(arguments) => fos::fos(&arguments),
         Command::Bench { json } => bench::run(json),
         Command::Schema => schema(),
     }

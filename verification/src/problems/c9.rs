@@ -62,7 +62,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let mut found = Vec::new();
     for seismic in [0.0, setup.get("kh")] {
         let mut marks = Vec::new();
-        for level in levels.into_iter().filter(|l| !setup.quick || *l != levels[1]) {
+        let quick = setup.quick;
+        for level in levels.into_iter().filter(|level| !quick || *level != levels[1]) {
             let model = slide(setup, level, seismic);
             let name = format!("water {level} m, kh {seismic}");
             let reduction = reduce(setup, &name.replace([' ', ','], "_"), model.text("Plane slide"))?;

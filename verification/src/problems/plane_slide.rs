@@ -86,9 +86,9 @@ impl PlaneSlide {
     pub fn text(&self, title: &str) -> String {
         let h = self.height;
         let [x, y] = self.head();
-        let (left, right, low) = (-0.3 * h, x + 0.3 * h, -0.25 * h);
-        let outline =
-            [[left, low], [right, low], [right, h], [x, h], [h / self.face.tan(), h], [0.0, 0.0], [left, 0.0]];
+        let (right, low) = (x + 0.3 * h, -0.25 * h);
+        // The face goes on below the toe: ground in front of it would hold a wedge that the formula lets go.
+        let outline = [[low / self.face.tan(), low], [right, low], [right, h], [x, h], [h / self.face.tan(), h]];
         let mut text = format!(
             "title = {title:?}\n[domain]\noutline = {outline:?}\njoint_law = \"plane\"\n[mesh]\nsize = {:e}\n\
              origin = [0.31, 0.17]\n[[joint]]\npoints = {:?}\n[joint_law.plane]\nfriction_deg = {:?}\n\
@@ -97,7 +97,7 @@ impl PlaneSlide {
             [[0.0, 0.0], [x, y]],
             self.friction.to_degrees(),
             self.cohesion,
-            [0.5 * left, 0.5 * low],
+            [0.5 * right, 0.5 * low],
             rock(self.young, self.unit_weight),
         );
         if self.crack > 0.0 {
