@@ -124,7 +124,7 @@ fn holding(setup: &mut Setup, columns: &Columns, outcome: &mut Outcome) -> Resul
         + &format!(
             "[[fix]]\nname = \"prop\"\npoint = {toe:?}\naxes = \"x\"\nstiffness = {:e}\nactive = false\n[[stage]]\n\
              name = \"settle\"\nkind = \"static\"\nduration = 120.0\n[[stage]]\nname = \"weaken\"\n\
-             kind = \"dynamic\"\nduration = {ramp:e}\ndamping = 0.1\nfix = [\"prop\"]\n",
+             kind = \"dynamic\"\nduration = {ramp:e}\ndamping = 1.0\nfix = [\"prop\"]\n",
             setup.get("prop")
         );
     let mut simulation = setup.simulation("holding", text)?;
