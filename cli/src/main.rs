@@ -4,6 +4,7 @@
 mod bench;
 mod check;
 mod fmu;
+mod fos;
 mod progress;
 mod run;
 mod verify;
@@ -44,6 +45,8 @@ enum Command {
     Fmu(fmu::Arguments),
     /// Solves problems with known answers and prints computed beside exact values.
     Verify(verify::Arguments),
+    /// Finds the factor of safety of a case by dividing its strength until it fails.
+    Fos(fos::Arguments),
     /// Times standard models: element updates and contacts per second, share of each part of the step.
     Bench {
         /// Print one JSON object.
@@ -60,6 +63,7 @@ fn main() -> ExitCode {
         Command::Check { case, json } => check::check(&case, json),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
+        Command::Fos(arguments) => fos::fos(&arguments),
         Command::Bench { json } => bench::run(json),
         Command::Schema => schema(),
     }

@@ -11,7 +11,7 @@ use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
 
 /// Set by the first interrupt.
-static INTERRUPT: AtomicBool = AtomicBool::new(false);
+pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
 /// Arguments of `enmm run`.
 #[derive(Args)]
@@ -58,14 +58,14 @@ pub fn run(arguments: &Arguments) -> ExitCode {
 }
 
 /// The first interrupt asks for a checkpoint, the second ends the program at once.
-fn interrupt() {
+pub fn interrupt() {
     if INTERRUPT.swap(true, Ordering::Relaxed) {
         std::process::exit(i32::from(INTERRUPTED));
     }
 }
 
 /// The name of the case file without its extension, in the current directory.
-fn directory_of(case: &Path) -> PathBuf {
+pub fn directory_of(case: &Path) -> PathBuf {
     let stem = case.file_stem().unwrap_or_default();
     let directory = PathBuf::from(stem);
     if directory.exists() && !directory.is_dir() {

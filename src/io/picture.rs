@@ -9,6 +9,7 @@ mod colour;
 mod displacement;
 mod history;
 mod model;
+mod reduction;
 mod slope;
 mod svg;
 
@@ -24,6 +25,7 @@ pub use chart::{Chart, ChartSeries, chart_picture};
 pub use displacement::displacement_picture;
 pub use history::{Series, history_picture};
 pub use model::{ModelDecor, model_picture};
+pub use reduction::{failure_picture, trials_picture};
 
 /// The embedded font (DejaVu Sans), read once.
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {

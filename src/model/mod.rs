@@ -5,6 +5,7 @@ pub mod case;
 mod observe;
 mod simulation;
 pub mod snapshot;
+pub mod strength_reduction;
 
 pub use build::{Built, build};
 pub use case::Case;

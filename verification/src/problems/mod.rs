@@ -11,20 +11,27 @@ mod b7;
 mod b8;
 mod block;
 mod c1;
+mod c10;
 mod c11;
+mod c2;
 mod c4;
 mod c5;
 mod c6;
 mod c7;
+mod c8;
+mod c9;
 mod continuum;
 mod d1;
 mod d2;
 mod d4;
 mod d5;
 mod dice;
+mod incline;
 mod newmark;
+mod plane_slide;
 mod slider;
 mod strip;
+mod toppling;
 
 use crate::Problem;
 
@@ -40,10 +47,14 @@ pub const ALL: &[Problem] = &[
     b7::PROBLEM,
     b8::PROBLEM,
     c1::PROBLEM,
+    c2::PROBLEM,
     c4::PROBLEM,
     c5::PROBLEM,
     c6::PROBLEM,
     c7::PROBLEM,
+    c8::PROBLEM,
+    c9::PROBLEM,
+    c10::PROBLEM,
     c11::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,

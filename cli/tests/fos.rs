@@ -1,0 +1,117 @@
+//! Claim: `enmm fos` finds the factor of safety of a block on an incline, writes its results and answers with the
+//! promised statuses.
+
+mod support;
+
+use std::fs;
+
+use support::{Place, json};
+
+/// A block of 1 m × 1 m on a plane that rises by 1 in 2 (tan a = 0.5), with friction tan φ = `tangent`, and what comes
+/// after its static stage.
+fn incline(tangent: f64, more: &str) -> String {
+    let friction = tangent.atan().to_degrees();
+    format!(
+        r#"
+title = "Block on an incline"
+[domain]
+outline = [[0, -1], [8, -1], [8, 0], [4, 2], [4.4, 2.8], [3.2, 3.4], [2.8, 2.6], [0, 4]]
+[mesh]
+size = 0.9
+origin = [0.07, 0.03]
+[[joint]]
+points = [[4, 2], [2.8, 2.6]]
+[rock.rock]
+density = 2600
+young = 1e9
+poisson = 0.25
+[joint_law.plane]
+friction_deg = {friction}
+[[fix]]
+block = [1, 0]
+[[stage]]
+name = "rest"
+kind = "static"
+duration = 5.0
+{more}"#
+    )
+}
+
+/// FoS = tan φ/tan a = 2·tan φ; the bracket of 1 % about it, and 0.5 % for the judge.
+#[test]
+fn a_block_on_an_incline_has_the_factor_of_its_tangents() {
+    let place = Place::with(&incline(0.65, ""));
+    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--tolerance", "0.01"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("factor of safety") && answer.stdout.contains("verdict"), "{answer:?}");
+    for name in ["fos.json", "fos.csv", "fos.png", "failure.png"] {
+        assert!(fs::metadata(place.path("out").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
+    }
+    let found = json(&place.path("out/fos.json"));
+    let factor = found["factor_of_safety"].as_f64().expect("a factor");
+    assert!((factor / 1.3 - 1.0).abs() < 0.01, "{factor}");
+    assert_eq!(found["status"], "found");
+    let failing = found["failing_blocks"].as_array().expect("blocks");
+    assert_eq!(failing.len(), 1, "{failing:?}");
+    assert!(failing[0]["place"][0].as_f64().is_some_and(|x| (2.4..4.0).contains(&x)), "{failing:?}");
+    let trials = found["trials"].as_array().expect("trials").len();
+    assert_eq!(fs::read_to_string(place.path("out/fos.csv")).expect("a table").lines().count(), 1 + trials);
+}
+
+#[test]
+fn threads_change_nothing_and_json_is_the_file() {
+    let place = Place::with(&incline(0.4, ""));
+    let mut texts = Vec::new();
+    for threads in ["1", "2"] {
+        let arguments = ["fos", "case.toml", "--json", "-o", threads, "--threads", threads, "--tolerance", "0.02"];
+        let answer = place.enmm(&arguments);
+        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let printed: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+        assert_eq!(printed, json(&place.path(threads).join("fos.json")));
+        texts.push(fs::read_to_string(place.path(threads).join("fos.csv")).expect("a table"));
+        assert!((printed["factor_of_safety"].as_f64().expect("a factor") / 0.8 - 1.0).abs() < 0.015, "{printed}");
+        assert_eq!(printed["rest"]["strength_factor"], 2.0, "it slides by itself");
+    }
+    let without_wall = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.rsplit_once(',').expect("columns").0.to_owned()).collect()
+    };
+    assert_eq!(without_wall(&texts[0]), without_wall(&texts[1]));
+}
+
+#[test]
+fn a_slope_that_cannot_fail_in_range_exits_with_3_and_a_remedy() {
+    let place = Place::with(&incline(0.65, ""));
+    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--low", "0.9", "--high", "1.1"]);
+    assert_eq!(answer.status, Some(3), "{answer:?}");
+    assert!(answer.stderr.contains("--high"), "{answer:?}");
+    assert_eq!(json(&place.path("out/fos.json"))["status"], "stable_throughout");
+}
+
+#[test]
+fn bad_input_exits_with_2_and_writes_nothing() {
+    let place = Place::with(&incline(0.65, "").replace("\"static\"", "\"dynamic\""));
+    place.enmm(&["fos", "case.toml"]).assert_bad_input(&["case.toml:", "stage", "static"]);
+    place.enmm(&["fos", "none.toml"]).assert_bad_input(&["none.toml"]);
+    place.enmm(&["fos", "case.toml", "--tolerance", "0"]).assert_bad_input(&["--tolerance", "0.5"]);
+    place.enmm(&["fos", "case.toml", "--low", "2", "--high", "1"]).assert_bad_input(&["--low", "--high"]);
+    assert_eq!(place.names(), ["case.toml"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_exits_with_130_and_keeps_the_trials() {
+    use std::process::Command;
+    use std::time::Duration;
+
+    use support::Answer;
+
+    let place = Place::with(&incline(0.65, "").replace("size = 0.9", "size = 0.12"));
+    let child = place.start(&["fos", "case.toml", "-o", "out"]);
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs").success());
+    let answer = Answer::of(child.wait_with_output().expect("an end"));
+    assert_eq!(answer.status, Some(130), "{answer:?}");
+    if place.path("out/fos.json").exists() {
+        assert_eq!(json(&place.path("out/fos.json"))["status"], "interrupted");
+    }
+}

@@ -1,0 +1,126 @@
+//! Which factors are tried: steps away from the start until the limit lies between two of them, then thirds.
+
+use super::{End, Verdict};
+
+/// Ratio of neighbouring trials until the limit is bracketed.
+const STRIDE: f64 = 1.5;
+
+/// The first pair of factors: the given limits, or those about the strength under which the slope rests.
+pub fn start(rest_factor: f64, low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
+    let rests = 1.0 / rest_factor;
+    let first = low.unwrap_or_else(|| rests.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
+    let second = high.unwrap_or(if rest_factor > 1.0 { 1.0 } else { STRIDE * first });
+    [first, second.clamp(first, range[1]).max(first)]
+}
+
+/// A search in progress.
+#[derive(Debug, Clone)]
+pub struct Search {
+    range: [f64; 2],
+    tolerance: f64,
+    start: [f64; 2],
+    tried: Vec<(f64, Verdict)>,
+}
+
+impl Search {
+    /// Begins with a pair of factors; keeps within `range`.
+    pub fn new(start: [f64; 2], range: [f64; 2], tolerance: f64) -> Self {
+        Self { range, tolerance, start, tried: Vec::new() }
+    }
+
+    /// Keeps a verdict.
+    pub fn note(&mut self, factor: f64, verdict: Verdict) {
+        self.tried.push((factor, verdict));
+    }
+
+    /// Least unstable factor, and the greatest stable one below it.
+    pub fn bracket(&self) -> [Option<f64>; 2] {
+        let of = |which: Verdict| self.tried.iter().filter(move |t| t.1 == which).map(|t| t.0);
+        let high = of(Verdict::Unstable).reduce(f64::min);
+        let low = of(Verdict::Stable).filter(|f| high.is_none_or(|high| *f < high)).reduce(f64::max);
+        [low, high]
+    }
+
+    /// One or two factors to try next; none when the search is over.
+    pub fn next(&self) -> Option<(f64, Option<f64>)> {
+        if self.tried.is_empty() {
+            let [a, b] = self.start;
+            return Some((a, (b > a).then_some(b)));
+        }
+        match self.bracket() {
+            [Some(low), Some(high)] if high / low - 1.0 > self.tolerance => Some(thirds(low, high, self.tolerance)),
+            [Some(_), Some(_)] | [None, None] => None,
+            [Some(low), None] => beyond(low, STRIDE, |f| f.min(self.range[1])),
+            [None, Some(high)] => beyond(high, 1.0 / STRIDE, |f| f.max(self.range[0])),
+        }
+    }
+
+    /// How a search that is over ended.
+    pub fn end(&self) -> End {
+        match self.bracket() {
+            [Some(_), Some(_)] => End::Found,
+            [Some(_), None] => End::StableThroughout,
+            _ => End::UnstableThroughout,
+        }
+    }
+}
+
+/// Two factors that part a bracket in three, or its middle when that is enough.
+fn thirds(low: f64, high: f64, tolerance: f64) -> (f64, Option<f64>) {
+    let ratio = high / low;
+    if ratio.sqrt() - 1.0 <= tolerance {
+        return (low * ratio.sqrt(), None);
+    }
+    (low * ratio.cbrt(), Some(low * ratio.cbrt().powi(2)))
+}
+
+/// Two factors further on; none at the limit.
+fn beyond(from: f64, stride: f64, limit: impl Fn(f64) -> f64) -> Option<(f64, Option<f64>)> {
+    let a = limit(from * stride);
+    let b = limit(a * stride);
+    (a != from).then_some((a, (b != a).then_some(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Searches for a limit; returns the number of trials, the bracket and the end.
+    fn find(limit: f64, start: [f64; 2], range: [f64; 2]) -> (usize, [Option<f64>; 2], End) {
+        let mut search = Search::new(start, range, 5e-3);
+        let verdict = |f: f64| if f <= limit { Verdict::Stable } else { Verdict::Unstable };
+        while let Some((a, b)) = search.next() {
+            for f in std::iter::once(a).chain(b) {
+                search.note(f, verdict(f));
+            }
+        }
+        (search.tried.len(), search.bracket(), search.end())
+    }
+
+    #[test]
+    fn every_limit_in_range_is_bracketed_to_the_tolerance() {
+        for k in 0..200 {
+            let limit = 0.06 * 1.029f64.powi(k);
+            let (count, bracket, end) = find(limit, [1.0, 1.5], [0.05, 20.0]);
+            let [Some(low), Some(high)] = bracket else { panic!("{limit}: {bracket:?}") };
+            assert!(low <= limit && limit < high && high / low - 1.0 <= 5e-3, "{limit}: {low} {high}");
+            assert!(end == End::Found && count <= 20, "{limit}: {count} trials");
+        }
+    }
+
+    #[test]
+    fn a_limit_beyond_the_range_is_told() {
+        assert_eq!(find(100.0, [1.0, 1.5], [0.05, 20.0]).2, End::StableThroughout);
+        assert_eq!(find(0.01, [1.0, 1.5], [0.05, 20.0]).2, End::UnstableThroughout);
+        assert_eq!(find(3.0, [1.0, 2.0], [1.0, 2.0]).2, End::StableThroughout);
+    }
+
+    #[test]
+    fn the_start_lies_in_the_range() {
+        assert_eq!(start(1.0, None, None, [0.05, 20.0]), [1.0, 1.5]);
+        assert_eq!(start(4.0, None, None, [0.05, 20.0]), [0.25, 1.0]);
+        assert_eq!(start(1.0, Some(1.2), Some(1.3), [1.2, 1.3]), [1.2, 1.3]);
+        assert_eq!(start(1.0, Some(2.0), None, [2.0, 20.0]), [2.0, 3.0]);
+        assert_eq!(start(1.0, None, Some(0.5), [0.05, 0.5]), [0.5 / 1.5, 0.5]);
+    }
+}

@@ -1,0 +1,192 @@
+//! One trial: the strength falls from that of the slope at rest to 1/F of its own, and the motion is judged.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use super::judge::{self, Sample, Scales, Verdict};
+use super::{FailingBlock, Trial};
+use crate::geometry::{Vector, polygon};
+use crate::model::Simulation;
+use crate::state::Ledger;
+use crate::step::{StepError, StepReport, block_motion};
+
+/// Samples while a wave of gravity's own time √(H/g) passes.
+const WINDOWS_PER_FALL: f64 = 10.0;
+/// Ways of a shear wave through the height of the model in a window, and in the fall of the strength.
+const WAVES: [f64; 2] = [2.0, 8.0];
+/// Times √(H/g) after which a trial ends undecided.
+const FALLS_MAX: f64 = 12.0;
+/// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
+const STILL: f64 = 0.01;
+/// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
+const ELASTIC: f64 = 1e-3;
+/// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
+const TAKES_PART: f64 = 0.1;
+/// Acceleration of gravity (m/s²) for the scales of models that have none.
+const STANDARD_GRAVITY: f64 = 9.81;
+
+/// Why a trial gave no verdict.
+pub enum Stop {
+    /// The caller asked for it.
+    Interrupted,
+    /// A numerical failure before anything had failed.
+    Failed(StepError),
+}
+
+/// What all trials begin with.
+pub struct Base {
+    /// The slope at rest.
+    pub simulation: Simulation,
+    scales: Scales,
+}
+
+impl Base {
+    /// Takes a slope at rest at the start of its dynamic stage.
+    pub fn new(simulation: Simulation, tolerance: f64) -> Self {
+        let scales = scales(&simulation, tolerance);
+        Self { simulation, scales }
+    }
+
+    /// Makes one trial; returns the model at its end as well.
+    pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
+        let clock = Instant::now();
+        let mut simulation = self.simulation.clone();
+        let start = simulation.time();
+        let drive = simulation.drive();
+        drive.from.copy_from(&drive.to);
+        drive.to.strength_factor = 1.0 / factor;
+        (drive.since, drive.until) = (start, start + self.scales.ramp);
+        let mut samples = Vec::new();
+        let steps = simulation.steps_in(self.scales.window);
+        let mut first = None;
+        let (mut judged, mut last) = (None, StepReport::default());
+        while judged.is_none() {
+            match window(&mut simulation, steps, interrupt)? {
+                Ok(report) => last = report,
+                Err(error) => {
+                    judged = Some(given_up(&samples, &self.scales).ok_or(Stop::Failed(error))?);
+                    break;
+                }
+            }
+            let first = *first.get_or_insert(last.ledger);
+            samples.push(self.sample(&simulation, &last, &first, start));
+            judged = judge::judge(&samples, &self.scales);
+        }
+        let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
+        let end = samples.last().copied().unwrap_or_default();
+        let unstable = verdict == Verdict::Unstable;
+        let trial = Trial {
+            factor,
+            verdict,
+            reason,
+            time: end.time,
+            displacement: end.displacement,
+            speed: end.speed,
+            kinetic: end.kinetic,
+            released: end.released,
+            acceleration: judge::acceleration(&samples),
+            failing: if unstable { self.failing(&simulation) } else { Vec::new() },
+            steps: simulation.state().step - self.simulation.state().step,
+            ledger_residual: last.ledger.residual() / last.ledger.largest().max(f64::MIN_POSITIVE),
+            wall: clock.elapsed().as_secs_f64(),
+        };
+        Ok((trial, simulation))
+    }
+
+    fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, start: f64) -> Sample {
+        let motions = self.motions(simulation);
+        let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
+        Sample {
+            time: simulation.time() - start,
+            displacement: motions.iter().map(|m| m.displacement).fold(0.0, f64::max),
+            speed: motions.iter().map(|m| m.speed).fold(0.0, f64::max),
+            kinetic: report.ledger.kinetic,
+            released: energy(first) - energy(&report.ledger),
+        }
+    }
+
+    /// Motion of all free blocks since the trial began.
+    fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
+        let (slope, state) = (simulation.slope(), simulation.state());
+        let metric = &simulation.scratch().metric;
+        let begin = &self.simulation.state().displacement;
+        let free = |b: &usize| !metric.fixed[*b] && !state.removed[*b];
+        (0..slope.covers.block_count())
+            .filter(free)
+            .map(|b| {
+                let (_, velocity, spin, _) = block_motion(slope, state, metric, b);
+                let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
+                let moved = slope.covers.covers_of(b).map(|i| (state.displacement[i] - begin[i]).norm());
+                FailingBlock {
+                    block: b as u32,
+                    place: slope.covers.block_centroid(b),
+                    displacement: moved.fold(0.0, f64::max),
+                    rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
+                    speed: velocity.norm().hypot(spin * radius),
+                }
+            })
+            .collect()
+    }
+
+    /// Blocks that move with the failure, fastest first.
+    fn failing(&self, simulation: &Simulation) -> Vec<FailingBlock> {
+        let mut motions = self.motions(simulation);
+        let most = |of: fn(&FailingBlock) -> f64| motions.iter().map(of).fold(0.0, f64::max);
+        let (far, fast) = (most(|m| m.displacement), most(|m| m.speed));
+        motions.retain(|m| m.displacement >= TAKES_PART * far && m.speed >= TAKES_PART * fast);
+        motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
+        motions
+    }
+}
+
+/// Advances a window; the report of its last step, or the numerical failure.
+fn window(
+    simulation: &mut Simulation,
+    steps: u64,
+    interrupt: Option<&AtomicBool>,
+) -> Result<Result<StepReport, StepError>, Stop> {
+    let mut report = StepReport::default();
+    for step in 1..=steps {
+        if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Stop::Interrupted);
+        }
+        match simulation.advance(step == steps) {
+            Ok(made) => report = made,
+            Err(error) => return Ok(Err(error)),
+        }
+    }
+    Ok(Ok(report))
+}
+
+/// A slope that was running away when the numbers gave up has failed.
+fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reason)> {
+    let [.., before, last] = samples else { return None };
+    let running = last.displacement > scales.elastic && last.kinetic > before.kinetic;
+    running.then_some((Verdict::Unstable, judge::Reason::Runaway))
+}
+
+/// Times, speeds and lengths of a model's motion (Eqs. F2, F4).
+fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
+    let (slope, state) = (simulation.slope(), simulation.state());
+    let (low, high) = polygon::bounds(&slope.covers.star_position);
+    let height = (high - low).y;
+    let wave = height / slope.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
+    let gravity = state.drive.gravity(1.0).norm();
+    let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
+    let fall = (height / gravity).sqrt();
+    let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
+    let still_speed = STILL * tolerance * gravity * window;
+    let free = (0..slope.covers.block_count()).filter(|&b| !simulation.scratch().metric.fixed[b]);
+    let mass: f64 = free.map(|b| slope.metric.total[b]).sum();
+    let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
+    let elastic = (ELASTIC * height).max(given_way);
+    Scales {
+        window,
+        ramp: (WAVES[1] * wave).max(2.0 * window),
+        time_max: FALLS_MAX * fall + WAVES[1] * wave,
+        still_speed,
+        still_kinetic: 0.5 * mass * still_speed * still_speed,
+        elastic,
+        limit: slope.failure_displacement.max(elastic),
+    }
+}

@@ -1,0 +1,71 @@
+//! C10: a high slope with joints that daylight in its face.
+
+use super::incline::{GRAVITY, factor_row, ledger_row, reduce, trial_plot};
+use super::plane_slide::PlaneSlide;
+use crate::{Outcome, Parameter, Problem, Setup, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "C10",
+    title: "Slope with daylighting joints",
+    source: "limit equilibrium of the wedge above the joint through the toe, (cA + W·cos ψ·tan φ)/(W·sin ψ), which is \
+             the least of all parallel joints; once with that joint alone, once with a set above it",
+    parameters: &[
+        Parameter { name: "height", unit: "m", default: 260.0, range: [10.0, 1000.0], doc: "height of the slope" },
+        Parameter { name: "face_deg", unit: "°", default: 55.0, range: [20.0, 80.0], doc: "dip of the face" },
+        Parameter { name: "joint_deg", unit: "°", default: 35.0, range: [10.0, 70.0], doc: "dip of the joints" },
+        Parameter { name: "cohesion", unit: "Pa", default: 1e5, range: [0.0, 1e7], doc: "cohesion of the joints" },
+        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [1.0, 70.0], doc: "friction of the joints" },
+        Parameter { name: "density", unit: "kg/m³", default: 2660.0, range: [1e3, 4e3], doc: "density of the rock" },
+        Parameter { name: "joints", unit: "", default: 4.0, range: [1.0, 20.0], doc: "joints of the set" },
+        Parameter { name: "spacing", unit: "m", default: 20.0, range: [1.0, 200.0], doc: "distance of the joints" },
+        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus of the rock" },
+        Parameter { name: "mesh", unit: "", default: 0.12, range: [0.02, 0.3], doc: "mesh size over height" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+fn slide(setup: &Setup, planes: u32) -> PlaneSlide {
+    let height = setup.get("height");
+    PlaneSlide {
+        height,
+        crack: 0.0,
+        face: setup.get("face_deg").to_radians(),
+        plane: setup.get("joint_deg").to_radians(),
+        cohesion: setup.get("cohesion"),
+        friction: setup.get("phi_deg").to_radians(),
+        unit_weight: setup.get("density") * GRAVITY,
+        water_weight: 1e3 * GRAVITY,
+        water: 0.0,
+        seismic: 0.0,
+        young: setup.get("young"),
+        size: setup.get("mesh") * height,
+        planes,
+        spacing: setup.get("spacing"),
+    }
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    if !slide(setup, 1).is_sound() {
+        return Err(Trouble("the joint through the toe must daylight: choose joint_deg below face_deg".to_owned()));
+    }
+    let count = setup.get("joints") as u32;
+    let mut outcome = Outcome::default();
+    let mut found = Vec::new();
+    for planes in [1, count] {
+        if planes == 1 && !found.is_empty() || planes > 1 && setup.quick {
+            continue;
+        }
+        let model = slide(setup, planes);
+        let name =
+            if planes == 1 { "joint through the toe alone".to_owned() } else { format!("set of {planes} joints") };
+        let reduction = reduce(setup, &name.replace(' ', "_"), model.text("Slope with daylighting joints"))?;
+        let reason = "bracket of 0.2 % (0.5 % when quick); the wedge is elastic and ends in sharp corners";
+        outcome.rows.push(factor_row(&format!("factor of safety, {name}"), &reduction, model.factor(), reason));
+        outcome.plots.push(trial_plot(&format!("Trials, {name}"), &reduction, model.factor()));
+        found.push(reduction);
+    }
+    outcome.rows.push(ledger_row(&found.iter().collect::<Vec<_>>()));
+    Ok(outcome)
+}

@@ -1,0 +1,115 @@
+//! C2: strength reduction of a block on an incline.
+
+use super::incline::{factor_row, ledger_row, reduce, rock, trial_plot, turn};
+use crate::{Outcome, Parameter, Plot, Problem, Series, Setup, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "C2",
+    title: "Strength reduction of a block",
+    source: "FoS = (c·A + W·cos a·tan φ)/(W·sin a); catches a wrong contact length, locked-in shear, a judge of \
+             stability that takes elastic motion for failure or slow failure for rest",
+    parameters: &[
+        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "dip of the plane" },
+        Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length along the plane" },
+        Parameter { name: "height", unit: "m", default: 2.0, range: [0.2, 20.0], doc: "height above the plane" },
+        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter {
+            name: "phi_deg", unit: "°", default: 40.0, range: [1.0, 70.0], doc: "friction of the first block"
+        },
+        Parameter { name: "phi_c_deg", unit: "°", default: 35.0, range: [0.0, 60.0], doc: "friction with cohesion" },
+        Parameter { name: "cohesion", unit: "Pa", default: 20e3, range: [1.0, 1e6], doc: "cohesion" },
+        Parameter { name: "phi_weak_deg", unit: "°", default: 25.0, range: [1.0, 60.0], doc: "friction too small" },
+        Parameter { name: "young", unit: "Pa", default: 5e9, range: [1e8, 1e11], doc: "Young's modulus of the rock" },
+        Parameter { name: "mesh", unit: "", default: 0.45, range: [0.1, 1.0], doc: "mesh size over block height" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+/// (c·A + W·cos a·tan φ)/(W·sin a) of a block of weight `weight` (N/m) on `length` (m); angles in radians.
+fn exact(a: f64, phi: f64, cohesion: f64, length: f64, weight: f64) -> f64 {
+    (cohesion * length + weight * a.cos() * phi.tan()) / (weight * a.sin())
+}
+
+fn text(setup: &Setup, phi_deg: f64, cohesion: f64) -> String {
+    let [a, long, high] = ["a_deg", "length", "height"].map(|name| setup.get(name));
+    let corners = [
+        [-0.5 * long, -high],
+        [2.0 * long, -high],
+        [2.0 * long, 0.0],
+        [long, 0.0],
+        [long, high],
+        [0.0, high],
+        [0.0, 0.0],
+        [-0.5 * long, 0.0],
+    ];
+    format!(
+        "title = \"Block on an incline: strength reduction\"\n[domain]\noutline = {:?}\n[mesh]\nsize = {:e}\n\
+         origin = [0.031, 0.017]\n[[joint]]\npoints = {:?}\n[joint_law.joint]\nfriction_deg = {phi_deg:?}\n\
+         cohesion = {cohesion:e}\n[[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\nkind = \"static\"\n\
+         duration = {:e}\n",
+        turn(&corners, -a),
+        setup.get("mesh") * high,
+        turn(&[[0.0, 0.0], [long, 0.0]], -a),
+        turn(&[[-0.25 * long, -0.5 * high]], -a)[0],
+        rock(setup.get("young"), setup.get("gamma")),
+        5.0 * (5e9 / setup.get("young")).sqrt().max(1.0),
+    )
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let [a, long, high] = ["a_deg", "length", "height"].map(|name| setup.get(name));
+    let weight = setup.get("gamma") * long * high;
+    let variants = [
+        ("friction alone", setup.get("phi_deg"), 0.0),
+        ("friction and cohesion", setup.get("phi_c_deg"), setup.get("cohesion")),
+        ("a block that slides by itself", setup.get("phi_weak_deg"), 0.0),
+    ];
+    let mut outcome = Outcome::default();
+    let mut found = Vec::new();
+    let mut marks = Vec::new();
+    for (name, phi, cohesion) in variants {
+        let exact = exact(a.to_radians(), phi.to_radians(), cohesion, long, weight);
+        let reduction = reduce(setup, &name.replace(' ', "_"), text(setup, phi, cohesion))?;
+        let reason = "the bracket is 0.2 % wide (0.5 % when quick), contact lengths add up to 0.1 %";
+        outcome.rows.push(factor_row(&format!("factor of safety, {name}"), &reduction, exact, reason));
+        marks.push([phi.to_radians().tan(), reduction.factor().unwrap_or(f64::NAN)]);
+        if found.is_empty() {
+            outcome.plots.push(trial_plot("Trials, friction alone", &reduction, exact));
+        }
+        found.push(reduction);
+    }
+    outcome.rows.push(ledger_row(&found.iter().collect::<Vec<_>>()));
+    outcome.plots.push(curves(a.to_radians(), setup.get("cohesion"), long, weight, marks));
+    Ok(outcome)
+}
+
+fn curves(a: f64, cohesion: f64, long: f64, weight: f64, marks: Vec<[f64; 2]>) -> Plot {
+    let line = |name: &str, cohesion: f64| {
+        let points = (0..=60).map(|k| f64::from(k) / 60.0).map(|t| [t, exact(a, t.atan(), cohesion, long, weight)]);
+        Series { name: name.to_owned(), points: points.collect(), marks: false }
+    };
+    Plot {
+        title: "Factor of safety of a block".to_owned(),
+        axes: ["tan φ".to_owned(), "factor of safety".to_owned()],
+        logarithmic: [false, false],
+        series: vec![
+            line("exact, no cohesion", 0.0),
+            line("exact, with cohesion", cohesion),
+            Series { name: "computed".to_owned(), points: marks, marks: true },
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exact;
+
+    #[test]
+    fn the_formula_gives_the_published_numbers() {
+        let a = 30f64.to_radians();
+        assert!((exact(a, 40f64.to_radians(), 0.0, 4.0, 1.0) - 1.453363).abs() < 1e-6);
+        assert!((exact(a, 35f64.to_radians(), 20e3, 4.0, 25e3 * 8.0) - 2.012795).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,62 @@
+//! What problems on inclined planes share: turned corners, text of cases, factors of safety.
+
+use enmm::model::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
+
+use crate::{Plot, Row, Series, Setup, Tolerance, Trouble};
+
+/// Points turned by an angle (degrees) about the origin.
+pub fn turn(points: &[[f64; 2]], degrees: f64) -> Vec<[f64; 2]> {
+    let (s, c) = degrees.to_radians().sin_cos();
+    points.iter().map(|p| [c * p[0] - s * p[1], s * p[0] + c * p[1]]).collect()
+}
+
+/// A rock of plane strain with ν = 0.25 and this Young's modulus (Pa) and unit weight (N/m³).
+pub fn rock(young: f64, unit_weight: f64) -> String {
+    format!("[rock.rock]\ndensity = {:e}\nyoung = {young:e}\npoisson = 0.25\n", unit_weight / GRAVITY)
+}
+
+/// Acceleration of gravity (m/s²) of all cases here.
+pub const GRAVITY: f64 = 9.81;
+
+/// Finds the factor of safety of a case; the bracket is 0.2 % wide, or 0.5 % when quick.
+///
+/// # Errors
+/// A case that cannot be built or does not come to rest, or a search without end.
+pub fn reduce(setup: &mut Setup, name: &str, text: String) -> Result<Reduction, Trouble> {
+    let case = setup.simulation(name, text)?.case().clone();
+    let tolerance = if setup.quick { 5e-3 } else { 2e-3 };
+    let reduction = factor_of_safety(&case, &ReductionOptions { tolerance, ..Default::default() }, &mut |_| {})?;
+    match reduction.factor() {
+        Some(_) => Ok(reduction),
+        None => Err(Trouble(format!("{name}: no factor of safety was found: {:?}", reduction.end))),
+    }
+}
+
+/// A factor of safety beside its closed form, within 1.5 %.
+pub fn factor_row(quantity: &str, reduction: &Reduction, exact: f64, reason: &str) -> Row {
+    Row::new(quantity, "", reduction.factor().unwrap_or(f64::NAN), exact).within(Tolerance::Relative(0.015), reason)
+}
+
+/// The worst energy ledger of the trials.
+pub fn ledger_row(reductions: &[&Reduction]) -> Row {
+    let shares = reductions.iter().flat_map(|r| &r.trials).map(|t| t.ledger_residual.abs());
+    let reason = "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy";
+    Row::new("energy ledger of the worst trial, residual over largest term", "", shares.fold(0.0, f64::max), 0.0)
+        .within(Tolerance::AtMost(1e-3), reason)
+}
+
+/// Displacement of each trial against F, and the exact factor as an upright line.
+pub fn trial_plot(title: &str, reduction: &Reduction, exact: f64) -> Plot {
+    let points: Vec<[f64; 2]> = reduction.trials.iter().map(|t| [t.factor, t.displacement.max(1e-9)]).collect();
+    let ends = |pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p[1]).fold(start, pick);
+    let exact = vec![[exact, ends(f64::min, f64::INFINITY)], [exact, ends(f64::max, 0.0)]];
+    Plot {
+        title: title.to_owned(),
+        axes: ["F".to_owned(), "largest displacement at the end of the trial (m)".to_owned()],
+        logarithmic: [false, true],
+        series: vec![
+            Series { name: "trials".to_owned(), points, marks: true },
+            Series { name: "exact factor of safety".to_owned(), points: exact, marks: false },
+        ],
+    }
+}
