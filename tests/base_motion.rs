@@ -32,7 +32,10 @@ fn a_pulse_between_grid_points_gives_its_exact_impulse() {
         let report = run_stage(&mut simulation);
         let expected = -a * (to - from);
         let [x, y] = velocity(&simulation);
-        assert!((x - expected).abs() < 1e-11 * expected.abs() && y.abs() < 1e-11 * expected.abs(), "{x} of {expected}, {y}");
+        assert!(
+            (x - expected).abs() < 1e-11 * expected.abs() && y.abs() < 1e-11 * expected.abs(),
+            "{x} of {expected}, {y}"
+        );
         let energy = 0.5 * 2500.0 * 2.0 * expected * expected;
         assert!((report.ledger.external_work / energy - 1.0).abs() < 1e-9, "{:?}", report.ledger);
         assert_ledger(&report);
