@@ -177,7 +177,8 @@ mod tests {
         state
     }
 
-    /// A velocity of 1 m/s enters and has reached 15 m by shear and all of the column, doubled at its head, by pressure.
+    /// A velocity of 1 m/s enters and has reached 15 m by shear and all of the column, doubled at its head, by
+    /// pressure.
     #[test]
     fn a_wave_enters_through_a_quiet_foot_and_doubles_at_the_head() {
         let wave = |_| ColumnDrive { acceleration: Vector::zeros(), wave: Vector::new(1.0, 1.0), kick: 0.0 };
@@ -190,7 +191,8 @@ mod tests {
         assert!((mean(32..41, 1) - 2.0).abs() < 0.05 && (mean(2..14, 1) - 1.0).abs() < 0.05, "{:?}", state.velocity);
     }
 
-    /// Under a constant acceleration the head of a rigid-footed column swings to twice a·ρH²/2μ at half its period 4H/c.
+    /// Under a constant acceleration the head of a rigid-footed column swings to twice a·ρH²/2μ at half its period
+    /// 4H/c.
     #[test]
     fn a_rigid_foot_holds_the_column() {
         let push = |_| ColumnDrive { acceleration: Vector::new(0.1, 0.0), wave: Vector::zeros(), kick: 0.0 };

@@ -131,8 +131,8 @@ impl Joint {
         let amplitude = |motion: &Motion, signal: &[f64]| motion.amplitude(signal, omega, window.0, window.1);
         let incident = [0, 1].map(|k| amplitude(&open, &open.velocity[k]));
         let reason = if self.across {
-            "2 % of the incident wave: where a joint cuts elements, its nodes are off the stars, and mass and stiffness \
-             near it err by that of up to some 0.1 h of rock"
+            "2 % of the incident wave: where a joint cuts elements, its nodes are off the stars, and mass and \
+             stiffness near it err by that of up to some 0.1 h of rock"
         } else {
             "2 % asked; a wave of n mesh sizes errs by some (2π/n)²/12, and a little more where the joint is soft"
         };

@@ -9,8 +9,8 @@ pub const PROBLEM: Problem = Problem {
     id: "D2",
     title: "Slip of a joint by a harmonic shear wave",
     source: "The stress that passes a joint of shear strength τs is the incident sine, clipped at ±τs (after Miller): \
-             T² and R² are the mean squares of the clipped sine and of what was clipped off, over that of the sine, and \
-             A² = 1 − T² − R². Catches slip that lags, strength that scales with the mesh, and energy made by slip",
+             T² and R² are the mean squares of the clipped sine and of what was clipped off, over that of the sine, \
+             and A² = 1 − T² − R². Catches slip that lags, strength that scales with the mesh, and energy made by slip",
     parameters: &[
         Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
         Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
