@@ -111,10 +111,10 @@ impl Column {
         out.copy_from_slice(&state.velocity);
         self.damp(decay, out);
         let last = self.rocks.len();
-        for node in 0..=last {
+        for (node, velocity) in out.iter_mut().enumerate() {
             let below = node.checked_sub(1).map_or_else(Vector::zeros, |cell| self.stress(cell, &state.displacement));
             let above = if node < last { self.stress(node, &state.displacement) } else { Vector::zeros() };
-            out[node] += ((above - below) / self.mass(node) + drive.acceleration) * drive.kick;
+            *velocity += ((above - below) / self.mass(node) + drive.acceleration) * drive.kick;
         }
         match self.foot {
             Foot::Rigid => out[0] = Vector::zeros(),

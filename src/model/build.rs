@@ -94,7 +94,8 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
     quiet::check_columns(&slope)?;
     let state = initial_state(case, &slope, &places)?;
-    let warnings = warnings(&plane.arrangement.report);
+    let mut warnings = warnings(&plane.arrangement.report);
+    warnings.extend(quiet::warning(case));
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 

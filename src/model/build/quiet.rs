@@ -192,6 +192,18 @@ impl Ground<'_> {
     }
 }
 
+/// Quiet boundaries that bear no weight when motion begins: they hold in static stages only.
+pub(super) fn warning(case: &Case) -> Option<String> {
+    let has_some = !case.quiets.is_empty() || !case.free_fields.is_empty();
+    let begins_dynamic = case.stages.first().is_some_and(|stage| stage.kind == case::StageKind::Dynamic);
+    let has_weight = [case.gravity.x, case.gravity.y] != [0.0; 2] && case.in_situ.is_none();
+    (has_some && begins_dynamic && has_weight).then(|| {
+        "the first stage is dynamic, and quiet boundaries bear in it only what they bore before, which is nothing: \
+         put a static stage before it, give in-situ stress, or let gravity be 0"
+            .into()
+    })
+}
+
 /// Whether the columns are stable at the step of the model.
 pub(super) fn check_columns(slope: &Slope) -> Result<(), Invalid> {
     for (k, column) in slope.columns.iter().enumerate() {
