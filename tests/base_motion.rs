@@ -22,8 +22,8 @@ fn velocity(simulation: &Simulation) -> [f64; 2] {
     [v.x, v.y]
 }
 
-/// A pulse with jumps between grid points: the block has −∫a dt to rounding of a thousand steps, 1e-11 of it, whatever the step is; its kinetic
-/// energy is the work of the base.
+/// A pulse with jumps between grid points: the block has −∫a dt to rounding of a thousand steps, 1e-11 of it, whatever
+/// the step is; its kinetic energy is the work of the base.
 #[test]
 fn a_pulse_between_grid_points_gives_its_exact_impulse() {
     for (from, to, a) in [(0.0, 0.1, 2.0), (0.01234567, 0.0456789, -3.0), (0.0, 0.00001, 1e3)] {

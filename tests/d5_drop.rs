@@ -51,9 +51,9 @@ fn drop(mass: f64, stiffness: f64, height: f64, dt: f64) -> Drop {
 
 /// v = √(2gH), deepest = mg/k + √((mg/k)² + 2mgH/k): 3.132092 m/s and 4.976858 mm for 2500 kg on 1e9 N/m from 0.5 m.
 ///
-/// The block's own spring (some 1e4 k in series, and waves) takes 2e-4 of the depth: 1e-3 is asked. A joint's own stiffness
-/// is a centred spring, which keeps its energy at any step that resolves it: what is lost are the waves that the block
-/// takes along, some 1e-4.
+/// The block's own spring (some 1e4 k in series, and waves) takes 2e-4 of the depth: 1e-3 is asked. A joint's own
+/// stiffness is a centred spring, which keeps its energy at any step that resolves it: what is lost are the waves that
+/// the block takes along, some 1e-4.
 #[test]
 fn a_mass_on_a_spring_keeps_its_energy() {
     for (mass, stiffness, height) in [(2500.0, 1e9, 0.5), (2000.0, 4e8, 0.2)] {

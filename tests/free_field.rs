@@ -15,7 +15,8 @@ const SHEAR: f64 = 2.5e9;
 /// A wide block over a quiet or rigid base, with these sides, whose monitors stand across the middle and the top.
 fn block(sides: &str, base: &str, size: f64, angle: f64) -> Simulation {
     let mut text = format!(
-        "title = \"free field\"\n[domain]\noutline = [[0.0, 0.0], [{WIDTH}, 0.0], [{WIDTH}, {HEIGHT}], [0.0, {HEIGHT}]]\n\
+        "title = \"free field\"\n[domain]\n\
+         outline = [[0.0, 0.0], [{WIDTH}, 0.0], [{WIDTH}, {HEIGHT}], [0.0, {HEIGHT}]]\n\
          [mesh]\nsize = {size}\norigin = [0.7, 0.4]\nangle_deg = {angle}\n[rock.rock]\ndensity = {DENSITY}\n\
          young = {:e}\npoisson = 0.25\n[gravity]\ny = 0.0\n{base}{sides}{}",
         2.5 * SHEAR,
@@ -68,9 +69,9 @@ fn spread(mut simulation: Simulation, axis: usize, speed: f64, until: f64) -> [f
     [across, from_column]
 }
 
-/// S and P waves of 1 m/s come in at a quiet base, are doubled at the free surface and leave again. Mesh of 30 elements in
-/// the wave: dispersion takes (2π/n)²/12 = 0.4 % of it, twice at the top, where both pulses overlap; 2 % is asked, on a
-/// lattice that lies along the sides and on one that does not. Other sides spoil the wave by tens of per cent.
+/// S and P waves of 1 m/s come in at a quiet base, are doubled at the free surface and leave again. Mesh of 30 elements
+/// in the wave: dispersion takes (2π/n)²/12 = 0.4 % of it, twice at the top, where both pulses overlap; 2 % is asked,
+/// on a lattice that lies along the sides and on one that does not. Other sides spoil the wave by tens of per cent.
 #[test]
 fn a_plane_wave_stays_plane_between_columns_and_nowhere_else() {
     for (wave, axis, speed) in [([1.0, 0.0], 0, 1000.0), ([0.0, 1.0], 1, 3f64.sqrt() * 1000.0)] {
@@ -111,8 +112,8 @@ fn columns_stand_on_a_moving_base() {
     }
 }
 
-/// What the columns and the base carry away is in the ledger, which errs by ½(ω dt)² of the wave's strain energy (theory,
-/// Eq. 28): 1.2e-3 at the usual step, a quarter of it at half the step. After the wave has left nothing is.
+/// What the columns and the base carry away is in the ledger, which errs by ½(ω dt)² of the wave's strain energy
+/// (theory, Eq. 28): 1.2e-3 at the usual step, a quarter of it at half the step. After the wave has left nothing is.
 #[test]
 fn the_ledger_closes_between_columns() {
     let solver = "[solver]\ndt_safety = 0.45\n";

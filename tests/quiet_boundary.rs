@@ -14,9 +14,11 @@ const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration 
 /// A block of 12 m × 8 m with a joint, quiet below and at both sides, and stages.
 fn block(stages: &str, extra: &str) -> Simulation {
     simulation(&format!(
-        "title = \"quiet\"\n[domain]\noutline = [[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0]]\n[mesh]\nsize = 1.1\n\
+        "title = \"quiet\"\n[domain]\noutline = [[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0]]\n[mesh]\n\
+         size = 1.1\n\
          angle_deg = 11\n[[joint]]\npoints = [[-1.0, 4.0], [13.0, 4.6]]\n[joint_law.joint]\nfriction_deg = 35.0\n\
-         [rock.rock]\ndensity = 2500.0\nyoung = 1e9\npoisson = 0.25\n[[quiet]]\nedge = [[0.0, 0.0], [12.0, 0.0]]\n{extra}\
+         [rock.rock]\ndensity = 2500.0\nyoung = 1e9\npoisson = 0.25\n[[quiet]]\nedge = [[0.0, 0.0], [12.0, 0.0]]\n\
+         {extra}\
          [[quiet]]\nedge = [[12.0, 0.0], [12.0, 8.0]]\naxes = \"x\"\n[[free_field]]\nedge = [[0.0, 0.0], [0.0, 8.0]]\n\
          {stages}[[monitor]]\nname = \"top\"\npoint = [6.0, 7.9]\n"
     ))
@@ -28,8 +30,8 @@ fn step(simulation: &mut Simulation, seconds: f64) -> StepReport {
 }
 
 /// What the springs bore stays as constant forces: a model at rest stays at rest when motion begins, and again when a
-/// static stage gives the springs back. The forces out of balance at 1e-7 of the weight move it by 1e-7 of the settlement
-/// (3e-4 m), over and over as nothing holds it to its place: 1e-4 of it is allowed.
+/// static stage gives the springs back. The forces out of balance at 1e-7 of the weight move it by 1e-7 of the
+/// settlement (3e-4 m), over and over as nothing holds it to its place: 1e-4 of it is allowed.
 #[test]
 fn what_was_borne_is_borne_on() {
     let stages = format!("{STATIC}{}{}", dynamic("wait", 0.5, 0.0), STATIC.replace("settle", "again"));
@@ -56,7 +58,8 @@ fn in_situ_stress_is_borne_from_the_start() {
     let quiets: String = edges.iter().map(|e| format!("[[quiet]]\nedge = {e}\n")).collect();
     let mut simulation = simulation(&format!(
         "title = \"in situ\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 4], [0, 4]]\n[mesh]\nsize = 0.7\nangle_deg = 9\n\
-         [rock.rock]\ndensity = 2600\nyoung = 1e9\npoisson = 0.25\n[gravity]\ny = 0\n[in_situ]\nsxx = -1e6\nsyy = -2e6\n\
+         [rock.rock]\ndensity = 2600\nyoung = 1e9\npoisson = 0.25\n[gravity]\ny = 0\n[in_situ]\nsxx = -1e6\n\
+         syy = -2e6\n\
          sxy = 2e5\n{quiets}[[free_field]]\nedge = [[0, 0], [0, 4]]\naxes = \"xy\"\n{}\
          [[monitor]]\nname = \"middle\"\npoint = [1.9, 3.0]\n",
         dynamic("wait", 0.05, 0.0)
@@ -67,8 +70,8 @@ fn in_situ_stress_is_borne_from_the_start() {
     assert!(stresses(&simulation, &state).iter().flatten().all(|s| s.abs() < 1e-2));
 }
 
-/// A wave in the model with everything in use: the state alone makes the rest of the run, to the bit, from any moment on
-/// and on any number of threads.
+/// A wave in the model with everything in use: the state alone makes the rest of the run, to the bit, from any moment
+/// on and on any number of threads.
 #[test]
 fn the_state_alone_goes_on_to_the_bit() {
     let wave = "wave = [0.1, 0.05]\ntable = [[0.0, 0.0], [0.01, 1.0], [0.02, 0.0]]\n\
@@ -106,9 +109,11 @@ fn places_that_cannot_be_quiet_are_named() {
         ("axes = \"x\"", "wave = [1.0, 0.0]", "quiet[1].table: is missing"),
     ] {
         let text = format!(
-            "title = \"quiet\"\n[domain]\noutline = [[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0]]\n[mesh]\nsize = 2\n\
+            "title = \"quiet\"\n[domain]\noutline = [[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0]]\n[mesh]\n\
+             size = 2\n\
              [rock.rock]\ndensity = 2500.0\nyoung = 1e9\npoisson = 0.25\n[[quiet]]\nedge = [[0.0, 0.0], [12.0, 0.0]]\n\
-             [[quiet]]\nedge = [[12.0, 0.0], [12.0, 8.0]]\naxes = \"x\"\n[[free_field]]\nedge = [[0.0, 0.0], [0.0, 8.0]]\n{}",
+             [[quiet]]\nedge = [[12.0, 0.0], [12.0, 8.0]]\naxes = \"x\"\n\
+             [[free_field]]\nedge = [[0.0, 0.0], [0.0, 8.0]]\n{}",
             dynamic("wave", 1.0, 0.0)
         );
         assert!(text.contains(from));

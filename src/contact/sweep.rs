@@ -5,7 +5,7 @@ use crate::mechanics::Metric;
 
 use super::{BoltRow, ContactState, Pair, Support, SupportRow, VertexEdge};
 
-/// Share of the largest normal force below which a contact is light: its changes are measured against that force.
+/// Share of the largest force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
 /// Most sweeps over the supports within one sweep over the contacts.
 const SUPPORT_SWEEPS_MAX: u32 = 10;
@@ -59,6 +59,11 @@ pub struct OpenClose<'a> {
     pub push: &'a mut [BlockPush],
 }
 
+/// The force (N/m) against which changes are measured: the larger of both, since a cohesive joint may bear shear alone.
+fn force_of(contact: &VertexEdge) -> f64 {
+    contact.history.normal_force.abs().max(contact.history.shear_force.abs())
+}
+
 /// Sweeps until forces settle, warm-started from the last step's forces.
 pub fn open_close(
     mut iteration: OpenClose,
@@ -72,7 +77,7 @@ pub fn open_close(
     let mut report = SweepReport::default();
     while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty() && bolts.is_empty())
     {
-        let largest = contacts.iter().map(|c| c.history.normal_force.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let largest = contacts.iter().map(force_of).fold(f64::MIN_POSITIVE, f64::max);
         let change = iteration.sweep_contacts(contacts, LIGHT * largest);
         let support_change = iteration.sweep_supports(supports, rows);
         let bolt_change = iteration.sweep_bolts(bolts, LIGHT * largest);
@@ -100,7 +105,7 @@ impl OpenClose<'_> {
     fn sweep_contacts(&mut self, contacts: &mut [VertexEdge], floor: f64) -> f64 {
         let mut change = 0.0f64;
         for contact in contacts {
-            change = change.max(self.judge(contact) / contact.history.normal_force.abs().max(floor));
+            change = change.max(self.judge(contact) / force_of(contact).max(floor));
         }
         change
     }

@@ -102,6 +102,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let mut warnings = warnings(&plane.arrangement.report);
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
+    warnings.extend(quiet::warning(case));
     Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 

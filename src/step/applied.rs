@@ -43,8 +43,8 @@ pub fn wave(slope: &Slope, regime: Regime, state: &State, kick: Kick, quiet: u32
     wave.as_ref().map_or_else(Vector::zeros, |w| w.over(regime, state, kick, |a, b| w.record.mean(a, b)))
 }
 
-/// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the base
-/// by (Eq. 31).
+/// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
+/// base by (Eq. 31).
 pub fn acceleration(slope: &Slope, state: &State, t: f64) -> Vector {
     let body: Vector = slope.loads.iter().map(|load| load.body(t)).sum();
     let share = state.drive.share(t);

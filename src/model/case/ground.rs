@@ -40,8 +40,8 @@ pub struct BaseMotion {
     /// Direction.
     #[serde(default)]
     pub axis: Axis,
-    /// Rows of time (s) since the start of the stage and value; linear between. Outside them the acceleration is zero: a
-    /// velocity must start at 0 and keeps its last value. This or `file`.
+    /// Rows of time (s) since the start of the stage and value; linear between. Outside them the acceleration is zero:
+    /// a velocity must start at 0 and keeps its last value. This or `file`.
     #[serde(default)]
     pub table: Option<TimeTable>,
     /// CSV file with time (s) and value in its first two columns, relative to the case file.
@@ -68,7 +68,8 @@ pub struct Quiet {
     /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity.
     #[serde(default)]
     pub wave: Option<[f64; 2]>,
-    /// Rows of time (s) since the start of the stage and factor on `wave`; linear between, zero outside. This or `file`.
+    /// Rows of time (s) since the start of the stage and factor on `wave`; linear between, zero outside. This or
+    /// `file`.
     #[serde(default)]
     pub table: Option<TimeTable>,
     /// CSV file with time (s) and factor in its first two columns, relative to the case file.

@@ -43,7 +43,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let angle = setup.get("incidence_deg");
         for wave in Wave::BOTH {
             let (found, exact) = pulse.oblique(setup, wave, angle)?;
-            // Beyond the critical angle the reflected pressure wave clings to the boundary, and no closed form is given.
+            // Beyond the critical angle the reflected pressure wave clings to the boundary, and no closed form is
+            // given.
             if exact.is_finite() {
                 let quantity = format!("{wave:?} at {angle}° to the normal: reflected energy (beam of finite width)");
                 outcome.rows.push(Row::new(quantity, "", found, exact).from(Origin::ClosedForm));

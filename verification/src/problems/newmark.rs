@@ -8,8 +8,8 @@ pub struct Sliding<F: Fn(f64) -> f64> {
     pub dip: f64,
     /// Friction coefficient.
     pub friction: f64,
-    /// Acceleration of the block (m/s²) relative to the base at time t (s), horizontal, that the base's own causes: minus
-    /// that of the base; positive drives down the plane.
+    /// Acceleration of the block (m/s²) relative to the base at time t (s), horizontal, that the base's own causes:
+    /// minus that of the base; positive drives down the plane.
     pub push: F,
 }
 

@@ -26,7 +26,7 @@ fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
     rows_within(key, rows, base.scale, most, unit)?;
     if base.kind == BaseMotionKind::Velocity && rows[0][1] != 0.0 {
         let message = format!(
-            "starts with {} m/s, must start with 0: the base is at rest before; add a row `[{}, 0.0]` at an earlier time",
+            "starts with {} m/s, must start with 0, as the base is at rest before; let the first row be `[{}, 0.0]`",
             rows[0][1], rows[0][0]
         );
         return fail(&key.field("table").index(0), message);
