@@ -242,9 +242,8 @@ impl Return<'_> {
         let planes = &PLANES[..count];
         let one = (0..count).find_map(|i| self.on(&[planes[i]]));
         let two = || pairs(count).find_map(|(i, j)| self.on(&[planes[i], planes[j]]));
-        let three = || {
-            pairs(count).find_map(|(i, j)| (j + 1..count).find_map(|k| self.on(&[planes[i], planes[j], planes[k]])))
-        };
+        let three =
+            || pairs(count).find_map(|(i, j)| (j + 1..count).find_map(|k| self.on(&[planes[i], planes[j], planes[k]])));
         one.or_else(two).or_else(three).unwrap_or_else(|| self.apex())
     }
 

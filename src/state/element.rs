@@ -79,9 +79,7 @@ impl Slope {
         let at = self.deformation(element, &state.displacement);
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
         match self.strength_of(element).zip(state.plastic.get(element)) {
-            Some((strength, plastic)) => {
-                energy + strength.energy(&at, &self.pre_stress_and_out(element), plastic)
-            }
+            Some((strength, plastic)) => energy + strength.energy(&at, &self.pre_stress_and_out(element), plastic),
             None => energy,
         }
     }

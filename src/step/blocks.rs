@@ -133,7 +133,8 @@ impl Pass<'_> {
             let deformation = Deformation::new(ids.map(|i| u[i as usize]), g);
             let area = covers.element_area[e];
             let mut forces = deformation.forces(g, area, slope.rock_of(e), &slope.pre_stress_of(e));
-            if let Some((strength, plastic)) = self.state.plastic.get(e).and_then(|p| Some((slope.strength_of(e)?, p))) {
+            if let Some((strength, plastic)) = self.state.plastic.get(e).and_then(|p| Some((slope.strength_of(e)?, p)))
+            {
                 let relief = strength.forces(&deformation, g, area, plastic);
                 forces.iter_mut().zip(relief).for_each(|(f, r)| *f += r);
             }

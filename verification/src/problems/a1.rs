@@ -16,9 +16,18 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
         Parameter { name: "joints", unit: "", default: 12.0, range: [0.0, 200.0], doc: "random joints" },
         Parameter { name: "mesh", unit: "m", default: 0.8, range: [0.2, 3.0], doc: "mesh size in a rock of 12 m" },
-        Parameter { name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh" },
-        Parameter { name: "mesh_x", unit: "m", default: 0.3, range: [-100.0, 100.0], doc: "shift of the mesh along x" },
-        Parameter { name: "mesh_y", unit: "m", default: -0.2, range: [-100.0, 100.0], doc: "shift of the mesh along y" },
+        Parameter {
+            name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh"
+        },
+        Parameter { name: "mesh_x", unit: "m", default: 0.3, range: [-100.0, 100.0], doc: "shift of the mesh along \
+        x" },
+        Parameter {
+            name: "mesh_y",
+            unit: "m",
+            default: -0.2,
+            range: [-100.0, 100.0],
+            doc: "shift of the mesh along y",
+        },
         Parameter { name: "turn_deg", unit: "°", default: 30.0, range: [-360.0, 360.0], doc: "rotation of the rock" },
         Parameter { name: "shift", unit: "m", default: 8.0, range: [-1e3, 1e3], doc: "translation of the rock" },
         Parameter { name: "strain", unit: "", default: 2e-3, range: [1e-6, 1e-2], doc: "size of the uniform strain" },
@@ -35,13 +44,16 @@ const OUTLINE: &str = "[[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 
 fn case(setup: &Setup, seed: u64) -> String {
     let mut dice = Dice::new(seed);
     let joint = |_| {
-        let ends = [dice.between(-1.0, 11.0), dice.between(0.0, 9.0), dice.between(-1.0, 11.0), dice.between(0.0, 9.0)];
+        let ends = [dice.between(-1.0, 11.0), dice.between(0.0, 9.0), dice.between(-1.0, 11.0), dice.between(0.0, \
+        9.0)];
         format!("[[joint]]\npoints = [[{:?}, {:?}], [{:?}, {:?}]]\n", ends[0], ends[1], ends[2], ends[3])
     };
     let joints: String = (0..setup.get("joints") as usize).map(joint).collect();
     format!(
-        "title = \"Patch\"\n[domain]\noutline = {OUTLINE}\n[mesh]\nsize = {:?}\nangle_deg = {:?}\norigin = [{:?}, {:?}]\n\
-         {joints}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\npoisson = {:?}\n[joint_law.joint]\nfriction_deg = 30.0\n\
+        "title = \"Patch\"\n[domain]\noutline = {OUTLINE}\n[mesh]\nsize = {:?}\nangle_deg = {:?}\norigin = [{:?}, \
+         {:?}]\n\
+         {joints}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\npoisson = {:?}\n[joint_law.joint]\nfriction_deg = \
+         30.0\n\
          [[stage]]\nname = \"none\"\nkind = \"dynamic\"\nduration = 1.0\n",
         setup.get("mesh"),
         setup.get("mesh_angle_deg"),
@@ -120,7 +132,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let row = |n: usize| {
         Row::new(format!("{}: largest stress error over E", names[n]), "", most[n], 0.0).within(
             Tolerance::AtMost(1e-12 * scale),
-            "claim A1: 1e-12·E; rounding of displacements U is εU and of strain εU/h, which grows with U over 12 m and \
+            "claim A1: 1e-12·E; rounding of displacements U is εU and of strain εU/h, which grows with U over 12 m \
+             and \
              1 m over h",
         )
     };

@@ -9,14 +9,23 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "A2",
     title: "Free fall",
-    source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and gravity \
+    source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and \
+             gravity \
              that strains",
     parameters: &[
         Parameter { name: "g", unit: "m/s²", default: 9.81, range: [0.01, 100.0], doc: "gravity" },
         Parameter { name: "direction_deg", unit: "°", default: -90.0, range: [-360.0, 360.0], doc: "its direction" },
         Parameter { name: "t", unit: "s", default: 2.0, range: [0.05, 5.0], doc: "time of the fall" },
-        Parameter { name: "mesh", unit: "m", default: 0.7, range: [0.3, 2.0], doc: "mesh size beside blocks of 1 to 5 m" },
-        Parameter { name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh" },
+        Parameter {
+            name: "mesh",
+            unit: "m",
+            default: 0.7,
+            range: [0.3, 2.0],
+            doc: "mesh size beside blocks of 1 to 5 m",
+        },
+        Parameter {
+            name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh"
+        },
         Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the shapes" },
         Parameter { name: "young", unit: "Pa", default: 2e9, range: [1e6, 1e11], doc: "Young's modulus" },
     ],
@@ -37,12 +46,15 @@ fn case(setup: &Setup) -> String {
         };
         format!("[{}]", (0..count).map(corner).collect::<Vec<_>>().join(", "))
     };
-    let islands = [ring(8.0, 1.5, 2.0), ring(7.0, 7.0, 0.6), "[[0.0, 6.0], [5.0, 6.05], [5.0, 6.11], [0.0, 6.06]]".into()];
+    let islands =
+        [ring(8.0, 1.5, 2.0), ring(7.0, 7.0, 0.6), "[[0.0, 6.0], [5.0, 6.05], [5.0, 6.11], [0.0, 6.06]]".into()];
     let (s, c) = setup.get("direction_deg").to_radians().sin_cos();
     let g = setup.get("g");
     format!(
-        "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n[mesh]\n\
-         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], [3.0, 3.0]]\n\
+        "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n\
+         [mesh]\n\
+         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], \
+         [3.0, 3.0]]\n\
          [gravity]\nx = {:e}\ny = {:e}\n[rock.rock]\ndensity = 2400.0\nyoung = {:e}\npoisson = 0.25\n[[stage]]\n\
          name = \"fall\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = 0.1\n",
         islands.join(", "),
@@ -72,7 +84,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let fall = Vector::new(c, s) * (0.5 * g * t * t);
     let (slope, state) = (simulation.slope(), simulation.state());
     let off = state.displacement.iter().map(|u| (u - fall).norm()).fold(0.0, f64::max);
-    let stress = (0..slope.covers.element_count()).flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
+    let stress =
+        (0..slope.covers.element_count()).flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
     let spin = |b: usize| block_motion(slope, state, &simulation.scratch().metric, b).2.abs();
     let spin = (0..slope.covers.block_count()).map(spin).fold(0.0, f64::max);
     let rows = vec![

@@ -10,7 +10,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "A3",
     title: "Free spin",
-    source: "a block that is pushed by a moment spins with the inertia of its true polygon, and keeps angular momentum, \
+    source: "a block that is pushed by a moment spins with the inertia of its true polygon, and keeps angular \
+             momentum, \
              kinetic energy and area; catches wrong inertia of cut covers and stress rates that are not objective",
     parameters: &[
         Parameter { name: "w0", unit: "rad/s", default: 0.8, range: [0.05, 20.0], doc: "angular velocity" },
@@ -67,10 +68,13 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (outline, w0, density) = (shape(setup), setup.get("w0"), setup.get("density"));
     let (area, centre, polar) = moments(&outline);
     let text = format!(
-        "title = \"Spin\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\nangle_deg = 11.0\norigin = [0.1, 0.2]\n\
-         [gravity]\ny = 0.0\n[rock.rock]\ndensity = {density:e}\nyoung = {:e}\npoisson = 0.25\n[[load]]\nkind = \"block\"\n\
+        "title = \"Spin\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\nangle_deg = 11.0\norigin = [0.1, \
+         0.2]\n\
+         [gravity]\ny = 0.0\n[rock.rock]\ndensity = {density:e}\nyoung = {:e}\npoisson = 0.25\n[[load]]\nkind = \
+         \"block\"\n\
          point = [{:?}, {:?}]\nmoment = {:e}\ntable = [[0.0, 0.0], [{half:e}, 1.0], [{PUSH:e}, 0.0]]\n[solver]\n\
-         communication_step = {half:e}\n[[stage]]\nname = \"spin\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.1\n",
+         communication_step = {half:e}\n[[stage]]\nname = \"spin\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = \
+         0.1\n",
         setup.get("mesh") * setup.get("size"),
         setup.get("young"),
         centre.x,
@@ -104,14 +108,18 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let ledger = Row::ledger(&simulation.advance(true)?);
     let strain = density * (w0 * setup.get("size")).powi(2) / setup.get("young");
     let most = 1e-6 + 3.0 * strain;
-    let reason = "claim A3: 1e-6, and three times ρω²R²/E for the strain by centrifugal force, which is no rigid motion";
+    let reason =
+        "claim A3: 1e-6, and three times ρω²R²/E for the strain by centrifugal force, which is no rigid motion";
     let exact = density * polar * w0;
     let mut rows = vec![
-        Row::new("angular momentum after the push", "kg·m²/s", momentum, exact).within(Tolerance::Relative(most), reason),
-        Row::new("spin after the push, L/J of the true polygon", "rad/s", spin, w0).within(Tolerance::Relative(most), reason),
+        Row::new("angular momentum after the push", "kg·m²/s", momentum, exact)
+            .within(Tolerance::Relative(most), reason),
+        Row::new("spin after the push, L/J of the true polygon", "rad/s", spin, w0)
+            .within(Tolerance::Relative(most), reason),
         Row::new("period", "s", std::f64::consts::TAU * time / angle, std::f64::consts::TAU / w0)
             .within(Tolerance::Relative(most), reason),
-        Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * exact * w0).within(Tolerance::Relative(2.0 * most), reason),
+        Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * exact * w0)
+            .within(Tolerance::Relative(2.0 * most), reason),
     ];
     for (name, value) in ["angular momentum", "kinetic energy", "area"].into_iter().zip(drift) {
         let row = Row::new(format!("{name} after {turns} turns over that before"), "", value, 1.0);

@@ -101,7 +101,8 @@ impl Model {
             let slope = (kirsch(self.k0, r + 1e-4, angle)[1] - kirsch(self.k0, r, angle)[1]) / 1e-4;
             self.p * (0.25 * h * slope.abs() + h * h * (1.0 + self.k0))
         };
-        let reason = "a parabola fitted to element stresses over 3.5 h: second order, (h/R)²(1 + K0)p, and a quarter of \
+        let reason = "a parabola fitted to element stresses over 3.5 h: second order, (h/R)²(1 + K0)p, and a \
+                      quarter of \
                       the change of the hoop stress over one h, for elements at the wall are cut anyhow";
         let mut rows = Vec::new();
         let mut add = |what: String, [found, exact]: [f64; 2], most: f64| {

@@ -10,8 +10,10 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "B7",
     title: "Brazil disc",
-    source: "H. Hertz (1883), Timoshenko and Goodier: a disc under two opposite point loads has 2P/(πD) of tension and \
-             6P/(πD) of compression at its centre; catches wrong point loads and wrong stress of cut boundary elements",
+    source: "H. Hertz (1883), Timoshenko and Goodier: a disc under two opposite point loads has 2P/(πD) of tension \
+             and \
+             6P/(πD) of compression at its centre; catches wrong point loads and wrong stress of cut boundary \
+             elements",
     parameters: &[
         Parameter { name: "force", unit: "N/m", default: 1e6, range: [1e2, 1e8], doc: "load on each end, P" },
         Parameter { name: "diameter", unit: "m", default: 1.0, range: [0.05, 50.0], doc: "diameter of the disc, D" },
@@ -56,7 +58,8 @@ fn solve(setup: &mut Setup, mesh: f64) -> Result<(Simulation, StepReport), Troub
     outline.reverse();
     let ramp = 20.0 * radius * (2650.0 / setup.get("young")).sqrt();
     let text = format!(
-        "title = \"Brazil disc\"\n[domain]\noutline = {}\n[mesh]\nsize = {mesh:e}\nangle_deg = 15.0\n[gravity]\ny = 0.0\n\
+        "title = \"Brazil disc\"\n[domain]\noutline = {}\n[mesh]\nsize = {mesh:e}\nangle_deg = 15.0\n[gravity]\ny \
+         = 0.0\n\
          [rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = {:e}\n\
          [[fix]]\nedge = [[0.0, 0.0], [{radius:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, 0.0], [0.0, {radius:?}]]\naxes = \"x\"\n\
@@ -88,7 +91,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (simulation, report) = solve(setup, mesh)?;
     let unit = exact(force, diameter, 0.0)[0];
     let most = 40.0 * mesh * mesh * unit;
-    let reason = "fitted stresses are of second order; the compression, 3 units at the centre, falls by (D/4)⁻²/2 per \
+    let reason = "fitted stresses are of second order; the compression, 3 units at the centre, falls by (D/4)⁻²/2 \
+                  per \
                   length squared, which a parabola over 3.5 h from one side smears: 40·(h/D)² units";
     let mut rows = Vec::new();
     for (share, place) in [(0.0, "at the centre"), (0.25, "a quarter of D beside it")] {
@@ -115,7 +119,8 @@ fn plot(simulation: &Simulation, force: f64, diameter: f64) -> Plot {
     let unit = exact(force, diameter, 0.0)[0];
     let mut series = Vec::new();
     for (k, name) in ["horizontal", "vertical"].into_iter().enumerate() {
-        let curve = (0..=50).map(|n| 0.01 * f64::from(n)).map(|x| [x, exact(force, diameter, x * diameter)[k] / unit]);
+        let curve = (0..=50).map(|n| 0.01 * f64::from(n)).map(|x| [x, exact(force, diameter, x * diameter)[k] / \
+        unit]);
         series.push(Series { name: format!("{name}, exact"), points: curve.collect(), marks: false });
         let marks = (0..=24).map(|n| 0.02 * f64::from(n)).map(|x| [x, found(simulation, x * diameter)[k] / unit]);
         series.push(Series { name: format!("{name}, computed"), points: marks.collect(), marks: true });

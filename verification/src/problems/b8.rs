@@ -10,7 +10,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "B8",
     title: "Round opening in Mohr–Coulomb rock under hydrostatic stress",
-    source: "J. Salençon (1969): plastic radius, stresses and convergence of a round opening; derived in this file from \
+    source: "J. Salençon (1969): plastic radius, stresses and convergence of a round opening; derived in this file \
+             from \
              equilibrium and flow, and the convergence checked by numerical integration; catches wrong yield, flow \
              rule and out-of-plane stress",
     parameters: &[
@@ -18,7 +19,9 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "pi", unit: "Pa", default: 0.0, range: [0.0, 1e8], doc: "pressure on the wall" },
         Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "friction angle" },
         Parameter { name: "cohesion", unit: "Pa", default: 3e6, range: [1e2, 1e9], doc: "cohesion" },
-        Parameter { name: "psi_deg", unit: "°", default: 10.0, range: [0.0, 55.0], doc: "dilation angle, at most phi" },
+        Parameter {
+            name: "psi_deg", unit: "°", default: 10.0, range: [0.0, 55.0], doc: "dilation angle, at most phi"
+        },
         Parameter { name: "radius", unit: "m", default: 1.0, range: [0.1, 20.0], doc: "radius of the opening" },
         Parameter { name: "domain", unit: "", default: 6.0, range: [3.0, 12.0], doc: "half domain over radius" },
         Parameter { name: "mesh", unit: "", default: 0.07, range: [0.05, 0.3], doc: "mesh size over radius" },
@@ -73,7 +76,8 @@ impl Opening {
         (2.0 * self.p0 - self.strength) / (1.0 + self.kp)
     }
 
-    /// Radius of the plastic zone (m): where the plastic radial stress (pᵢ + q/(Kp − 1))(r/R)^(Kp − 1) − q/(Kp − 1), from
+    /// Radius of the plastic zone (m): where the plastic radial stress (pᵢ + q/(Kp − 1))(r/R)^(Kp − 1) − q/(Kp − 1),
+    /// from
     /// dσr/dr = (σθ − σr)/r, reaches the one at yield; that of the opening when nothing yields.
     fn plastic_radius(&self) -> f64 {
         let ratio = (self.radial_at_yield() + self.apex()) / (self.pi + self.apex());
@@ -130,18 +134,17 @@ impl Opening {
 
 fn solve(setup: &mut Setup, opening: &Opening, mesh: f64) -> Result<(Simulation, StepReport), Trouble> {
     let get = |name| setup.get(name);
-    let plate = QuarterPlate {
-        radius: opening.radius,
-        half: get("domain") * opening.radius,
-        mesh: mesh * opening.radius,
-    };
+    let plate =
+        QuarterPlate { radius: opening.radius, half: get("domain") * opening.radius, mesh: mesh * opening.radius };
     if opening.plastic_radius() > 0.8 * plate.half {
         let share = opening.plastic_radius() / opening.radius;
         return Err(Trouble(format!("the plastic radius is {share:.2} R, the domain must be 1.25 times as large")));
     }
     let text = format!(
-        "title = \"Round opening in rock that yields\"\n{}[rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = {:e}\n\
-         friction_deg = {:?}\ncohesion = {:e}\ndilation_deg = {:?}\n[in_situ]\nsxx = {p0:e}\nsyy = {p0:e}\nszz = {p0:e}\n\
+        "title = \"Round opening in rock that yields\"\n{}[rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = \
+         {:e}\n\
+         friction_deg = {:?}\ncohesion = {:e}\ndilation_deg = {:?}\n[in_situ]\nsxx = {p0:e}\nsyy = {p0:e}\nszz = \
+         {p0:e}\n\
          {}[[monitor]]\nname = \"wall\"\npoint = [0.0, {:?}]\n",
         plate.text(),
         get("young"),
@@ -186,7 +189,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let row = Row::new("convergence of the wall", "m", -simulation.monitor(0).0.y, opening.convergence());
     let judged = opening.middle_is_out_of_plane();
     rows.push(if judged {
-        row.within(Tolerance::Relative(0.6 * mesh), "plastic strain at the wall of elements that are known to one h: 0.6·h/R")
+        row.within(
+            Tolerance::Relative(0.6 * mesh),
+            "plastic strain at the wall of elements that are known to one h: 0.6·h/R",
+        )
     } else {
         row.within(Tolerance::Shown, "rock flows out of the plane as well, for which the formula does not hold")
     });
@@ -197,9 +203,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
 /// Radial and hoop stress at the wall, within the zone, at its edge and beyond.
 fn stress_rows(simulation: &Simulation, opening: &Opening, mesh: f64) -> Vec<Row> {
     let (wall, edge) = (opening.radius, opening.plastic_radius());
-    let reason = "stress of one element: the radial stress changes by h·(hoop − radial)/r over it, and where rock yields \
+    let reason = "stress of one element: the radial stress changes by h·(hoop − radial)/r over it, and where rock \
+                  yields \
                   the hoop stress by Kp times as much; a parabola fitted over 3.5 h rounds the kink at the edge off";
-    let places = [(wall, "wall"), (0.5 * (wall + edge), "middle of the zone"), (edge, "its edge"), (2.0 * edge, "beyond")];
+    let places =
+        [(wall, "wall"), (0.5 * (wall + edge), "middle of the zone"), (edge, "its edge"), (2.0 * edge, "beyond")];
     let mut rows = Vec::new();
     for (r, name) in places {
         let (computed, exact) = (found(simulation, r, std::f64::consts::FRAC_PI_4), opening.stress(r));
@@ -219,7 +227,8 @@ fn plot(simulation: &Simulation, opening: &Opening) -> Plot {
     let mut series = Vec::new();
     for (which, name) in [(0, "radial"), (1, "hoop")] {
         let exact = steps(80).map(|r| [r, opening.stress(r * opening.radius)[which] / opening.p0]).collect();
-        let computed = |r: f64| found(simulation, r * opening.radius, std::f64::consts::FRAC_PI_4)[which] / opening.p0;
+        let computed = |r: f64| found(simulation, r * opening.radius, std::f64::consts::FRAC_PI_4)[which] / \
+        opening.p0;
         series.push(Series { name: format!("{name}, exact"), points: exact, marks: false });
         let points = steps(24).map(|r| [r, computed(r)]).collect();
         series.push(Series { name: format!("{name}, computed"), points, marks: true });
@@ -236,10 +245,19 @@ fn plot(simulation: &Simulation, opening: &Opening) -> Plot {
 mod tests {
     use super::*;
 
-    const OPENING: Opening =
-        Opening { p0: 30.0, pi: 1.0, radius: 2.0, kp: 3.0, kpsi: 1.4, strength: 12.0, shear_modulus: 2800.0, poisson: 0.2 };
+    const OPENING: Opening = Opening {
+        p0: 30.0,
+        pi: 1.0,
+        radius: 2.0,
+        kp: 3.0,
+        kpsi: 1.4,
+        strength: 12.0,
+        shear_modulus: 2800.0,
+        poisson: 0.2,
+    };
 
-    /// Salençon's plastic radius R·[2(p₀(Kp − 1) + q)/((1 + Kp)(pᵢ(Kp − 1) + q))]^(1/(Kp − 1)), and stresses in equilibrium.
+    /// Salençon's plastic radius R·[2(p₀(Kp − 1) + q)/((1 + Kp)(pᵢ(Kp − 1) + q))]^(1/(Kp − 1)), and stresses in
+    /// equilibrium.
     #[test]
     fn the_plastic_radius_is_salencons_and_stresses_balance() {
         let o = OPENING;

@@ -9,18 +9,36 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "D4",
     title: "Jaeger's plane of weakness",
-    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b from its \
-             axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong yield of the \
+    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b \
+             from its \
+             axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong \
+             yield of the \
              rock and locking of blocks between plates",
     parameters: &[
-        Parameter { name: "b_deg", unit: "°", default: 30.0, range: [5.0, 85.0], doc: "joint from the axis of the load" },
+        Parameter {
+            name: "b_deg",
+            unit: "°",
+            default: 30.0,
+            range: [5.0, 85.0],
+            doc: "joint from the axis of the load",
+        },
         Parameter { name: "cohesion", unit: "Pa", default: 2e3, range: [1e2, 1e8], doc: "cohesion of the rock" },
-        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [0.0, 55.0], doc: "friction angle of the rock" },
-        Parameter { name: "joint_cohesion", unit: "Pa", default: 2e3, range: [0.0, 1e8], doc: "cohesion of the joint" },
-        Parameter { name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint" },
+        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [0.0, 55.0], doc: "friction angle of the \
+        rock" },
+        Parameter { name: "joint_cohesion", unit: "Pa", default: 2e3, range: [0.0, 1e8], doc: "cohesion of the \
+        joint" },
+        Parameter {
+            name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint"
+        },
         Parameter { name: "width", unit: "m", default: 1.0, range: [0.1, 10.0], doc: "width of the sample" },
         Parameter { name: "mesh", unit: "", default: 0.25, range: [0.1, 0.5], doc: "mesh size over width" },
-        Parameter { name: "stiffness", unit: "", default: 1e4, range: [2e3, 1e5], doc: "Young's modulus over strength" },
+        Parameter {
+            name: "stiffness",
+            unit: "",
+            default: 1e4,
+            range: [2e3, 1e5],
+            doc: "Young's modulus over strength",
+        },
     ],
     quick: true,
     implicit: false,
@@ -75,7 +93,8 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
     let [w, h] = [width, height];
     format!(
         "title = \"Sample with a joint at {b_deg}° from its axis\"\n[domain]\noutline = {}\n[mesh]\nsize = {:e}\n\
-         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = {:e}\n\
+         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
+         {:e}\n\
          poisson = 0.25\ncohesion = {:e}\nfriction_deg = {:?}\n[joint_law.joint]\ncohesion = {:e}\n\
          friction_deg = {:?}\n[[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
@@ -108,7 +127,8 @@ impl Test {
     }
 }
 
-/// Pushes the upper plate down by `total` (m) in `steps` steps: its supports, the second fixity, rest lower and lower.
+/// Pushes the upper plate down by `total` (m) in `steps` steps: its supports, the second fixity, rest lower and
+/// lower.
 fn press(simulation: &mut Simulation, width: f64, total: f64, steps: u64) -> Result<Test, Trouble> {
     let upper: Vec<usize> =
         (0..simulation.slope().supports.len()).filter(|&s| simulation.slope().supports[s].fix == 1).collect();
@@ -159,11 +179,13 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let exact = strength.with_joint(b.to_radians());
         let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), exact);
         rows.push(if exact < strength.cap() {
-            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 transits, and \
+            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 \
+                          transits, and \
                           some 0.5 % where the joint is shallow and the load sensitive";
             row.within(Tolerance::Relative(0.005), reason)
         } else {
-            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield as an \
+            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield \
+                          as an \
                           upper bound does";
             row.within(Tolerance::Relative(0.01), reason)
         });
@@ -210,9 +232,15 @@ mod tests {
     fn the_formula_gives_the_published_numbers() {
         let degrees = |d: f64| d.to_radians();
         let strength = Strength { rock: [2.0, degrees(40.0)], joint: [2.0, degrees(30.0)] };
-        for (b, published) in
-            [(20.0, 7.8785), (25.0, 7.1453), (30.0, 6.9282), (35.0, 7.1453), (40.0, 7.8785), (15.0, 8.578_028), (45.0, 8.578_028)]
-        {
+        for (b, published) in [
+            (20.0, 7.8785),
+            (25.0, 7.1453),
+            (30.0, 6.9282),
+            (35.0, 7.1453),
+            (40.0, 7.8785),
+            (15.0, 8.578_028),
+            (45.0, 8.578_028),
+        ] {
             assert!((strength.with_joint(degrees(b)) - published).abs() < 5e-5, "{b}");
         }
     }
