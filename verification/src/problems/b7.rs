@@ -119,8 +119,7 @@ fn plot(simulation: &Simulation, force: f64, diameter: f64) -> Plot {
     let unit = exact(force, diameter, 0.0)[0];
     let mut series = Vec::new();
     for (k, name) in ["horizontal", "vertical"].into_iter().enumerate() {
-        let curve = (0..=50).map(|n| 0.01 * f64::from(n)).map(|x| [x, exact(force, diameter, x * diameter)[k] / \
-        unit]);
+        let curve = (0..=50).map(|n| 0.01 * f64::from(n)).map(|x| [x, exact(force, diameter, x * diameter)[k] / unit]);
         series.push(Series { name: format!("{name}, exact"), points: curve.collect(), marks: false });
         let marks = (0..=24).map(|n| 0.02 * f64::from(n)).map(|x| [x, found(simulation, x * diameter)[k] / unit]);
         series.push(Series { name: format!("{name}, computed"), points: marks.collect(), marks: true });

@@ -227,8 +227,7 @@ fn plot(simulation: &Simulation, opening: &Opening) -> Plot {
     let mut series = Vec::new();
     for (which, name) in [(0, "radial"), (1, "hoop")] {
         let exact = steps(80).map(|r| [r, opening.stress(r * opening.radius)[which] / opening.p0]).collect();
-        let computed = |r: f64| found(simulation, r * opening.radius, std::f64::consts::FRAC_PI_4)[which] / \
-        opening.p0;
+        let computed = |r: f64| found(simulation, r * opening.radius, std::f64::consts::FRAC_PI_4)[which] / opening.p0;
         series.push(Series { name: format!("{name}, exact"), points: exact, marks: false });
         let points = steps(24).map(|r| [r, computed(r)]).collect();
         series.push(Series { name: format!("{name}, computed"), points, marks: true });

@@ -23,10 +23,22 @@ pub const PROBLEM: Problem = Problem {
             doc: "joint from the axis of the load",
         },
         Parameter { name: "cohesion", unit: "Pa", default: 2e3, range: [1e2, 1e8], doc: "cohesion of the rock" },
-        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [0.0, 55.0], doc: "friction angle of the \
-        rock" },
-        Parameter { name: "joint_cohesion", unit: "Pa", default: 2e3, range: [0.0, 1e8], doc: "cohesion of the \
-        joint" },
+        Parameter {
+            name: "phi_deg",
+            unit: "°",
+            default: 40.0,
+            range: [0.0, 55.0],
+            doc: "friction angle of the \
+        rock",
+        },
+        Parameter {
+            name: "joint_cohesion",
+            unit: "Pa",
+            default: 2e3,
+            range: [0.0, 1e8],
+            doc: "cohesion of the \
+        joint",
+        },
         Parameter {
             name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint"
         },

@@ -15,4 +15,14 @@ mod dice;
 use crate::Problem;
 
 /// Every problem.
-pub const ALL: &[Problem] = &[a1::PROBLEM, a2::PROBLEM, a3::PROBLEM, a4::PROBLEM, b4::PROBLEM, b7::PROBLEM, b8::PROBLEM, c1::PROBLEM, d4::PROBLEM];
+pub const ALL: &[Problem] = &[
+    a1::PROBLEM,
+    a2::PROBLEM,
+    a3::PROBLEM,
+    a4::PROBLEM,
+    b4::PROBLEM,
+    b7::PROBLEM,
+    b8::PROBLEM,
+    c1::PROBLEM,
+    d4::PROBLEM,
+];
