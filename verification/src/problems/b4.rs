@@ -17,9 +17,9 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "k0", unit: "", default: 0.5, range: [0.0, 3.0], doc: "horizontal over vertical stress" },
         Parameter { name: "radius", unit: "m", default: 1.0, range: [0.1, 20.0], doc: "radius of the hole" },
         Parameter { name: "domain", unit: "", default: 10.0, range: [4.0, 12.0], doc: "half domain over radius" },
-        Parameter { name: "mesh", unit: "", default: 0.1, range: [0.07, 0.4], doc: "mesh size over radius" },
+        Parameter { name: "mesh", unit: "", default: 0.1, range: [0.07, 0.2], doc: "mesh size over radius" },
         Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
+        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
     ],
     quick: true,
     implicit: true,
@@ -156,7 +156,7 @@ impl Model {
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
-    let mesh = if setup.quick { setup.get("mesh").max(0.25) } else { setup.get("mesh") };
+    let mesh = if setup.quick { setup.get("mesh").max(0.2) } else { setup.get("mesh") };
     let mut outcome = Outcome::default();
     let mut fields = vec![1.0, setup.get("k0")];
     fields.dedup();
