@@ -93,8 +93,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let nu = setup.get("poisson");
     let stiff = ((1.0 - nu) / (1.0 - 2.0 * nu)).max(1.5);
     let most = 30.0 * mesh * mesh * unit * stiff;
-    let reason = "fitted stresses are of second order in h: 30·(h/D)² units of 2P/(πD), for the stress bends by some 50 \
-                  units over D² there, times the confined modulus over 2G, at least 1.5";
+    let reason = "fitted stresses are of second order in h: 30·(h/D)² units of 2P/(πD), for the stress bends by some \
+                  50 units over D² there, times the confined modulus over 2G, at least 1.5";
     let mut rows = Vec::new();
     for (share, place) in [(0.0, "at the centre"), (0.25, "a quarter of D beside it")] {
         let (computed, exact) = (found(&simulation, share * diameter), exact(force, diameter, share * diameter));
