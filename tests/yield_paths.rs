@@ -1,4 +1,5 @@
-//! Claim: rock yields at the Mohr–Coulomb strength along any strain path, flows at its dilation angle, and does both in
+//! Claim: rock yields at the Mohr–Coulomb strength along any strain path, flows at its dilation angle, and does both
+//! in
 //! every element of a cut mesh and in any rotated frame.
 
 mod common;
@@ -14,12 +15,15 @@ fn held(strength: &str) -> Simulation {
     simulation(&format!(
         "title = \"path\"\n[domain]\noutline = [[0, 0], [2, 0], [2, 2], [0, 2]]\n[mesh]\nsize = 0.6\nangle_deg = 13\n\
          [[joint]]\npoints = [[-1, 0.4], [3, 1.3]]\n[[joint]]\npoints = [[0.7, -1], [1.1, 3]]\n[gravity]\ny = 0\n\
-         [rock.rock]\ndensity = 2500\nyoung = 2e9\npoisson = 0.3\ncohesion = {COHESION:e}\n{strength}\n[joint_law.joint]\n\
-         friction_deg = 30\n[[fix]]\nbox = [-2, -2, 4, 4]\n[[stage]]\nname = \"hold\"\nkind = \"dynamic\"\nduration = 10\n"
+         [rock.rock]\ndensity = 2500\nyoung = 2e9\npoisson = 0.3\ncohesion = {COHESION:e}\n{strength}\n\
+         [joint_law.joint]\n\
+         friction_deg = 30\n[[fix]]\nbox = [-2, -2, 4, 4]\n[[stage]]\nname = \"hold\"\nkind = \"dynamic\"\n\
+         duration = 10\n"
     ))
 }
 
-/// Gives the rock a uniform strain xx, yy turned by `angle` (rad) as a whole, lets it yield, and returns the stress of
+/// Gives the rock a uniform strain xx, yy turned by `angle` (rad) as a whole, lets it yield, and returns the stress
+/// of
 /// its elements turned back, which must be the same in all.
 fn strained(simulation: &mut Simulation, strain: [f64; 2], angle: f64) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
@@ -74,8 +78,10 @@ fn biaxial(simulation: &mut Simulation, lateral: f64, step: f64, count: i32) -> 
     (stress, path)
 }
 
-/// At failure σyy = −(Kp·p + 2c·√Kp) with Kp = (1 + sin φ)/(1 − sin φ), and then dεxx/dεyy = −(1 + sin ψ)/(1 − sin ψ), for
-/// stresses no longer change and so all strain is plastic. The stress out of the plane stays the middle one. Rounding of
+/// At failure σyy = −(Kp·p + 2c·√Kp) with Kp = (1 + sin φ)/(1 − sin φ), and then dεxx/dεyy = −(1 + sin ψ)/(1 − sin
+/// ψ), for
+/// stresses no longer change and so all strain is plastic. The stress out of the plane stays the middle one.
+/// Rounding of
 /// strains of 1e-2 is 1e-16·E/c = 1e-13; the search for the lateral strain stops at 1e-9.
 #[test]
 fn biaxial_compression_has_strength_and_dilation() {

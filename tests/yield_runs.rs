@@ -10,10 +10,13 @@ use enmm::state::State;
 /// A spinning block that strikes a slab and is crushed at its corner.
 fn text(strength: &str, fix: &str) -> String {
     format!(
-        "title = \"crash\"\n[domain]\noutline = [[-3, -1], [5, -1], [5, 0], [-3, 0]]\nislands = [[[0.1, 0.11], [1.9, 0.51], \
-         [1.6, 2.2], [-0.3, 1.9]]]\n[mesh]\nsize = 0.12\nangle_deg = 7\n[gravity]\ny = 0\n[rock.rock]\ndensity = 2500\n\
+        "title = \"crash\"\n[domain]\noutline = [[-3, -1], [5, -1], [5, 0], [-3, 0]]\nislands = [[[0.1, 0.11], \
+         [1.9, 0.51], \
+         [1.6, 2.2], [-0.3, 1.9]]]\n[mesh]\nsize = 0.12\nangle_deg = 7\n[gravity]\ny = 0\n[rock.rock]\ndensity = \
+         2500\n\
          young = 1e9\npoisson = 0.25\n{strength}\n[joint_law.joint]\nfriction_deg = 30\n{fix}\n\
-         [[initial_velocity]]\nblock = [1, 1]\nvelocity = [0.5, -6]\nangular_velocity = 1\n[[stage]]\nname = \"fly\"\n\
+         [[initial_velocity]]\nblock = [1, 1]\nvelocity = [0.5, -6]\nangular_velocity = 1\n[[stage]]\nname = \
+         \"fly\"\n\
          kind = \"dynamic\"\nduration = 10\ndamping = 0.05\n"
     )
 }
@@ -68,7 +71,8 @@ fn serde_json_round_trip(state: &State) -> State {
 }
 
 /// Plastic strain whose axes are not those of the stretch turns no block: the forces of an element derive from an
-/// energy that knows no rotation. So blocks that crush each other in free flight keep their momenta to round-off: 3000
+/// energy that knows no rotation. So blocks that crush each other in free flight keep their momenta to round-off:
+/// 3000
 /// steps add up like a random walk, √3000·2e-16 of M·6 m/s and M·6 m/s·2 m; 1e-11 is taken (as claim A4).
 #[test]
 fn crushed_rock_keeps_linear_and_angular_momentum() {
@@ -84,13 +88,16 @@ fn crushed_rock_keeps_linear_and_angular_momentum() {
     assert!(simulation.yielded_elements() > 20, "{}", simulation.yielded_elements());
 }
 
-/// A column between smooth supports bears its weight ρgH < 2c·√Kp. With the strength times F the foot yields as soon as
+/// A column between smooth supports bears its weight ρgH < 2c·√Kp. With the strength times F the foot yields as soon
+/// as
 /// F·2c·√Kp(F) < ρgH, Kp(F) being that of tan φ·F: the column stands at F just above that, and not just below.
 #[test]
 fn the_strength_factor_reduces_rock() {
-    let text = "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 4], [0, 4]]\n[mesh]\nsize = 0.5\nangle_deg = 0\n\
+    let text = "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 4], [0, 4]]\n[mesh]\nsize = 0.5\n\
+                angle_deg = 0\n\
          [rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\ncohesion = 5e4\n[[fix]]\n\
-         edge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0]\naxes = \"x\"\n[[stage]]\nname = \"stand\"\n\
+         edge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0]\naxes = \"x\"\n[[stage]]\nname = \
+         \"stand\"\n\
          kind = \"static\"\nduration = 5\n";
     let strength = |f: f64| {
         let phi = (30f64.to_radians().tan() * f).atan();
@@ -108,7 +115,8 @@ fn the_strength_factor_reduces_rock() {
         let report = common::run_stage(&mut simulation);
         (simulation.at_rest(&report), simulation.yielded_elements())
     };
-    // The foot is an element's height, h/2 or less, above the base: its stress is less by 6 %, so it holds 6 % longer.
+    // The foot is an element's height, h/2 or less, above the base: its stress is less by 6 %, so it holds 6 %
+    // longer.
     assert_eq!(stands(1.05 * fos), (true, 0));
     let (rests, yielded) = stands(0.8 * fos);
     assert!(!rests && yielded > 0, "{rests} {yielded}");
@@ -119,7 +127,8 @@ fn the_strength_factor_reduces_rock() {
 fn overstressed_rock_is_told_at_the_start() {
     let case = |sxx: f64, szz: &str| {
         format!(
-            "title = \"in situ\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 4], [0, 4]]\n[mesh]\nsize = 1\n[gravity]\ny = 0\n\
+            "title = \"in situ\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 4], [0, 4]]\n[mesh]\nsize = 1\n\
+             [gravity]\ny = 0\n\
              [rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\ncohesion = 1e5\n[in_situ]\n\
              sxx = {sxx:e}\nsyy = -1e6\n{szz}\n[[fix]]\nbox = [-9, -9, 9, 9]\n[[stage]]\nname = \"rest\"\n\
              kind = \"dynamic\"\nduration = 1\n"

@@ -134,17 +134,22 @@ pub struct YieldSurface {
 }
 
 impl YieldSurface {
-    /// Plastic strain after yielding, and the energy (J/m²) that it took; none where the rock is elastic.
+    /// What plastic strain grows by at a deformation (Eq. Y4); none where the rock is elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
-    pub fn update(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<(PlasticStrain, f64)> {
+    pub fn growth(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
         let own = self.own_stress(at, plastic);
         let [xx, yy, xy] = at.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
-        let flow = self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])?;
-        let plastic = [0, 1, 2, 3].map(|k| plastic[k] + flow[k]);
-        let own = self.own_stress(at, &plastic);
-        let bearing = [0, 1, 2, 3].map(|k| own[k] + pre[k]);
-        Some((plastic, double_dot(&bearing, &flow)))
+        self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])
+    }
+
+    /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
+    /// stress before and after, as the leapfrog's work is (Eq. Y5).
+    pub fn taken(&self, from: &Deformation, to: &Deformation, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
+        let [plastic, growth] = change;
+        let before = self.own_stress(from, plastic);
+        let after = self.own_stress(to, &[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
+        double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + after[k]) + pre[k]), growth)
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that turn with the element (Eq. Y2).

@@ -1,7 +1,7 @@
 //! Stress and energy of one element: elastic stress, in-situ stress and plastic strain together.
 
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, YieldSurface};
+use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress};
 
 use super::{Slope, State};
 
@@ -33,18 +33,6 @@ impl Slope {
         [xx, yy, xy, self.pre_stress_out.get(element).copied().unwrap_or_default()]
     }
 
-    /// Plastic strain of an element at the displacements of a state, and the energy (J per m²) that it takes to get
-    /// there from the plastic strain of the state; none when the element does not yield.
-    pub fn yielded(
-        &self,
-        element: usize,
-        surface: &YieldSurface,
-        displacement: &[Vector],
-        plastic: &PlasticStrain,
-    ) -> Option<(PlasticStrain, f64)> {
-        surface.update(&self.deformation(element, displacement), &self.pre_stress_and_out(element), plastic)
-    }
-
     /// Strength and plastic strain of an element at the displacements of a state, as the next step will find them
     /// unless an input changes; none when the element never yields.
     fn plastic_now(&self, state: &State, element: usize) -> Option<(&MohrCoulomb, PlasticStrain)> {
@@ -52,8 +40,9 @@ impl Slope {
         let before = state.plastic.get(element)?;
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surface = strength.surface(state.drive.strength_factor_now(time));
-        let after = self.yielded(element, &surface, &state.displacement, before);
-        Some((strength, after.map_or(*before, |(plastic, _)| plastic)))
+        let at = self.deformation(element, &state.displacement);
+        let growth = surface.growth(&at, &self.pre_stress_and_out(element), before).unwrap_or_default();
+        Some((strength, [0, 1, 2, 3].map(|k| before[k] + growth[k])))
     }
 
     /// Stress xx, yy, xy (Pa, tension positive) of an element in global axes.

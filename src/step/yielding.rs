@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::mechanics::{PlasticStrain, YieldSurface};
+use crate::geometry::Vector;
+use crate::mechanics::{Deformation, PlasticStrain, YieldSurface};
 use crate::state::{Scratch, Slope, State};
 
 /// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
@@ -19,8 +20,8 @@ pub fn update(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64
     scratch.surfaces.extend(slope.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
     scratch.yielded.clear();
     scratch.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
-    let State { plastic, displacement, removed, .. } = state;
-    let pass = Pass { slope, surfaces: &scratch.surfaces, displacement, removed };
+    let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
+    let pass = Pass { slope, surfaces: &scratch.surfaces, displacement, velocity, dt_last: *dt_last, removed };
     let runs = scratch.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
     if scratch.serial {
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
@@ -35,7 +36,9 @@ pub fn update(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64
 struct Pass<'a> {
     slope: &'a Slope,
     surfaces: &'a [Option<YieldSurface>],
-    displacement: &'a [crate::geometry::Vector],
+    displacement: &'a [Vector],
+    velocity: &'a [Vector],
+    dt_last: f64,
     removed: &'a [bool],
 }
 
@@ -49,11 +52,22 @@ impl Pass<'_> {
             if self.removed[covers.element_block[element] as usize] {
                 continue;
             }
-            if let Some((after, taken)) = self.slope.yielded(element, surface, self.displacement, plastic) {
-                *plastic = after;
+            let (at, pre) =
+                (self.slope.deformation(element, self.displacement), self.slope.pre_stress_and_out(element));
+            if let Some(growth) = surface.growth(&at, &pre, plastic) {
+                let taken = surface.taken(&self.before(element), &at, &pre, [plastic, &growth]);
+                (0..4).for_each(|k| plastic[k] += growth[k]);
                 energy += taken * covers.element_area[element];
             }
         }
         energy
+    }
+
+    /// Deformation of an element one step ago.
+    fn before(&self, element: usize) -> Deformation {
+        let covers = &self.slope.covers;
+        let place = |i: u32| self.displacement[i as usize] - self.velocity[i as usize] * self.dt_last;
+        let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
+        Deformation::new(covers.element_covers[element].map(place), gradients)
     }
 }

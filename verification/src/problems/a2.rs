@@ -9,7 +9,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "A2",
     title: "Free fall",
-    source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and gravity \
+    source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and \
+             gravity \
              that strains",
     parameters: &[
         Parameter { name: "g", unit: "m/s²", default: 9.81, range: [0.01, 100.0], doc: "gravity" },
@@ -50,8 +51,10 @@ fn case(setup: &Setup) -> String {
     let (s, c) = setup.get("direction_deg").to_radians().sin_cos();
     let g = setup.get("g");
     format!(
-        "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n[mesh]\n\
-         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], [3.0, 3.0]]\n\
+        "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n\
+         [mesh]\n\
+         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], \
+         [3.0, 3.0]]\n\
          [gravity]\nx = {:e}\ny = {:e}\n[rock.rock]\ndensity = 2400.0\nyoung = {:e}\npoisson = 0.25\n[[stage]]\n\
          name = \"fall\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = 0.1\n",
         islands.join(", "),

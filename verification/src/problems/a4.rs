@@ -8,7 +8,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "A4",
     title: "Momentum and energy of a set of contacts",
-    source: "contacts push in opposite pairs at one point, so that linear and angular momentum keep to round-off, and \
+    source: "contacts push in opposite pairs at one point, so that linear and angular momentum keep to round-off, \
+             and \
              every joule is accounted for; catches wrong action and reaction, and energy from nowhere",
     parameters: &[
         Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
@@ -34,12 +35,17 @@ fn case(setup: &Setup) -> String {
     let seed = get("seed") as u64;
     format!(
         "title = \"Collision\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]\n\
-         islands = [[[-2.0, 0.4], [-0.2, 1.1], [-1.6, 2.3]], [[4.3, 1.2], [5.4, 0.8], [5.9, 2.2], [4.6, 2.4]]]\n[mesh]\n\
+         islands = [[[-2.0, 0.4], [-0.2, 1.1], [-1.6, 2.3]], [[4.3, 1.2], [5.4, 0.8], [5.9, 2.2], [4.6, 2.4]]]\n\
+         [mesh]\n\
          size = {:?}\nangle_deg = 13.0\n[[joint_set]]\ndip_deg = 10.0\nspacing = {:?}\nseed = {seed}\n[[joint_set]]\n\
-         dip_deg = 85.0\ndip_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n[gravity]\n\
-         y = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n[[initial_velocity]]\nblock = [-1.2, 1.2]\n\
-         velocity = [{:?}, 0.5]\nangular_velocity = {:?}\n[[initial_velocity]]\nblock = [5.0, 1.6]\nvelocity = [{:?}, 0.3]\n\
-         angular_velocity = -2.0\n[[stage]]\nname = \"collide\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = {:?}\n",
+         dip_deg = 85.0\ndip_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n\
+         [gravity]\n\
+         y = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n[[initial_velocity]]\nblock = \
+         [-1.2, 1.2]\n\
+         velocity = [{:?}, 0.5]\nangular_velocity = {:?}\n[[initial_velocity]]\nblock = [5.0, 1.6]\nvelocity = \
+         [{:?}, 0.3]\n\
+         angular_velocity = -2.0\n[[stage]]\nname = \"collide\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = \
+         {:?}\n",
         get("mesh"),
         get("spacing"),
         1.25 * get("spacing"),
@@ -84,7 +90,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let steps = if setup.quick { setup.get("steps").min(1000.0) } else { setup.get("steps") };
     let mut curve = Curve::new();
     let (worst, report) = collide(&mut simulation, steps as u64, &mut curve)?;
-    let reason = "impulses come in opposite pairs at one point: rounding alone, some √(3e5)·2e-16 over the run; 1e-11";
+    let reason = "impulses come in opposite pairs at one point: rounding alone, some √(3e5)·2e-16 over the run; \
+                  1e-11";
     let within = |row: Row| row.within(Tolerance::AtMost(1e-11), reason);
     let judged = simulation.state().counters.judged as f64;
     let rows = vec![

@@ -112,8 +112,10 @@ fn line_tractions(line: &[[f64; 2]], before: Field, after: Field, table: &str) -
     line.windows(2).map(piece).collect()
 }
 
-/// Stress xx, yy, xy (Pa) at a point: a parabola in x and y through the stresses at the centroids of the elements within
-/// three and a half mesh sizes by least squares, weighted by area and nearness, and extrapolated where the point is on a boundary.
+/// Stress xx, yy, xy (Pa) at a point: a parabola in x and y through the stresses at the centroids of the elements
+/// within
+/// three and a half mesh sizes by least squares, weighted by area and nearness, and extrapolated where the point is
+/// on a boundary.
 pub fn stress_at(simulation: &Simulation, point: Point) -> [f64; 3] {
     let (slope, state) = (simulation.slope(), simulation.state());
     let covers = &slope.covers;

@@ -9,8 +9,10 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "D4",
     title: "Jaeger's plane of weakness",
-    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b from its \
-             axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong yield of the \
+    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b \
+             from its \
+             axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong \
+             yield of the \
              rock and locking of blocks between plates",
     parameters: &[
         Parameter {
@@ -21,8 +23,22 @@ pub const PROBLEM: Problem = Problem {
             doc: "joint from the axis of the load",
         },
         Parameter { name: "cohesion", unit: "Pa", default: 2e3, range: [1e2, 1e8], doc: "cohesion of the rock" },
-        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [0.0, 55.0], doc: "friction angle of the rock" },
-        Parameter { name: "joint_cohesion", unit: "Pa", default: 2e3, range: [0.0, 1e8], doc: "cohesion of the joint" },
+        Parameter {
+            name: "phi_deg",
+            unit: "°",
+            default: 40.0,
+            range: [0.0, 55.0],
+            doc: "friction angle of the \
+        rock",
+        },
+        Parameter {
+            name: "joint_cohesion",
+            unit: "Pa",
+            default: 2e3,
+            range: [0.0, 1e8],
+            doc: "cohesion of the \
+        joint",
+        },
         Parameter {
             name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint"
         },
@@ -89,7 +105,8 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
     let [w, h] = [width, height];
     format!(
         "title = \"Sample with a joint at {b_deg}° from its axis\"\n[domain]\noutline = {}\n[mesh]\nsize = {:e}\n\
-         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = {:e}\n\
+         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
+         {:e}\n\
          poisson = 0.25\ncohesion = {:e}\nfriction_deg = {:?}\n[joint_law.joint]\ncohesion = {:e}\n\
          friction_deg = {:?}\n[[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
@@ -122,7 +139,8 @@ impl Test {
     }
 }
 
-/// Pushes the upper plate down by `total` (m) in `steps` steps: its supports, the second fixity, rest lower and lower.
+/// Pushes the upper plate down by `total` (m) in `steps` steps: its supports, the second fixity, rest lower and
+/// lower.
 fn press(simulation: &mut Simulation, width: f64, total: f64, steps: u64) -> Result<Test, Trouble> {
     let upper: Vec<usize> =
         (0..simulation.slope().supports.len()).filter(|&s| simulation.slope().supports[s].fix == 1).collect();
@@ -173,11 +191,13 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let exact = strength.with_joint(b.to_radians());
         let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), exact);
         rows.push(if exact < strength.cap() {
-            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 transits, and \
+            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 \
+                          transits, and \
                           some 0.5 % where the joint is shallow and the load sensitive";
             row.within(Tolerance::Relative(0.005), reason)
         } else {
-            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield as an \
+            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield \
+                          as an \
                           upper bound does";
             row.within(Tolerance::Relative(0.01), reason)
         });
