@@ -29,7 +29,7 @@ pub const PROBLEM: Problem = Problem {
         Parameter {
             name: "stiffness", unit: "", default: 1e5, range: [2e4, 1e7], doc: "Young's modulus over ρ·g·R"
         },
-        Parameter { name: "time", unit: "", default: 12.0, range: [6.0, 60.0], doc: "time to fall, in √(R/g)" },
+        Parameter { name: "time", unit: "", default: 8.0, range: [6.0, 60.0], doc: "time to fall, in √(R/g)" },
     ],
     quick: true,
     implicit: true,
@@ -54,6 +54,13 @@ impl Arch {
     /// Radius inside or outside.
     fn radii(&self) -> [f64; 2] {
         [1.0 - 0.5 * self.t, 1.0 + 0.5 * self.t]
+    }
+
+    /// The middle of the voussoir at the crown, or of that beside it.
+    fn middle(&self) -> [f64; 2] {
+        let half = 0.5 * PI / self.n as f64;
+        let angle = if self.n.is_multiple_of(2) { half } else { 0.0 };
+        [half.cos() * angle.sin(), half.cos() * angle.cos()]
     }
 
     /// Corner at the `k`-th joint from the right, at a radius.
@@ -161,8 +168,7 @@ fn case(setup: &Setup, arch: &Arch, duration: f64) -> String {
         -G,
         RAMP * (radius / G).sqrt(),
         [0.0, -0.2 * radius],
-        // Beside the joint at the crown, in the middle of the thickness.
-        [0.3 * radius * (PI / arch.n as f64).sin(), 0.99 * radius],
+        arch.middle().map(|x| x * radius),
     )
 }
 
@@ -176,7 +182,7 @@ struct Fate {
 fn fate(setup: &mut Setup, arch: &Arch, name: &str) -> Result<Fate, Trouble> {
     let radius = setup.get("R");
     let unit = (radius / G).sqrt();
-    let time = unit * setup.get("time") * if setup.quick { 0.4 } else { 1.0 };
+    let time = unit * setup.get("time") * if setup.quick { 0.6 } else { 1.0 };
     let mut simulation = setup.simulation(name, case(setup, arch, 2.0 * time))?;
     let mut path = vec![[0.0; 2]];
     let sinks = |s: &Simulation| s.monitor(0).0.dot(&Vector::new(0.0, -1.0));
@@ -200,7 +206,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (mut rows, mut found) = (Vec::new(), Vec::new());
     for n in numbers {
         let exact = Arch::limit(n);
-        let bracket = if setup.quick { [0.06, 0.18] } else { [0.03, 0.3] };
+        let bracket = if setup.quick { [0.06, 0.18] } else { [0.04, 0.24] };
         let width = exact * if setup.quick { 1e-2 } else { 4e-3 };
         let limit = bisect(bracket, width, |t| Ok(fate(setup, &Arch { n, t }, &format!("n{n}_t{t:.5}"))?.falls))?;
         found.push([n as f64, limit]);
