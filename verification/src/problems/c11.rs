@@ -16,8 +16,8 @@ pub const PROBLEM: Problem = Problem {
              the voussoirs; Heyman's 0.106 takes them on the mean circle). An arch of n voussoirs hinges at its joints \
              only and may be a little thinner: its limit is computed here by limit analysis. With the horizontal \
              thrust H and its moment C about the centre, the thrust meets the joint at angle β from the crown, above \
-             which weigh W at x from the middle, at the radius (C + x·W)/(W·sin β + H·cos β); the arch stands if some H \
-             and C keep it within the thickness at all joints. The engine's limit is found by bisection: after gravity \
+             which weigh W at x from the middle, at the radius (C + x·W)/(W·sin β + H·cos β); the arch stands if some \
+             H and C keep it within the thickness at all joints. The engine's limit is found by bisection: after gravity \
              has grown the arch rests, or falls. Catches hinges at the wrong place, corners that interpenetrate, \
              energy that holds or throws an arch.",
     parameters: &[
@@ -211,7 +211,12 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let limit = bisect(bracket, width, |t| Ok(fate(setup, &Arch { n, t }, &format!("n{n}_t{t:.5}"))?.falls))?;
         found.push([n as f64, limit]);
         let row = Row::new(format!("least t/R of {n} voussoirs"), "", limit, exact);
-        rows.push(row.within(Tolerance::Relative(1e-2), "half the width of the bisection, 2e-3 (quick form 5e-3), and the springs of the joints: each gives way by some ρ·g·R·h/E, which over n joints and the lever R/t moves the line of thrust by 5e-3 of t"));
+        rows.push(row.within(
+            Tolerance::Relative(1e-2),
+            "half the width of the bisection, 2e-3 (quick form 5e-3), and the springs of the \
+             joints: each gives way by some ρ·g·R·h/E, which over n joints and the lever R/t \
+             moves the line of thrust by 5e-3 of t",
+        ));
     }
     let most = found.last().copied().unwrap_or_default();
     let row =
