@@ -1,5 +1,6 @@
-//! `enmm verify`: runs the verification problems and prints computed beside exact values. Exit status: 0 all pass, 1 one
-//! does not, 2 bad arguments.
+//! `enmm verify`: runs the verification problems and prints computed beside exact values.
+//!
+//! Exit status: 0 all pass, 1 one does not, 2 bad arguments.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -38,8 +38,8 @@ impl Change<'_> {
 /// Chooses problems of `all` and sets their parameters, in the order of `all`.
 ///
 /// A full ID means that problem alone, anything shorter all whose IDs begin with it. Without `only`, values choose the
-/// problems that know all of them, and those of an ID that problem. With `only`, every chosen problem must know a value that names no ID, so that no
-/// value is dropped in silence.
+/// problems that know all of them, and those of an ID that problem. With `only`, every chosen problem must know a value
+/// that names no ID, so that no value is dropped in silence.
 ///
 /// # Errors
 /// An unknown ID with the nearest one, an unknown parameter with those there are, a value out of range, an integrator

@@ -70,7 +70,8 @@ impl Block {
         let pull = [self.horizontal, -G];
         format!(
             "title = \"Block on a plane\"\n[domain]\noutline = {:?}\nislands = [{:?}]\n[mesh]\nsize = {}\n\
-             origin = [{}, {}]\n[joint_law.joint]\nfriction_deg = {}\n[rock.rock]\ndensity = {DENSITY:?}\nyoung = {:e}\n\
+             origin = [{}, {}]\n[joint_law.joint]\nfriction_deg = {}\n[rock.rock]\n\
+             density = {DENSITY:?}\nyoung = {:e}\n\
              poisson = 0.25\n[gravity]\ny = 0.0\n[[load]]\nkind = \"body\"\nacceleration = {pull:?}\n\
              table = [[0.0, 0.0], [{:e}, 1.0]]\n[[fix]]\nblock = {middle:?}\n[[stage]]\nname = \"free\"\n\
              kind = \"dynamic\"\nduration = {duration:e}\ndamping = 0.1\n[[monitor]]\nname = \"toe\"\n\

@@ -126,7 +126,12 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             computed,
             critical_friction(k, dip).to_degrees(),
         );
-        rows.push(row.within(Tolerance::Absolute(0.1), "slip is seen from 2e-3 of the kinetic energy on, 0.01° below the limit where the block is slender; the tilt of 1e-3 rad at the time of judgement moves the limit by as much; the rest is the elastic toe"));
+        rows.push(row.within(
+            Tolerance::Absolute(0.1),
+            "slip is seen from 2e-3 of the kinetic energy on, 0.01° below the limit where the \
+             block is slender; the tilt of 1e-3 rad at the time of judgement moves the limit by \
+             as much; the rest is the elastic toe",
+        ));
     }
     let (row, region) = region(setup, &found)?;
     rows.push(row);
@@ -269,10 +274,18 @@ fn turning(setup: &mut Setup) -> Result<(Vec<Row>, Plot), Trouble> {
     let end = exact.last().map_or(0.0, |p| p[1]);
     let reason = "waves of the elastic block in the windows of spin, some 1e-3 of it; they fall with √E";
     let rows = vec![
-        Row::new(format!("initial angular acceleration, k = {k}"), "rad/s²", start, angular_acceleration(k * h, h, dip))
-            .within(Tolerance::Relative(5e-3), reason),
-        Row::new(format!("angle after {:.3} s, k = {k}", last.time), "rad", last.turned, end)
-            .within(Tolerance::Relative(5e-3), "the elastic toe, which makes the block lean and roll a little; the exact angle is that of the rigid block under growing gravity"),
+        Row::new(
+            format!("initial angular acceleration, k = {k}"),
+            "rad/s²",
+            start,
+            angular_acceleration(k * h, h, dip),
+        )
+        .within(Tolerance::Relative(5e-3), reason),
+        Row::new(format!("angle after {:.3} s, k = {k}", last.time), "rad", last.turned, end).within(
+            Tolerance::Relative(5e-3),
+            "the elastic toe, which makes the block lean and roll a little; the exact angle is \
+             that of the rigid block under growing gravity",
+        ),
         Row::ledger(&report),
     ];
     let plot = Plot {

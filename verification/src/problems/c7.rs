@@ -170,12 +170,21 @@ fn rocking(setup: &mut Setup) -> Result<(Vec<Row>, Plot), Trouble> {
     // Under a force that grows over a short time a body is half of that time late.
     let computed = 4.0 * (impact - 0.5 * block.ramp);
     let rows = vec![
-        Row::new("period, four times the way down", "s", computed, exact)
-            .within(Tolerance::Relative(5e-3), "the elastic corner takes part of the start; half the time of growing gravity is taken off, exact to its square"),
-        Row::new("the same beside Housner's linearised period", "s", computed, housner).from(Origin::Published("Housner 1963"))
+        Row::new("period, four times the way down", "s", computed, exact).within(
+            Tolerance::Relative(5e-3),
+            "the elastic corner takes part of the start; half the time of growing gravity is \
+             taken off, exact to its square",
+        ),
+        Row::new("the same beside Housner's linearised period", "s", computed, housner)
+            .from(Origin::Published("Housner 1963"))
             .within(Tolerance::Shown, "linearised: exact for slender blocks only"),
-        Row::new("spin after over before the impact", "", restitution, shape.restitution()).from(Origin::Published("Housner 1963"))
-            .within(Tolerance::Shown, "an impact of a rigid block that takes all energy of the far corner; on springs in normal and shear direction part of it comes back"),
+        Row::new("spin after over before the impact", "", restitution, shape.restitution())
+            .from(Origin::Published("Housner 1963"))
+            .within(
+                Tolerance::Shown,
+                "an impact of a rigid block that takes all energy of the far corner; on springs in \
+             normal and shear direction part of it comes back",
+            ),
         ledger,
     ];
     let way_down = fall(shape, tilt, exact).into_iter().map(|[t, angle]| [t + 0.5 * block.ramp, angle]).collect();

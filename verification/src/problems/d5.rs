@@ -140,13 +140,17 @@ fn rows(drops: &[Drop], usual: &Drop, steps: &[f64], exact: &Exact) -> Vec<Row> 
     let mut rows = vec![
         Row::new("speed at contact", "m/s", last.speed, exact.speed)
             .within(Tolerance::Relative(1e-3), "the last step before contact, g·dt, and half a step of the leapfrog"),
-        Row::new("deepest penetration", "m", last.depth, exact.depth)
-            .within(Tolerance::Relative(0.5 * PI * steps[2] + 1e-3), "half the loss of energy on the way down, ½·π·ω·dt, and 1e-3 for the mass's own spring in series and its waves"),
+        Row::new("deepest penetration", "m", last.depth, exact.depth).within(
+            Tolerance::Relative(0.5 * PI * steps[2] + 1e-3),
+            "half the loss of energy on the way down, ½·π·ω·dt, and 1e-3 for the mass's own \
+             spring in series and its waves",
+        ),
     ];
     for (drop, step) in drops.iter().zip(steps) {
         rows.push(Row::new(format!("share of the height lost at ω·dt = {step:e}"), "", drop.lost, PI * step).within(
             Tolerance::Relative(0.35),
-            "the waves that the mass takes along, up to 1e-3 of the energy, beside a loss of 3e-3 at the smallest step",
+            "the waves that the mass takes along, up to 1e-3 of the energy, beside a loss of 3e-3 \
+             at the smallest step",
         ));
     }
     let order = ((drops[0].lost - drops[1].lost) / (drops[1].lost - drops[2].lost)).log2();
