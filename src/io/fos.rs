@@ -49,7 +49,9 @@ impl FosOptions<'_> {
         let [least, most] = FACTOR_RANGE;
         for (name, value) in [("--low", self.low), ("--high", self.high)] {
             if let Some(value) = value.filter(|value| !(least..=most).contains(value)) {
-                return Err(format!("{name}: is {value}, must be from {least} to {most}; 0.5 and 3 bracket most slopes"));
+                return Err(format!(
+                    "{name}: is {value}, must be from {least} to {most}; 0.5 and 3 bracket most slopes"
+                ));
             }
         }
         let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));

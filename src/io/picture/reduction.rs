@@ -3,7 +3,9 @@
 use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, superscript};
 use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE};
-use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title};
+use super::slope::{
+    BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title,
+};
 use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle};
 use crate::model::strength_reduction::{Reduction, Trial, Verdict};
 

@@ -195,7 +195,8 @@ mod tests {
 
     #[test]
     fn a_swing_is_no_failure() {
-        let (verdict, ..) = fate(|t| (0.01 * (1.0 - (8.0 * t).cos()) * (-t).exp(), 0.08 * (8.0 * t).sin().abs() * (-t).exp()));
+        let (verdict, ..) =
+            fate(|t| (0.01 * (1.0 - (8.0 * t).cos()) * (-t).exp(), 0.08 * (8.0 * t).sin().abs() * (-t).exp()));
         assert_eq!(verdict, Verdict::Stable);
     }
 

@@ -15,10 +15,18 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "friction of the block" },
         Parameter { name: "a_steep_deg", unit: "°", default: 45.0, range: [5.0, 60.0], doc: "dip of a steeper plane" },
         Parameter { name: "phi_steep_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction there" },
-        Parameter { name: "t", unit: "s", default: 1.0, range: [0.2, 2.0], doc: "time of sliding; twice that for the square" },
+        Parameter {
+            name: "t",
+            unit: "s",
+            default: 1.0,
+            range: [0.2, 2.0],
+            doc: "time of sliding; twice that for the square",
+        },
         Parameter { name: "phi_rest_deg", unit: "°", default: 31.0, range: [5.0, 60.0], doc: "friction that holds" },
         Parameter { name: "t_rest", unit: "s", default: 60.0, range: [2.0, 300.0], doc: "time of rest" },
-        Parameter { name: "a_brake_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip where a block stops" },
+        Parameter {
+            name: "a_brake_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip where a block stops"
+        },
         Parameter { name: "phi_brake_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "friction there" },
         Parameter { name: "v0", unit: "m/s", default: 2.0, range: [0.2, 5.0], doc: "speed at the start there" },
         Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus" },
@@ -143,7 +151,9 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let [a, phi, t] = ["a_deg", "phi_deg", "t"].map(|name| setup.get(name));
     let [steep, phi_steep] = ["a_steep_deg", "phi_steep_deg"].map(|name| setup.get(name));
     if phi >= a || phi_steep >= steep {
-        return Err(Trouble("the blocks must slide: choose phi_deg below a_deg and phi_steep_deg below a_steep_deg".into()));
+        return Err(Trouble(
+            "the blocks must slide: choose phi_deg below a_deg and phi_steep_deg below a_steep_deg".into(),
+        ));
     }
     let mut outcome = Outcome::default();
     let mut worst = StepReport::default();

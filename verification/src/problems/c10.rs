@@ -58,7 +58,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             continue;
         }
         let model = slide(setup, planes);
-        let name = if planes == 1 { "joint through the toe alone".to_owned() } else { format!("set of {planes} joints") };
+        let name =
+            if planes == 1 { "joint through the toe alone".to_owned() } else { format!("set of {planes} joints") };
         let reduction = reduce(setup, &name.replace(' ', "_"), model.text("Slope with daylighting joints"))?;
         let reason = "bracket of 0.2 % (0.5 % when quick); the wedge is elastic and ends in sharp corners";
         outcome.rows.push(factor_row(&format!("factor of safety, {name}"), &reduction, model.factor(), reason));

@@ -182,7 +182,8 @@ mod tests {
         assert_eq!(PUBLISHED.equilibrium(0.80).force, 0.0);
         assert!((PUBLISHED.equilibrium(0.7855).force - 470.0).abs() < 10.0);
         assert!((PUBLISHED.limit() - 0.785544).abs() < 1e-6);
-        let count = |tangent: f64, mode: Mode| PUBLISHED.equilibrium(tangent).modes.iter().filter(|m| **m == mode).count();
+        let count =
+            |tangent: f64, mode: Mode| PUBLISHED.equilibrium(tangent).modes.iter().filter(|m| **m == mode).count();
         assert_eq!([Mode::Stable, Mode::Topples, Mode::Slides].map(|m| count(0.7855, m)), [3, 10, 3]);
         assert_eq!(count(0.65, Mode::Slides), 4);
     }
