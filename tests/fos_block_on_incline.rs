@@ -11,11 +11,13 @@ use enmm::model::strength_reduction::{End, Reduction, ReductionError, ReductionO
 /// A block of 3 m × 2 m on a plane at 30°, and stages after its rest. Its resultant leaves the middle third of the
 /// base, so that the heel would open and lose its cohesion if it had no tensile strength.
 fn case(friction: f64, cohesion: f64, more: &str) -> enmm::model::Case {
-    let corners = [[-2.0, -1.5], [8.0, -1.5], [8.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0], [0.0, 0.0], [-2.0, 0.0]];
+    let ground = [[-2.0, -1.5], [8.0, -1.5], [8.0, 0.0]];
+    let corners = [&ground[..], &[[3.0, 0.0], [3.0, 2.0], [0.0, 2.0], [0.0, 0.0], [-2.0, 0.0]]].concat();
     let text = format!(
         "title = \"reduction\"\n[domain]\noutline = {:?}\n[mesh]\nsize = 0.9\norigin = [0.031, 0.017]\n[[joint]]\n\
          points = {:?}\n[joint_law.joint]\nfriction_deg = {friction:?}\ncohesion = {cohesion:e}\n\
-         tension = {cohesion:e}\nresidual_tension = {cohesion:e}\n[[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 5.0\n{more}",
+         tension = {cohesion:e}\nresidual_tension = {cohesion:e}\n\
+         [[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 5.0\n{more}",
         turn(&corners, -30.0),
         turn(&[[0.0, 0.0], [3.0, 0.0]], -30.0),
         turn(&[[-1.0, -1.0]], -30.0)[0],
