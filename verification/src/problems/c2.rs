@@ -32,6 +32,8 @@ fn exact(a: f64, phi: f64, cohesion: f64, length: f64, weight: f64) -> f64 {
     (cohesion * length + weight * a.cos() * phi.tan()) / (weight * a.sin())
 }
 
+/// The case. A cohesive joint has as much tensile strength: where the resultant leaves the middle third of the base,
+/// the heel would open and lose the cohesion that the formula counts on.
 fn text(setup: &Setup, phi_deg: f64, cohesion: f64) -> String {
     let [a, long, high] = ["a_deg", "length", "height"].map(|name| setup.get(name));
     let corners = [
@@ -47,7 +49,8 @@ fn text(setup: &Setup, phi_deg: f64, cohesion: f64) -> String {
     format!(
         "title = \"Block on an incline: strength reduction\"\n[domain]\noutline = {:?}\n[mesh]\nsize = {:e}\n\
          origin = [0.031, 0.017]\n[[joint]]\npoints = {:?}\n[joint_law.joint]\nfriction_deg = {phi_deg:?}\n\
-         cohesion = {cohesion:e}\n[[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\nkind = \"static\"\n\
+         cohesion = {cohesion:e}\ntension = {cohesion:e}\nresidual_tension = {cohesion:e}\n\
+         [[fix]]\nblock = {:?}\n{}[[stage]]\nname = \"settle\"\nkind = \"static\"\n\
          duration = {:e}\n",
         turn(&corners, -a),
         setup.get("mesh") * high,

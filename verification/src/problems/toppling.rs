@@ -118,8 +118,8 @@ impl Columns {
     /// Outline and joints.
     fn geometry(&self) -> (Corners, Vec<Corners>) {
         let high = self.height(self.crest);
-        let (far, deep) = (self.width * self.count as f64 + 2.0 * high, -0.75 * high);
-        let mut outline = vec![[-far, deep], [1.5 * high, deep], [1.5 * high, 0.0]];
+        let (far, deep) = (self.width * (self.count as f64 + 1.0), -0.3 * self.width);
+        let mut outline = vec![[-far, deep], [0.5 * high, deep], [0.5 * high, 0.0]];
         let mut joints = Vec::new();
         for n in 1..=self.count {
             let ([x, y], height) = (self.foot(n), self.height(n));
@@ -144,7 +144,7 @@ impl Columns {
     pub fn text(&self, friction_deg: f64) -> String {
         let (outline, joints) = self.geometry();
         let joints: String = joints.iter().map(|j| format!("[[joint]]\npoints = {j:?}\n")).collect();
-        let base = turn(&[[0.0, -0.5 * self.height(self.crest)]], -self.base.to_degrees())[0];
+        let base = turn(&[[0.0, -0.15 * self.width]], -self.base.to_degrees())[0];
         format!(
             "title = \"Toppling columns of Goodman and Bray\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\n\
              origin = [0.3, 0.2]\n{joints}[joint_law.joint]\nfriction_deg = {friction_deg:?}\n[[fix]]\n\
