@@ -18,8 +18,8 @@ pub const PROBLEM: Problem = Problem {
              thrust H and its moment C about the centre, the thrust meets the joint at angle β from the crown, above \
              which weigh W at x from the middle, at the radius (C + x·W)/(W·sin β + H·cos β); the arch stands if some \
              H and C keep it within the thickness at all joints. The engine's limit is found by bisection: \
-             after gravity has grown the arch rests, or falls. Catches hinges at the wrong place, corners that interpenetrate, \
-             energy that holds or throws an arch.",
+             after gravity has grown the arch rests, or falls. Catches hinges at the wrong place, corners that \
+             interpenetrate, energy that holds or throws an arch.",
     parameters: &[
         Parameter { name: "n", unit: "", default: 15.0, range: [5.0, 41.0], doc: "number of voussoirs" },
         Parameter { name: "n_low", unit: "", default: 8.0, range: [5.0, 41.0], doc: "number of a second arch" },
