@@ -21,9 +21,9 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: domain, fix, gravity, in_situ, \
-         initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, output, port, rock, solver, stage, \
-         title, water; rename or remove it",
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, domain, fix, \
+         free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, output, \
+         port, quiet, rock, solver, stage, title, water; rename or remove it",
     );
 }
 
@@ -490,7 +490,7 @@ fn error_of_the_builder_is_located_at_the_longest_known_key() {
         ("fix[0].point", "[[fix]]"),
         ("rock.granite.unknown", "[rock.granite]"),
         ("solver.integrator", "[solver]"),
-        ("bolt.force", "title"),
+        ("foundation.depth", "title"),
     ] {
         let expected = format!("slope.toml:{}: {key}: crosses itself", line(part));
         assert_eq!(source.locate(key, "crosses itself").to_string(), expected);
