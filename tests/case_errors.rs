@@ -491,7 +491,7 @@ fn error_of_the_builder_is_located_at_the_longest_known_key() {
         ("fix[0].point", "[[fix]]"),
         ("rock.granite.unknown", "[rock.granite]"),
         ("solver.integrator", "[solver]"),
-        ("bolt.force", "title"),
+        ("bult.force", "title"),
     ] {
         let expected = format!("slope.toml:{}: {key}: crosses itself", line(part));
         assert_eq!(source.locate(key, "crosses itself").to_string(), expected);

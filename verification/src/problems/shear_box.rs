@@ -1,0 +1,75 @@
+//! A body that is moved against joints in small steps: its supports are carried along, and tell the force.
+
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+use enmm::step::StepReport;
+
+use crate::Trouble;
+
+/// Steps between two changes of the displacement: the supports move on by little each time.
+const STEPS: u64 = 10;
+
+/// Moves all supports of a model that hold along `axis` (0 or 1).
+pub struct Drive {
+    /// Supports that are moved.
+    rows: Vec<usize>,
+}
+
+impl Drive {
+    /// The supports of a model along an axis.
+    pub fn along(simulation: &Simulation, axis: usize) -> Self {
+        let supports = simulation.slope().supports.iter().enumerate();
+        Self { rows: supports.filter(|(_, s)| s.direction[axis].abs() > 0.5).map(|(k, _)| k).collect() }
+    }
+
+    /// Carries the supports on by `distance` (m) and lets the model follow.
+    ///
+    /// # Errors
+    /// A numerical failure.
+    pub fn advance(&self, simulation: &mut Simulation, distance: f64) -> Result<StepReport, Trouble> {
+        let mut state = simulation.state().clone();
+        self.rows.iter().for_each(|&k| state.support_rest[k] += distance);
+        simulation.restore(state);
+        let mut report = StepReport::default();
+        for step in 1..=STEPS {
+            report = simulation.advance(step == STEPS)?;
+        }
+        Ok(report)
+    }
+
+    /// Force (N/m) of the supports on the body.
+    pub fn force(&self, simulation: &Simulation) -> f64 {
+        self.rows.iter().map(|&k| simulation.state().support_force[k]).sum()
+    }
+}
+
+/// What a joint bears and how it has moved, over all of its contacts.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JointState {
+    /// Sum of the tributary lengths (m).
+    pub length: f64,
+    /// Mean normal stress (Pa), pressing positive.
+    pub normal: f64,
+    /// Mean shear stress (Pa), without sign.
+    pub shear: f64,
+    /// Mean shear displacement (m), without sign.
+    pub slip: f64,
+    /// Mean closure (m).
+    pub closure: f64,
+}
+
+/// The joints of a model as the last step left them.
+pub fn joint_state(simulation: &Simulation) -> JointState {
+    let contacts = simulation.contacts();
+    let length: f64 = contacts.iter().map(|c| c.length).sum();
+    // A node on one body and one on the other look at each other: what they do along the edge has the same sign.
+    let along = |f: f64| f / length;
+    let displacement: &[Vector] = &simulation.state().displacement;
+    JointState {
+        length,
+        normal: along(contacts.iter().map(|c| c.history.normal_force).sum()),
+        shear: along(contacts.iter().map(|c| c.history.shear_force).sum::<f64>()).abs(),
+        slip: along(contacts.iter().map(|c| c.relative(displacement)[1] * c.length).sum::<f64>()).abs(),
+        closure: along(contacts.iter().map(|c| -c.gap * c.length).sum()),
+    }
+}
