@@ -46,7 +46,11 @@ fn joint(simulation: &Simulation) -> (f64, f64, f64) {
 /// closes evenly to some per mille; means are compared at rest, at 2e-3, and the ledger closes.
 #[test]
 fn closure_follows_the_hyperbola_both_ways() {
-    let mut sim = press(8e6, "table = [[0, 0], [0.05, 0.5], [0.1, 0.5], [0.15, 1], [0.2, 1], [0.25, 0.05], [0.3, 0.05], [0.35, 0.5]]", &law());
+    let mut sim = press(
+        8e6,
+        "table = [[0, 0], [0.05, 0.5], [0.1, 0.5], [0.15, 1], [0.2, 1], [0.25, 0.05], [0.3, 0.05], [0.35, 0.5]]",
+        &law(),
+    );
     for (time, share) in [(0.1, 0.5), (0.2, 1.0), (0.3, 0.05), (0.4, 0.5)] {
         let steps = sim.steps_in(time - sim.time());
         let report = advance(&mut sim, steps);
@@ -117,7 +121,9 @@ fn keys_of_the_other_kind_are_errors() {
         (rough.replace("28.0", "75.0"), "at most 70"),
         ("friction_deg = 28.0\njrc = 10.0".into(), "joint_law.j.jrc: a law of kind mohr_coulomb does not have it"),
         (
-            format!("{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \"j\"\ncohesion = 1.0"),
+            format!(
+                "{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \"j\"\ncohesion = 1.0"
+            ),
             "a stage may change `friction_deg`",
         ),
     ] {

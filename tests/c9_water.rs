@@ -70,7 +70,8 @@ fn assert_close(found: (Vector, f64), exact: (Vector, f64)) {
 #[test]
 fn crack_and_plane_bear_the_water_of_hoek_and_bray() {
     let book = Slope { height: 60.0, crack: 14.0, face: 50.0, plane: 35.0 };
-    for (slope, depth) in [(&book, 7.0), (&book, 14.0), (&Slope { height: 55.0, crack: 9.5, face: 57.0, plane: 31.0 }, 6.2)]
+    for (slope, depth) in
+        [(&book, 7.0), (&book, 14.0), (&Slope { height: 55.0, crack: 9.5, face: 57.0, plane: 31.0 }, 6.2)]
     {
         let [x, y] = slope.foot();
         let table = format!("[water]\ntable = [[0.0, 0.0], [{x:?}, {:?}]]\nfaces = []\n", y + depth);

@@ -483,14 +483,7 @@ impl Narrow<'_> {
         law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
     }
 
-    fn first_sight(
-        &self,
-        node: usize,
-        pick: &Pick,
-        length: f64,
-        closure: Closure,
-        normal: Vector,
-    ) -> ContactHistory {
+    fn first_sight(&self, node: usize, pick: &Pick, length: f64, closure: Closure, normal: Vector) -> ContactHistory {
         let mut history = ContactHistory {
             node: node as u32,
             side: pick.side,

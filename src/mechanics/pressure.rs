@@ -109,7 +109,8 @@ mod tests {
     #[test]
     fn under_a_broken_line_forces_and_moments_are_those_of_a_fine_sum() {
         let table = [Point::new(-1.0, 3.0), Point::new(0.5, 2.0), Point::new(2.0, 2.5), Point::new(4.0, 0.0)];
-        let edges = [[[-3.0, 1.0], [5.0, 1.5]], [[5.0, 0.3], [-2.0, 2.6]], [[1.0, -1.0], [1.0, 4.0]], [[0.6, 9.0], [0.7, 8.0]]];
+        let edges =
+            [[[-3.0, 1.0], [5.0, 1.5]], [[5.0, 0.3], [-2.0, 2.6]], [[1.0, -1.0], [1.0, 4.0]], [[0.6, 9.0], [0.7, 8.0]]];
         for [a, b] in edges.map(|ends| ends.map(Point::from)) {
             let found = under_table(a, b, &table, 0.25, 10.0);
             let (mut sum, n) = ([Vector::zeros(); 2], 200_000);

@@ -313,7 +313,8 @@ impl Simulation {
             let position = install.iter().position(|wanted| Some(wanted) == name);
             let gone = segment.blocks.iter().any(|&b| state.removed[b as usize]);
             if let (Some(k), true) = (position, gone) {
-                let message = format!("an end of bolt {:?} is in a block that has been removed: leave it out", install[k]);
+                let message =
+                    format!("an end of bolt {:?} is in a block that has been removed: leave it out", install[k]);
                 return Err(Invalid { key: format!("stage[{stage}].install[{k}]"), message });
             }
             if gone {

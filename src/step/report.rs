@@ -63,7 +63,8 @@ pub(super) fn stored(slope: &Slope, scratch: &Scratch) -> f64 {
         let support = &slope.supports[row.support as usize];
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
-    scratch.contacts.iter().map(crate::contact::VertexEdge::stored_energy).sum::<f64>() + scratch.rows.iter().map(support).sum::<f64>()
+    scratch.contacts.iter().map(crate::contact::VertexEdge::stored_energy).sum::<f64>()
+        + scratch.rows.iter().map(support).sum::<f64>()
 }
 
 /// Energy (J/m) stored in bolts.

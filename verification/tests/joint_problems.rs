@@ -20,7 +20,10 @@ fn solve(id: &str, quick: bool, changes: &[(&str, f64)]) -> Vec<String> {
     for row in &outcome.rows {
         let line = format!(
             "{id} {changes:?} {}: {:.7e} of {:.7e}, error {:.2e}",
-            row.quantity, row.computed, row.exact, row.error()
+            row.quantity,
+            row.computed,
+            row.exact,
+            row.error()
         );
         println!("  {line}");
         if !row.passes() {
@@ -37,12 +40,15 @@ fn assert_all(id: &str, sets: &[&[(&str, f64)]]) {
 
 #[test]
 fn c3_two_blocks() {
-    assert_all("C3", &[
-        &[],
-        &[("phi_lower_deg", 30.0)],
-        &[("a_deg", 22.0), ("phi_lower_deg", 27.0), ("phi_upper_deg", 5.0), ("mesh", 0.4)],
-        &[("phi_lower_deg", 10.0), ("phi_upper_deg", 25.0)],
-    ]);
+    assert_all(
+        "C3",
+        &[
+            &[],
+            &[("phi_lower_deg", 30.0)],
+            &[("a_deg", 22.0), ("phi_lower_deg", 27.0), ("phi_upper_deg", 5.0), ("mesh", 0.4)],
+            &[("phi_lower_deg", 10.0), ("phi_upper_deg", 25.0)],
+        ],
+    );
 }
 
 #[test]
@@ -52,18 +58,32 @@ fn c12_bolts() {
 
 #[test]
 fn d3_direct_shear() {
-    assert_all("D3", &[
-        &[],
-        &[("sn", 3e6), ("phi_deg", 38.0), ("c", 0.2e6), ("ks", 4e10), ("jrc", 6.0)],
-        &[("sn", 2e5), ("c", 0.0), ("phi_residual_deg", 20.0), ("ks", 1e9), ("kn", 5e9), ("jrc", 15.0), ("jcs", 5e7)],
-    ]);
+    assert_all(
+        "D3",
+        &[
+            &[],
+            &[("sn", 3e6), ("phi_deg", 38.0), ("c", 0.2e6), ("ks", 4e10), ("jrc", 6.0)],
+            &[
+                ("sn", 2e5),
+                ("c", 0.0),
+                ("phi_residual_deg", 20.0),
+                ("ks", 1e9),
+                ("kn", 5e9),
+                ("jrc", 15.0),
+                ("jcs", 5e7),
+            ],
+        ],
+    );
 }
 
 #[test]
 fn d6_roof_wedge() {
-    assert_all("D6", &[
-        &[],
-        &[("a_deg", 30.0), ("phi_deg", 35.0), ("ratio", 5.0)],
-        &[("a_deg", 12.0), ("phi_deg", 50.0), ("ratio", 0.5), ("height", 5.0), ("ks", 2e8)],
-    ]);
+    assert_all(
+        "D6",
+        &[
+            &[],
+            &[("a_deg", 30.0), ("phi_deg", 35.0), ("ratio", 5.0)],
+            &[("a_deg", 12.0), ("phi_deg", 50.0), ("ratio", 0.5), ("height", 5.0), ("ks", 2e8)],
+        ],
+    );
 }

@@ -6,9 +6,6 @@ use enmm::step::StepReport;
 
 use crate::Trouble;
 
-/// Steps between two changes of the displacement: the supports move on by little each time.
-const STEPS: u64 = 10;
-
 /// Moves all supports of a model that hold along `axis` (0 or 1).
 pub struct Drive {
     /// Supports that are moved.
@@ -22,17 +19,17 @@ impl Drive {
         Self { rows: supports.filter(|(_, s)| s.direction[axis].abs() > 0.5).map(|(k, _)| k).collect() }
     }
 
-    /// Carries the supports on by `distance` (m) and lets the model follow.
+    /// Carries the supports on by `distance` (m) at an even speed in so many steps.
     ///
     /// # Errors
     /// A numerical failure.
-    pub fn advance(&self, simulation: &mut Simulation, distance: f64) -> Result<StepReport, Trouble> {
-        let mut state = simulation.state().clone();
-        self.rows.iter().for_each(|&k| state.support_rest[k] += distance);
-        simulation.restore(state);
+    pub fn advance(&self, simulation: &mut Simulation, distance: f64, steps: u64) -> Result<StepReport, Trouble> {
         let mut report = StepReport::default();
-        for step in 1..=STEPS {
-            report = simulation.advance(step == STEPS)?;
+        for step in 1..=steps {
+            let mut state = simulation.state().clone();
+            self.rows.iter().for_each(|&k| state.support_rest[k] += distance / steps as f64);
+            simulation.restore(state);
+            report = simulation.advance(step == steps)?;
         }
         Ok(report)
     }
@@ -46,8 +43,6 @@ impl Drive {
 /// What a joint bears and how it has moved, over all of its contacts.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JointState {
-    /// Sum of the tributary lengths (m).
-    pub length: f64,
     /// Mean normal stress (Pa), pressing positive.
     pub normal: f64,
     /// Mean shear stress (Pa), without sign.
@@ -66,7 +61,6 @@ pub fn joint_state(simulation: &Simulation) -> JointState {
     let along = |f: f64| f / length;
     let displacement: &[Vector] = &simulation.state().displacement;
     JointState {
-        length,
         normal: along(contacts.iter().map(|c| c.history.normal_force).sum()),
         shear: along(contacts.iter().map(|c| c.history.shear_force).sum::<f64>()).abs(),
         slip: along(contacts.iter().map(|c| c.relative(displacement)[1] * c.length).sum::<f64>()).abs(),

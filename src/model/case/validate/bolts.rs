@@ -58,7 +58,10 @@ pub fn validate_installs(key: &Key, case: &Case) -> Check {
             known.must_hold(&key, name)?;
             if there.contains(&name.as_str()) {
                 let remedy = "give it `active = false`, or remove it here";
-                return fail(&key, format!("bolt {name:?} is there already, from the start or an earlier stage; {remedy}"));
+                return fail(
+                    &key,
+                    format!("bolt {name:?} is there already, from the start or an earlier stage; {remedy}"),
+                );
             }
             there.push(name);
         }

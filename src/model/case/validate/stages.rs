@@ -1,7 +1,7 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
-use super::joints;
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
+use super::joints;
 use crate::model::case::key::Key;
 use crate::model::case::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
