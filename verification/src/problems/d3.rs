@@ -3,7 +3,7 @@
 use enmm::model::Simulation;
 use enmm::step::StepReport;
 
-use super::shear_box::{Drive, JointState, joint_state};
+use super::shear_box::{Drive, JointState, joint_state, share};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
 
 pub const PROBLEM: Problem = Problem {
@@ -48,7 +48,7 @@ fn barton(stress: f64, jrc: f64, jcs: f64, residual: f64) -> f64 {
 }
 
 /// A shear box: a very stiff and heavy block (so that the joint alone gives) on a held one, guided along its left side.
-fn case(setup: &Setup, law: &str, stress: f64, guided: bool, table: &str) -> String {
+fn case(setup: &Setup, law: &str, stress: f64, guided: bool) -> String {
     let [length, height] = BOX;
     let reach = length + 0.1;
     let [ks, kn, vmax, sn] = ["ks", "kn", "vmax", "sn"].map(|name| setup.get(name));
@@ -61,7 +61,7 @@ fn case(setup: &Setup, law: &str, stress: f64, guided: bool, table: &str) -> Str
          [{length}, {height}], [0.0, {height}], [0.0, 0.0], [-0.1, 0.0]]\n[mesh]\nsize = {:?}\norigin = [0.003, 0.002]\n\
          [gravity]\ny = 0.0\n[[joint]]\npoints = [[0.0, 0.0], [{length}, 0.0]]\n[joint_law.joint]\n{law}[rock.stiff]\n\
          density = 1e6\nyoung = {:e}\npoisson = 0.2\n[[fix]]\nblock = [-0.05, -0.05]\n{}[[load]]\nkind = \"pressure\"\n\
-         edge = [[0.0, {height}], [{length}, {height}]]\npressure = {stress:?}\n{table}[[stage]]\nname = \"press\"\n\
+         edge = [[0.0, {height}], [{length}, {height}]]\npressure = {stress:?}\n[[stage]]\nname = \"press\"\n\
          kind = \"static\"\nduration = {settle:e}\nconvergence = 1e-5\nramp = 0.0\n[[stage]]\nname = \"shear\"\n\
          kind = \"dynamic\"\nduration = 1e4\ndamping = 0.5\n[solver]\ncontact_theta = 1.0\n",
         setup.get("mesh"),
@@ -76,8 +76,9 @@ fn shear(simulation: &mut Simulation, distance: f64, steps: usize) -> Result<(Ve
     simulation.next_stage()?;
     let drive = Drive::along(simulation, 0);
     let (mut states, mut report) = (Vec::new(), StepReport::default());
-    for _ in 0..steps {
-        report = drive.advance(simulation, distance / steps as f64, STEPS)?;
+    for point in 0..steps {
+        let way = distance * (share(point + 1, steps) - share(point, steps));
+        report = drive.advance(simulation, way, STEPS)?;
         states.push(joint_state(simulation));
     }
     Ok((states, report))
@@ -96,7 +97,7 @@ fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
          normal_stiffness = {ks:e}\nshear_stiffness = {ks:e}\n"
     );
     let (peak, last) = (coulomb(stress, cohesion, phi.to_radians()), coulomb(stress, 0.0, residual.to_radians()));
-    let text = case(setup, &law, stress, true, "");
+    let text = case(setup, &law, stress, true);
     let mut simulation = setup.simulation("d3 mohr-coulomb", text)?;
     let (states, report) = shear(&mut simulation, 2.0 * peak / ks, 2 * POINTS)?;
     let top = states.iter().copied().fold(JointState::default(), |a, b| if b.shear > a.shear { b } else { a });
@@ -142,7 +143,7 @@ fn roughness(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<(), Trouble> {
         let stress = base * factor;
         let exact = barton(stress, jrc, jcs, residual);
         let law = rough(setup);
-        let text = case(setup, &law, stress, true, "");
+        let text = case(setup, &law, stress, true);
         let mut simulation = setup.simulation(&format!("d3 barton-bandis {stress:.3e} Pa"), text)?;
         let (states, report) = shear(&mut simulation, 2.0 * exact / ks, POINTS)?;
         let found = states.last().copied().unwrap_or_default().shear;
@@ -154,29 +155,30 @@ fn roughness(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Closure under a pressure that grows in plateaus and falls again.
+/// Closure under a pressure that grows and falls again, one static stage for each value.
 fn close(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     let [stress, kn, vmax] = ["sn", "kn", "vmax"].map(|name| setup.get(name));
     let exact = |stress: f64| stress / (kn + stress / vmax);
     let shares = [0.1, 0.3, 1.0, 3.0, 10.0, 1.0, 0.3];
+    let [length, height] = BOX;
     let (mut loading, mut unloading) = (Vec::new(), Vec::new());
+    let port = format!("[[port]]\nname = \"top\"\nboundary = [[0.0, {height}], [{length}, {height}]]\n");
+    let stage = |k: usize| {
+        let duration = 20.0 * (1e6 * height / kn).sqrt();
+        format!("[[stage]]\nname = \"level {k}\"\nkind = \"static\"\nduration = {duration:e}\nramp = 0.0\n")
+    };
+    let stages: String = (1..shares.len()).map(stage).collect();
     let law = rough(setup);
-    let probe = case(setup, &law, stress, false, "");
-    let dt = setup.simulation("d3 closure", probe)?.slope().dt;
-    let plateau = 3000.0 * dt;
-    let mut table = vec![[0.0, 0.0]];
-    for (k, share) in shares.into_iter().enumerate() {
-        table.push([(k as f64 + 0.4) * plateau, share]);
-        table.push([(k as f64 + 1.0) * plateau, share]);
-    }
-    let text = case(setup, &law, stress, false, &format!("table = {table:?}\n"));
-    setup.cases.retain(|(name, _)| name != "d3 closure");
-    let mut simulation = setup.simulation("d3 closure", text)?;
+    let text = case(setup, &law, 0.0, false)
+        .replace("[[stage]]\nname = \"press\"", &format!("{port}[[stage]]\nname = \"press\""));
+    let (head, solver) = text.split_once("[[stage]]\nname = \"shear\"").unwrap_or((&text, ""));
+    let solver = solver.split_once("[solver]").map_or("", |(_, rest)| rest);
+    let mut simulation = setup.simulation("d3 closure", format!("{head}{stages}[solver]{solver}"))?;
     let mut report = StepReport::default();
     for (k, share) in shares.into_iter().enumerate() {
-        while simulation.time() < (k as f64 + 1.0) * plateau - 0.5 * dt {
-            report = simulation.advance(true)?;
-        }
+        simulation.drive().to.port_pressure[0] = share * stress;
+        simulation.drive().arrive();
+        report = run_stage(&mut simulation)?;
         let state = joint_state(&simulation);
         let way = if k < 5 { "loading" } else { "unloading" };
         let reason = "at rest after each change of the pressure; the block closes the joint evenly to 1e-3";
@@ -184,6 +186,7 @@ fn close(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
         rows.push(Row::new(name, "m", state.closure, exact(share * stress)).within(Tolerance::Relative(2e-3), reason));
         let list = if k < 5 { &mut loading } else { &mut unloading };
         list.push([state.closure * 1e3, state.normal / 1e6]);
+        simulation.next_stage()?;
     }
     rows.push(Row::ledger(&report));
     let curve = (0..=200).map(|k| f64::from(k) * 0.05 * stress).map(|s| [exact(s) * 1e3, s / 1e6]).collect();

@@ -2,7 +2,7 @@
 
 use enmm::step::StepReport;
 
-use super::shear_box::Drive;
+use super::shear_box::{Drive, share};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -66,8 +66,8 @@ fn lower(setup: &mut Setup, ratio: f64) -> Result<(Vec<[f64; 2]>, StepReport), T
     let (mut curve, mut report) = (vec![[0.0, 0.0]], StepReport::default());
     let steps = POINTS * 5 / 4;
     for step in 1..=steps {
-        report = drive.advance(&mut simulation, -way / POINTS as f64, STEPS)?;
-        let down = way * step as f64 / POINTS as f64;
+        let down = 1.25 * way * share(step, steps);
+        report = drive.advance(&mut simulation, 1.25 * way * share(step - 1, steps) - down, STEPS)?;
         curve.push([down, -drive.force(&simulation)]);
     }
     Ok((curve, report))
