@@ -10,26 +10,31 @@ use crate::Trouble;
 pub struct Drive {
     /// Supports that are moved.
     rows: Vec<usize>,
+    /// Greatest force (N/m), without sign, in the steps of the last advance.
+    pub greatest: f64,
 }
 
 impl Drive {
     /// The supports of a model along an axis.
     pub fn along(simulation: &Simulation, axis: usize) -> Self {
         let supports = simulation.slope().supports.iter().enumerate();
-        Self { rows: supports.filter(|(_, s)| s.direction[axis].abs() > 0.5).map(|(k, _)| k).collect() }
+        let rows = supports.filter(|(_, s)| s.direction[axis].abs() > 0.5).map(|(k, _)| k).collect();
+        Self { rows, greatest: 0.0 }
     }
 
     /// Carries the supports on by `distance` (m) at an even speed in so many steps.
     ///
     /// # Errors
     /// A numerical failure.
-    pub fn advance(&self, simulation: &mut Simulation, distance: f64, steps: u64) -> Result<StepReport, Trouble> {
+    pub fn advance(&mut self, simulation: &mut Simulation, distance: f64, steps: u64) -> Result<StepReport, Trouble> {
         let mut report = StepReport::default();
+        self.greatest = 0.0;
         for step in 1..=steps {
             let mut state = simulation.state().clone();
             self.rows.iter().for_each(|&k| state.support_rest[k] += distance / steps as f64);
             simulation.restore(state);
             report = simulation.advance(step == steps)?;
+            self.greatest = self.greatest.max(self.force(simulation).abs());
         }
         Ok(report)
     }
