@@ -26,7 +26,7 @@ pub const PROBLEM: Problem = Problem {
 
 /// Points of the curve up to the collapse, and steps between two of them: slow enough for no wave to matter.
 const POINTS: usize = 200;
-const STEPS: u64 = 60;
+const STEPS: u64 = 100;
 
 /// Force at collapse over the initial horizontal force, angles in radians.
 fn collapse(a: f64, phi: f64, ratio: f64) -> f64 {
@@ -44,7 +44,7 @@ fn case(setup: &Setup, ratio: f64) -> String {
     let (away, rise) = (half + 0.25 * height, 0.3 * height * setup.get("a_deg").to_radians().tan());
     let lip = 0.1 * height;
     let foot = half + lip * setup.get("a_deg").to_radians().tan();
-    let stiff = 1e4 * ks * ratio.max(1.0) * height;
+    let stiff = 1e3 * ks * ratio.max(1.0) * height;
     format!(
         "title = \"Roof wedge\"\n[domain]\noutline = [[-{side:?}, {rise:?}], [-{away:?}, {rise:?}], [-{half:?}, 0.0], \
          [-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}], [{half:?}, 0.0], [{away:?}, {rise:?}], [{side:?}, {rise:?}], \
