@@ -11,9 +11,8 @@ fn unknown_key_names_the_nearest_known_key() {
     assert_refused(
         "young = 5e10",
         "yung = 5e10",
-        "LINE: rock.granite.yung: unknown key \"yung\", did you mean `young`? Known keys: blocks, density, plane, \
-         poisson, \
-         region, young; rename or remove it",
+        "LINE: rock.granite.yung: unknown key \"yung\", did you mean `young`? Known keys: blocks, cohesion, \
+         density, dilation_deg, friction_deg, plane, poisson, region, tension, young; rename or remove it",
     );
 }
 

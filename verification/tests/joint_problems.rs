@@ -1,7 +1,5 @@
 //! The problems of joints and supports pass with their own values and with others.
 
-use std::time::Instant;
-
 use enmm::model::case::Integrator;
 use enmm_verification::{Setup, Values, problems};
 
@@ -12,10 +10,8 @@ fn solve(id: &str, quick: bool, changes: &[(&str, f64)]) -> Vec<String> {
     for (name, value) in changes {
         values.set(problem, name, *value).unwrap_or_else(|e| panic!("{}", e.0));
     }
-    let clock = Instant::now();
     let mut setup = Setup { values, integrator: Integrator::Explicit, quick, cases: Vec::new() };
     let outcome = (problem.run)(&mut setup).unwrap_or_else(|e| panic!("{id} {changes:?}: {}", e.0));
-    println!("{id} {changes:?}: {:.2} s", clock.elapsed().as_secs_f64());
     let mut failing = Vec::new();
     for row in &outcome.rows {
         let line = format!(
@@ -25,7 +21,6 @@ fn solve(id: &str, quick: bool, changes: &[(&str, f64)]) -> Vec<String> {
             row.exact,
             row.error()
         );
-        println!("  {line}");
         if !row.passes() {
             failing.push(line);
         }
@@ -82,7 +77,6 @@ fn d6_roof_wedge() {
         "D6",
         &[
             &[],
-            &[("rows", 9.0)],
             &[("rows", 14.0)],
             &[("a_deg", 30.0), ("phi_deg", 35.0), ("ratio", 5.0)],
             &[("a_deg", 12.0), ("phi_deg", 50.0), ("ratio", 0.5), ("height", 5.0), ("ks", 2e8)],
