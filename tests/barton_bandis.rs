@@ -16,8 +16,10 @@ const CLOSURE: f64 = 1e-3;
 /// and a host pushes the block to the right.
 fn press(pressure: f64, table: &str, law: &str) -> Simulation {
     simulation(&format!(
-        "title = \"press\"\n[domain]\noutline = [[-1, -0.6], [3, -0.6], [3, 0], [1.2, 0], [1.2, 0.6], [0, 0.6], [0, 0], \
-         [-1, 0]]\n[mesh]\nsize = 0.35\norigin = [0.031, 0.017]\n[gravity]\ny = 0.0\n[[joint]]\npoints = [[0, 0], [1.2, \
+        "title = \"press\"\n[domain]\noutline = [[-1, -0.6], [3, -0.6], [3, 0], [1.2, 0], [1.2, 0.6], [0, 0.6], [0, \
+        0], \
+         [-1, 0]]\n[mesh]\nsize = 0.35\norigin = [0.031, 0.017]\n[gravity]\ny = 0.0\n[[joint]]\npoints = [[0, 0], \
+         [1.2, \
          0]]\n[rock.rock]\ndensity = 2700.0\nyoung = 5e10\npoisson = 0.2\n[joint_law.joint]\n{law}\n[[fix]]\nblock = \
          [2.0, -0.3]\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.6], [1.2, 0.6]]\npressure = {pressure:?}\n{table}\n\
          [[stage]]\nname = \"press\"\nkind = \"static\"\nduration = 2.0\nramp = 0.0\n"
@@ -65,8 +67,8 @@ fn closure_follows_the_hyperbola_both_ways() {
 }
 
 /// The largest shear force before the block moves is that of the law, for several normal stresses and strength factors.
-/// The push acts along the joint, so that the pressure on it stays even to a few per cent, and with it the mean of a law
-/// that bends little.
+/// The push acts along the joint, so that the pressure on it stays even to a few per cent, and with it the mean of a
+/// law that bends little.
 #[test]
 fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
     for (stress, factor) in [(1e6, 1.0), (0.1e6, 1.0), (5e6, 1.0), (1e6, 0.7)] {
@@ -98,7 +100,8 @@ fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
 
 fn refused(law: &str) -> String {
     let text = format!(
-        "title = \"t\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 1]]\n[mesh]\nsize = 0.5\n[rock.r]\ndensity = 1.0\nyoung = \
+        "title = \"t\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 1]]\n[mesh]\nsize = 0.5\n[rock.r]\ndensity = \
+        1.0\nyoung = \
          1e9\npoisson = 0.2\n[joint_law.j]\n{law}\n[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = 1.0\n"
     );
     match enmm::io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
@@ -122,7 +125,8 @@ fn keys_of_the_other_kind_are_errors() {
         ("friction_deg = 28.0\njrc = 10.0".into(), "joint_law.j.jrc: a law of kind mohr_coulomb does not have it"),
         (
             format!(
-                "{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \"j\"\ncohesion = 1.0"
+                "{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \
+                \"j\"\ncohesion = 1.0"
             ),
             "a stage may change `friction_deg`",
         ),

@@ -9,7 +9,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "C12",
     title: "Bolt that holds a block on a plane",
-    source: "Limit equilibrium: T = W·(sin a − cos a·tan φ)/(cos δ + sin δ·tan φ) for a bolt that pulls upslope at δ into \
+    source: "Limit equilibrium: T = W·(sin a − cos a·tan φ)/(cos δ + sin δ·tan φ) for a bolt that pulls upslope at δ \
+    into \
              the plane; the least tension is searched by bisection on the pretension of a soft bar; catches wrong \
              directions and sizes of bolt forces",
     parameters: &[

@@ -48,7 +48,8 @@ fn exact(slope: f64, lower: f64, upper: f64) -> ([f64; 2], Option<f64>) {
     if common > 0.0 { ([common; 2], Some(common - a)) } else { ([0.0; 2], None) }
 }
 
-/// Two blocks, the lower one on a step; the face between them is smooth. Both settle under more friction than the slope.
+/// Two blocks, the lower one on a step; the face between them is smooth. Both settle under more friction than the
+/// slope.
 fn case(setup: &Setup) -> String {
     let [slope, length] = ["a_deg", "length"].map(|name| setup.get(name));
     let end = 2.0 * length + 0.5 * GRAVITY * setup.get("t").powi(2) + 1.0;

@@ -47,8 +47,8 @@ fn barton(stress: f64, jrc: f64, jcs: f64, residual: f64) -> f64 {
     stress * (residual + (jrc * (jcs / stress).log10()).max(0.0)).min(70.0).to_radians().tan()
 }
 
-/// A shear box: a very stiff and heavy block (so that the joint alone gives) on a held one, guided along its left side and
-/// under its pressure from the start.
+/// A shear box: a very stiff and heavy block (so that the joint alone gives) on a held one, guided along its left side
+/// and under its pressure from the start.
 fn case(setup: &Setup, law: &str, stress: f64, guided: bool) -> String {
     let [length, height] = BOX;
     let reach = length + 1.0;
@@ -62,7 +62,8 @@ fn case(setup: &Setup, law: &str, stress: f64, guided: bool) -> String {
         -stress
     );
     format!(
-        "title = \"Direct shear\"\n[domain]\noutline = [[-1.0, -1.0], [{reach}, -1.0], [{reach}, 0.0], [{length}, 0.0], \
+        "title = \"Direct shear\"\n[domain]\noutline = [[-1.0, -1.0], [{reach}, -1.0], [{reach}, 0.0], [{length}, \
+        0.0], \
          [{length}, {height}], [0.0, {height}], [0.0, 0.0], [-1.0, 0.0]]\n[mesh]\nsize = {:?}\norigin = [0.03, 0.02]\n\
          [gravity]\ny = 0.0\n[[joint]]\npoints = [[0.0, 0.0], [{length}, 0.0]]\n[joint_law.joint]\n{law}[rock.stiff]\n\
          density = 1e6\nyoung = {:e}\npoisson = 0.0\n[[fix]]\nblock = [-0.5, -0.5]\n{}[[load]]\nkind = \"pressure\"\n\
@@ -104,7 +105,8 @@ fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     let [stress, cohesion, ks] = ["sn", "c", "ks"].map(|name| setup.get(name));
     let [phi, residual] = ["phi_deg", "phi_residual_deg"].map(|name| setup.get(name));
     let law = format!(
-        "friction_deg = {phi:?}\ncohesion = {cohesion:?}\nresidual_friction_deg = {residual:?}\nresidual_cohesion = 0.0\n\
+        "friction_deg = {phi:?}\ncohesion = {cohesion:?}\nresidual_friction_deg = {residual:?}\nresidual_cohesion = \
+        0.0\n\
          normal_stiffness = {ks:e}\nshear_stiffness = {ks:e}\n"
     );
     let (peak, last) = (coulomb(stress, cohesion, phi.to_radians()), coulomb(stress, 0.0, residual.to_radians()));
@@ -141,7 +143,8 @@ fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
 fn rough(setup: &Setup) -> String {
     let [jrc, jcs, residual, ks, kn, vmax] = ["jrc", "jcs", "phi_r_deg", "ks", "kn", "vmax"].map(|n| setup.get(n));
     format!(
-        "kind = \"barton_bandis\"\nfriction_deg = {residual:?}\njrc = {jrc:?}\njcs = {jcs:?}\nnormal_stiffness = {kn:e}\n\
+        "kind = \"barton_bandis\"\nfriction_deg = {residual:?}\njrc = {jrc:?}\njcs = {jcs:?}\nnormal_stiffness = \
+        {kn:e}\n\
          shear_stiffness = {ks:e}\nclosure_max = {vmax:e}\n"
     )
 }
@@ -177,7 +180,8 @@ fn close(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     let stage = |k: usize| {
         let duration = 60.0 * (1e6 * height / kn).sqrt();
         format!(
-            "[[stage]]\nname = \"level {k}\"\nkind = \"static\"\nduration = {duration:e}\nconvergence = 1e-6\nramp = 0.0\n"
+            "[[stage]]\nname = \"level {k}\"\nkind = \"static\"\nduration = {duration:e}\nconvergence = 1e-6\nramp = \
+            0.0\n"
         )
     };
     let stages: String = (1..shares.len()).map(stage).collect();

@@ -8,7 +8,8 @@ use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Tr
 pub const PROBLEM: Problem = Problem {
     id: "D6",
     title: "Roof wedge",
-    source: "Two-stage relaxation of rigid blocks on elastic joints: P = 2·H0·(ks·cos²a + kn·sin²a)·sin(φ − a)/(ks·cos a·\
+    source: "Two-stage relaxation of rigid blocks on elastic joints: P = 2·H0·(ks·cos²a + kn·sin²a)·sin(φ − \
+    a)/(ks·cos a·\
              cos φ + kn·sin a·sin φ); catches wrong coupling of joint stiffness, in-situ stress and friction",
     parameters: &[
         Parameter { name: "a_deg", unit: "°", default: 20.0, range: [8.0, 45.0], doc: "half of the apex angle" },
@@ -39,8 +40,9 @@ fn case(setup: &Setup, ratio: f64) -> String {
     let [ks, h0, height] = ["ks", "h0", "height"].map(|name| setup.get(name));
     let half = height * setup.get("a_deg").to_radians().tan();
     let (side, top) = (2.5 * half + 0.5 * height, 1.5 * height);
-    // The wedge hangs out a little, so that its corner does not meet that of the rock, where tributary lengths jump; and
-    // the roof rises from that corner, which is then acute: an obtuse one would lend the roof's length to the joint.
+    // The wedge hangs out a little, so that its corner does not meet that of the rock, where tributary lengths jump;
+    // and the roof rises from that corner, which is then acute: an obtuse one would lend the roof's length to the
+    // joint.
     let (away, rise) = (half + 0.25 * height, 0.3 * height * setup.get("a_deg").to_radians().tan());
     let lip = 0.1 * height;
     let foot = half + lip * setup.get("a_deg").to_radians().tan();
@@ -48,11 +50,15 @@ fn case(setup: &Setup, ratio: f64) -> String {
     format!(
         "title = \"Roof wedge\"\n[domain]\noutline = [[-{side:?}, {rise:?}], [-{away:?}, {rise:?}], [-{half:?}, 0.0], \
          [-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}], [{half:?}, 0.0], [{away:?}, {rise:?}], [{side:?}, {rise:?}], \
-         [{side:?}, {top:?}], [-{side:?}, {top:?}]]\n[mesh]\nsize = {:?}\norigin = [0.013, 0.007]\n[gravity]\ny = 0.0\n[[joint]]\npoints = [[-{half:?}, \
+         [{side:?}, {top:?}], [-{side:?}, {top:?}]]\n[mesh]\nsize = {:?}\norigin = [0.013, 0.007]\n[gravity]\ny = \
+         0.0\n[[joint]]\npoints = [[-{half:?}, \
          0.0], [0.0, {height:?}], [{half:?}, 0.0]]\n[joint_law.joint]\nfriction_deg = {:?}\nnormal_stiffness = {:?}\n\
-         shear_stiffness = {ks:?}\n[rock.stiff]\ndensity = 1e5\nyoung = {stiff:?}\npoisson = 0.2\n[[fix]]\nblock = [0.0, \
-         {:?}]\n[[fix]]\nedge = [[-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}]]\naxes = \"y\"\n[in_situ]\nsxx = {:?}\nsyy = 0.0\n\
-         [[stage]]\nname = \"lower\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.5\n[solver]\ncontact_theta = 1.0\ncontact_tolerance = 1e-6\n",
+         shear_stiffness = {ks:?}\n[rock.stiff]\ndensity = 1e5\nyoung = {stiff:?}\npoisson = 0.2\n[[fix]]\nblock = \
+         [0.0, \
+         {:?}]\n[[fix]]\nedge = [[-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}]]\naxes = \"y\"\n[in_situ]\nsxx = \
+         {:?}\nsyy = 0.0\n\
+         [[stage]]\nname = \"lower\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.5\n[solver]\ncontact_theta = \
+         1.0\ncontact_tolerance = 1e-6\n",
         height / setup.get("rows"),
         setup.get("phi_deg"),
         ks * ratio,
@@ -97,9 +103,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let (curve, [initial, greatest], report) = lower(setup, ratio)?;
         let found = greatest / initial;
         let exact = collapse(a, phi, ratio);
-        let reason = "the wedge is 10000 times stiffer than its joints, which gives way by some per mille; its way grows by \
+        let reason = "the wedge is 10000 times stiffer than its joints, which gives way by some per mille; its way \
+        grows by \
                       1/200 of that at collapse at a time";
-        let corners = "in-situ stress times tributary lengths, which at the apex and the two ends of the joints are those \
+        let corners = "in-situ stress times tributary lengths, which at the apex and the two ends of the joints are \
+        those \
                        of their nodes and not quite those of the faces: 2 % of five elements";
         let row = Row::new(format!("initial horizontal force, kn/ks = {ratio}"), "N/m", initial, h0);
         rows.push(row.within(Tolerance::Relative(2e-2), corners));

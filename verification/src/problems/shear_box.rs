@@ -45,8 +45,8 @@ impl Drive {
     }
 }
 
-/// Share of a way that has been gone at point `point` of `points`: the speed rises evenly over the first quarter and then
-/// stays, so that no wave starts.
+/// Share of a way that has been gone at point `point` of `points`: the speed rises evenly over the first quarter and
+/// then stays, so that no wave starts.
 pub fn share(point: usize, points: usize) -> f64 {
     let (x, rise) = (point as f64 / points as f64, 0.25);
     let way = if x < rise { 0.5 * x * x / rise } else { x - 0.5 * rise };
