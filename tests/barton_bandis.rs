@@ -16,8 +16,10 @@ const CLOSURE: f64 = 1e-3;
 /// and a host pushes the block to the right.
 fn press(pressure: f64, table: &str, law: &str) -> Simulation {
     simulation(&format!(
-        "title = \"press\"\n[domain]\noutline = [[-1, -0.6], [3, -0.6], [3, 0], [1.2, 0], [1.2, 0.6], [0, 0.6], [0, 0], \
-         [-1, 0]]\n[mesh]\nsize = 0.35\norigin = [0.031, 0.017]\n[gravity]\ny = 0.0\n[[joint]]\npoints = [[0, 0], [1.2, \
+        "title = \"press\"\n[domain]\noutline = [[-1, -0.6], [3, -0.6], [3, 0], [1.2, 0], [1.2, 0.6], [0, 0.6], [0, \
+        0], \
+         [-1, 0]]\n[mesh]\nsize = 0.35\norigin = [0.031, 0.017]\n[gravity]\ny = 0.0\n[[joint]]\npoints = [[0, 0], \
+         [1.2, \
          0]]\n[rock.rock]\ndensity = 2700.0\nyoung = 5e10\npoisson = 0.2\n[joint_law.joint]\n{law}\n[[fix]]\nblock = \
          [2.0, -0.3]\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.6], [1.2, 0.6]]\npressure = {pressure:?}\n{table}\n\
          [[stage]]\nname = \"press\"\nkind = \"static\"\nduration = 2.0\nramp = 0.0\n"
@@ -43,25 +45,30 @@ fn joint(simulation: &Simulation) -> (f64, f64, f64) {
 }
 
 /// Loading and unloading run along σn = kn·v/(1 − v/vmax). The block is 50 GPa stiff: a joint of 2 GPa/m under 8 MPa
-/// closes evenly to some per mille; the mean is compared at 1e-3, and the ledger closes.
+/// closes evenly to some per mille; means are compared at rest, at 2e-3, and the ledger closes.
 #[test]
 fn closure_follows_the_hyperbola_both_ways() {
-    let mut sim = press(8e6, "table = [[0.0, 0.0], [0.1, 1.0], [0.2, 0.05], [0.3, 0.5]]", &law());
-    for (time, share) in [(0.05, 0.5), (0.1, 1.0), (0.15, 0.525), (0.2, 0.05), (0.3, 0.5)] {
+    let mut sim = press(
+        8e6,
+        "table = [[0, 0], [0.05, 0.5], [0.1, 0.5], [0.15, 1], [0.2, 1], [0.25, 0.05], [0.3, 0.05], [0.35, 0.5]]",
+        &law(),
+    );
+    for (time, share) in [(0.1, 0.5), (0.2, 1.0), (0.3, 0.05), (0.4, 0.5)] {
         let steps = sim.steps_in(time - sim.time());
         let report = advance(&mut sim, steps);
         let (closure, normal, _) = joint(&sim);
         let stress = normal / LENGTH;
         let exact = stress / (STIFFNESS + stress / CLOSURE);
         println!("t {time}: σ {stress:e} of {:e}, v {closure:e} of {exact:e}", 8e6 * share);
-        assert!((stress / (8e6 * share) - 1.0).abs() < 0.02, "the ramp is slow: {stress} of {}", 8e6 * share);
+        assert!((stress / (8e6 * share) - 1.0).abs() < 2e-3, "it is at rest: {stress} of {}", 8e6 * share);
         assert!((closure / exact - 1.0).abs() < 2e-3, "{closure:e} of {exact:e}");
         assert_ledger(&report);
     }
 }
 
 /// The largest shear force before the block moves is that of the law, for several normal stresses and strength factors.
-/// The push grows by 1e-3 of the limit at a time: it lies between two of them.
+/// The push acts along the joint, so that the pressure on it stays even to a few per cent, and with it the mean of a
+/// law that bends little.
 #[test]
 fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
     for (stress, factor) in [(1e6, 1.0), (0.1e6, 1.0), (5e6, 1.0), (1e6, 0.7)] {
@@ -76,6 +83,7 @@ fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
         let steps = sim.steps_in(0.05);
         for (share, slides) in [(0.5, false), (0.99, false), (1.01, true)] {
             sim.drive().to.block_force[block] = Vector::new(share * limit, 0.0);
+            sim.drive().to.block_moment[block] = share * limit * 0.3;
             sim.drive().arrive();
             advance(&mut sim, steps);
             let before = sim.motion_of(block).displacement.x;
@@ -92,7 +100,8 @@ fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
 
 fn refused(law: &str) -> String {
     let text = format!(
-        "title = \"t\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 1]]\n[mesh]\nsize = 0.5\n[rock.r]\ndensity = 1.0\nyoung = \
+        "title = \"t\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 1]]\n[mesh]\nsize = 0.5\n[rock.r]\ndensity = \
+        1.0\nyoung = \
          1e9\npoisson = 0.2\n[joint_law.j]\n{law}\n[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = 1.0\n"
     );
     match enmm::io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
@@ -116,7 +125,8 @@ fn keys_of_the_other_kind_are_errors() {
         ("friction_deg = 28.0\njrc = 10.0".into(), "joint_law.j.jrc: a law of kind mohr_coulomb does not have it"),
         (
             format!(
-                "{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \"j\"\ncohesion = 1.0"
+                "{rough}[[stage]]\nname = \"a\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \
+                \"j\"\ncohesion = 1.0"
             ),
             "a stage may change `friction_deg`",
         ),

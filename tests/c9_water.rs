@@ -104,7 +104,8 @@ fn both_faces_of_a_joint_bear_opposite_forces_by_its_table_of_time() {
     let slope = Slope { height: 60.0, crack: 14.0, face: 50.0, plane: 35.0 };
     let [x, y] = slope.foot();
     let load = format!(
-        "[[load]]\nkind = \"joint\"\nedge = [[0.0, 0.0], [{x:?}, {y:?}]]\npressure = 1e5\ntable = [[0.0, 0.5], [1.0, 1.0]]\n"
+        "[[load]]\nkind = \"joint\"\nedge = [[0.0, 0.0], [{x:?}, {y:?}]]\npressure = 1e5\ntable = [[0.0, 0.5], [1.0, \
+        1.0]]\n"
     );
     let mut simulation = slope.build(&load);
     let (force, _) = pushed(&mut simulation);

@@ -95,7 +95,8 @@ impl BoltSegment {
         if state.active && !state.broken { 0.5 * self.stiffness * stretch * stretch } else { 0.0 }
     }
 
-    /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without forces.
+    /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without
+    /// forces.
     pub fn row(&self, index: u32, state: &BoltState, slope: &BoltView) -> BoltRow {
         let places = [0, 1].map(|k| self.place(k, slope.star, slope.displacement));
         let span = places[0] - places[1];
@@ -204,7 +205,8 @@ mod tests {
         };
         let (dt, rate) = (0.1, 0.2);
         let force = row.answer(rate, dt, dt, 4.0);
-        // κ = 100·0.3·0.01 = 0.3, and the change of force changes the rate: T = k·(l + θ·dt·(u − W·dt·(T − T0)) − rest).
+        // κ = 100·0.3·0.01 = 0.3, and the change of force changes the rate: T = k·(l + θ·dt·(u − W·dt·(T − T0)) −
+        // rest).
         let end = 1.0 + 4.0 * 0.3 / 1.3 * dt * (rate - 0.3 * dt * (force - 4.0));
         assert!((force - 100.0 * (end - 0.9)).abs() < 1e-12);
         assert_eq!([row.answer(-1e3, dt, dt, 4.0), row.answer(1e3, dt, dt, 4.0)], [0.0, 20.0]);

@@ -135,7 +135,8 @@ impl OpenClose<'_> {
         first.unwrap_or(0.0)
     }
 
-    /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack ones.
+    /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack
+    /// ones.
     fn sweep_bolts(&mut self, bolts: &mut [BoltRow], floor: f64) -> f64 {
         let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
         let floor = floor.max(LIGHT * largest);

@@ -38,8 +38,8 @@ impl Closure {
         force / (self.stiffness + force.max(0.0) / self.most)
     }
 
-    /// Force (N/m) after a step in which it reduces the closure that it meets: solves v(N) + c·N = b, where b (m) is the
-    /// closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. J3).
+    /// Force (N/m) after a step in which it reduces the closure that it meets: solves v(N) + c·N = b, where b (m) is
+    /// the closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. J3).
     pub fn solve(&self, b: f64, c: f64) -> f64 {
         let linear = self.stiffness * b / (1.0 + c * self.stiffness);
         if b <= 0.0 || self.most.is_infinite() {

@@ -13,7 +13,9 @@ mod block;
 mod c1;
 mod c10;
 mod c11;
+mod c12;
 mod c2;
+mod c3;
 mod c4;
 mod c5;
 mod c6;
@@ -23,12 +25,16 @@ mod c9;
 mod continuum;
 mod d1;
 mod d2;
+mod d3;
 mod d4;
 mod d5;
+mod d6;
 mod dice;
 mod incline;
 mod newmark;
+mod plane;
 mod plane_slide;
+mod shear_box;
 mod slider;
 mod strip;
 mod toppling;
@@ -48,6 +54,7 @@ pub const ALL: &[Problem] = &[
     b8::PROBLEM,
     c1::PROBLEM,
     c2::PROBLEM,
+    c3::PROBLEM,
     c4::PROBLEM,
     c5::PROBLEM,
     c6::PROBLEM,
@@ -56,8 +63,11 @@ pub const ALL: &[Problem] = &[
     c9::PROBLEM,
     c10::PROBLEM,
     c11::PROBLEM,
+    c12::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,
+    d3::PROBLEM,
     d4::PROBLEM,
     d5::PROBLEM,
+    d6::PROBLEM,
 ];

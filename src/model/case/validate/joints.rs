@@ -37,7 +37,8 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
         ("residual_tension", law.residual_tension != 0.0),
     ];
     if let Some((name, _)) = strengths.iter().find(|(_, given)| *given) {
-        let message = "a law of kind barton_bandis has no such strength: `friction_deg`, `jrc` and `jcs` give it; remove \
+        let message = "a law of kind barton_bandis has no such strength: `friction_deg`, `jrc` and `jcs` give it; \
+        remove \
                        it, or set `kind = \"mohr_coulomb\"`";
         return fail(&key.field(name), message);
     }
@@ -53,7 +54,8 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
     }
     if law.closure_max.is_some() && law.dilation_deg > 0.0 {
         let message = format!(
-            "is {}°, but a joint with `closure_max` does not dilate, since slip could close it further than that; remove \
+            "is {}°, but a joint with `closure_max` does not dilate, since slip could close it further than that; \
+            remove \
              one of them",
             law.dilation_deg
         );
