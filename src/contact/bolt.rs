@@ -1,4 +1,4 @@
-//! Rock bolts: elastic–plastic bars between two material points, judged in the open–close iteration (Eqs. J9–J13).
+//! Rock bolts: elastic–plastic bars between two material points, judged in the open–close iteration (Eqs. 40–44).
 
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
@@ -83,7 +83,7 @@ impl BoltSegment {
         self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| place(i) * w).sum()
     }
 
-    /// The state of a segment that is installed at its present length (m): it bears its pretension (Eq. J9).
+    /// The state of a segment that is installed at its present length (m): it bears its pretension (Eq. 40).
     pub fn install(&self, length: f64) -> BoltState {
         let rest = length - self.pretension / self.stiffness;
         BoltState { active: true, broken: false, rest, natural: rest, force: self.pretension }
@@ -119,7 +119,7 @@ impl BoltSegment {
         }
     }
 
-    /// The state after a step at whose end the bar is `length` (m) long: it yields and breaks by that (Eqs. J11, J12).
+    /// The state after a step at whose end the bar is `length` (m) long: it yields and breaks by that (Eqs. 42, 43).
     pub fn after(&self, state: &BoltState, length: f64, force: f64) -> BoltState {
         let broken = length - state.natural > self.rupture;
         let rest = state.rest.max(length - self.yield_force / self.stiffness);
@@ -143,7 +143,7 @@ pub struct BoltView<'a> {
 
 impl BoltRow {
     /// Tension (N/m) that the bar answers with, from the rate of its length (m/s) under all impulses so far, its own
-    /// `force` included: the contacts' implicit spring, between slack and yield (Eq. J10). A bar is no penalty: θ grows
+    /// `force` included: the contacts' implicit spring, between slack and yield (Eq. 41). A bar is no penalty: θ grows
     /// from 0 for one that the step resolves to the contacts' for one that is stiff in it, κ = k·W·dt² being large, so
     /// that a soft bar loses no energy to the scheme.
     pub fn answer(&self, rate: f64, dt: f64, kick: f64, theta: f64) -> f64 {

@@ -93,7 +93,7 @@ impl VertexEdge {
 const CENTRED: f64 = 0.25;
 
 impl VertexEdge {
-    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. W8, W9).
+    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. 52, 53).
     ///
     /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
     /// stiffer one gets a dashpot that grows towards that of θ. The step is `dt` and the force acts for `kick` (s);

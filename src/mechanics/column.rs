@@ -41,7 +41,7 @@ pub enum Foot {
     Quiet(u32),
 }
 
-/// A column of rock of unit width: equal cells between nodes, each with the rock at its middle (Eq. W5).
+/// A column of rock of unit width: equal cells between nodes, each with the rock at its middle (Eq. 49).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// Height y of the foot (m).
@@ -80,7 +80,7 @@ impl Column {
         self.rocks.len() + 1
     }
 
-    /// Longest stable step (s): the way of a pressure wave through a cell (Eq. W6).
+    /// Longest stable step (s): the way of a pressure wave through a cell (Eq. 50).
     pub fn critical_dt(&self) -> f64 {
         let through = |rock: &Elasticity| self.spacing / (rock.confined_modulus() / rock.density).sqrt();
         self.rocks.iter().map(through).fold(f64::INFINITY, f64::min)
@@ -106,7 +106,7 @@ impl Column {
         Vector::new(rock.mu * strain.x, rock.confined_modulus() * strain.y)
     }
 
-    /// Writes the velocities (m/s) after the step; `decay` gives the damping factor of a block (Eqs. W5, W6).
+    /// Writes the velocities (m/s) after the step; `decay` gives the damping factor of a block (Eqs. 49, 50).
     pub fn kick(&self, state: &ColumnState, drive: &ColumnDrive, decay: impl Fn(u32) -> f64, out: &mut [Vector]) {
         out.copy_from_slice(&state.velocity);
         self.damp(decay, out);

@@ -96,7 +96,7 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
-    /// Strain RᵀF − I as xx, yy, xy in the axes that turn with the element (Eq. Y1).
+    /// Strain RᵀF − I as xx, yy, xy in the axes that turn with the element (Eq. 54).
     pub fn strain(&self) -> [f64; 3] {
         let d = self.stretch();
         let (c, s) = (self.cos, self.sin);

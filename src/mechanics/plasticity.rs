@@ -1,4 +1,4 @@
-//! Mohr–Coulomb rock: elastic, perfectly plastic, return mapping in principal stresses (Eqs. Y1–Y6).
+//! Mohr–Coulomb rock: elastic, perfectly plastic, return mapping in principal stresses (Eqs. 54–59).
 
 use crate::geometry::Vector;
 
@@ -53,7 +53,7 @@ pub struct MohrCoulomb {
 }
 
 impl MohrCoulomb {
-    /// The surface with tan φ, c and the tensile strength times `factor` (Eq. Y6); ψ is at most the φ that is left.
+    /// The surface with tan φ, c and the tensile strength times `factor` (Eq. 59); ψ is at most the φ that is left.
     pub fn surface(&self, factor: f64) -> YieldSurface {
         let sine = |tangent: f64| tangent / (1.0 + tangent * tangent).sqrt();
         let (friction, cohesion) = (self.friction * factor, self.cohesion * factor);
@@ -69,7 +69,7 @@ impl MohrCoulomb {
         }
     }
 
-    /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. Y2).
+    /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
     fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
@@ -77,7 +77,7 @@ impl MohrCoulomb {
     /// What plastic strain adds to the forces (N/m) on the three covers of an element of cut area `area` (m²).
     ///
     /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that
-    /// they turn no element (Eq. Y5).
+    /// they turn no element (Eq. 58).
     pub fn forces(&self, at: &Deformation, g: &[Vector; 3], area: f64, plastic: &PlasticStrain) -> [Vector; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
         let skew = at.skew([xx, yy, xy]);
@@ -91,7 +91,7 @@ impl MohrCoulomb {
         at.turn([-xx, -yy, -xy])
     }
 
-    /// What plastic strain adds to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. Y5).
+    /// What plastic strain adds to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. 58).
     pub fn energy(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
@@ -119,7 +119,7 @@ pub fn equivalent_strain(plastic: &PlasticStrain) -> f64 {
     (2.0 / 3.0 * double_dot(plastic, plastic)).sqrt()
 }
 
-/// The planes between elastic and plastic states of a rock (Eq. Y3).
+/// The planes between elastic and plastic states of a rock (Eq. 56).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YieldSurface {
     elasticity: Elasticity,
@@ -134,7 +134,7 @@ pub struct YieldSurface {
 }
 
 impl YieldSurface {
-    /// What plastic strain grows by at a deformation (Eq. Y4); none where the rock is elastic.
+    /// What plastic strain grows by at a deformation (Eq. 57); none where the rock is elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
     pub fn growth(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
@@ -144,7 +144,7 @@ impl YieldSurface {
     }
 
     /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
-    /// stress before and after, as the leapfrog's work is (Eq. Y5).
+    /// stress before and after, as the leapfrog's work is (Eq. 58).
     pub fn taken(&self, from: &Deformation, to: &Deformation, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
         let [plastic, growth] = change;
         let before = self.own_stress(from, plastic);
@@ -152,7 +152,7 @@ impl YieldSurface {
         double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + after[k]) + pre[k]), growth)
     }
 
-    /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that turn with the element (Eq. Y2).
+    /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that turn with the element (Eq. 55).
     fn own_stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 4] {
         let [xx, yy, xy] = at.strain();
         let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
@@ -165,7 +165,7 @@ impl YieldSurface {
         PLANES[..ORDERED].iter().map(|&p| self.beyond(p, &principal.sorted)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; none inside (Eq. Y4).
+    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; none inside (Eq. 57).
     pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
         let principal = Principal::of(trial, self.plane_stress);
         let sorted = principal.sorted;

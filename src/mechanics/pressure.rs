@@ -29,7 +29,7 @@ pub fn hydrostatic(a: Point, b: Point, level: f64, weight: f64) -> [Vector; 2] {
 
 /// Forces (N/m) at both ends of the edge from `a` to `b` under still water of unit weight `weight` (N/m³) below a
 /// broken line from left to right, `rise` (m) above `table`: the pressure is the unit weight times the vertical depth
-/// below the line, which is level beyond its ends (Eq. J7). Exact: the edge is split where the line bends and where it
+/// below the line, which is level beyond its ends (Eq. 38). Exact: the edge is split where the line bends and where it
 /// is crossed.
 pub fn under_table(a: Point, b: Point, table: &[Point], rise: f64, weight: f64) -> [Vector; 2] {
     let normal = inward(a, b) * weight;
@@ -74,7 +74,7 @@ fn wet_part(normal: Vector, [from, to]: [f64; 2], depth: [f64; 2]) -> [Vector; 2
 }
 
 /// Forces (N/m) at both ends of an edge, given its inward normal as long as itself, under a pressure (Pa) on the part
-/// between two shares of its length that goes linearly from `ends[0]` to `ends[1]` (Eq. J8).
+/// between two shares of its length that goes linearly from `ends[0]` to `ends[1]` (Eq. 39).
 pub fn part(normal: Vector, [from, to]: [f64; 2], ends: [f64; 2]) -> [Vector; 2] {
     let resultant = 0.5 * (to - from) * (ends[0] + ends[1]);
     let moment = (to - from) * (from * (2.0 * ends[0] + ends[1]) + to * (ends[0] + 2.0 * ends[1])) / 6.0;

@@ -5,7 +5,7 @@
 pub struct Record(pub Vec<[f64; 2]>);
 
 impl Record {
-    /// Mean over `from`–`to` (s): the exact integral over the length (Eq. W1).
+    /// Mean over `from`–`to` (s): the exact integral over the length (Eq. 45).
     pub fn mean(&self, from: f64, to: f64) -> f64 {
         let rows = &self.0;
         let first = rows.partition_point(|row| row[0] <= from).saturating_sub(1);
@@ -14,7 +14,7 @@ impl Record {
         integral / (to - from)
     }
 
-    /// Mean rate over `from`–`to` (s) of values that keep their last one for ever (Eq. W1).
+    /// Mean rate over `from`–`to` (s) of values that keep their last one for ever (Eq. 45).
     pub fn mean_rate(&self, from: f64, to: f64) -> f64 {
         (self.kept(to) - self.kept(from)) / (to - from)
     }

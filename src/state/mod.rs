@@ -66,7 +66,7 @@ pub struct State {
     pub drive: Drive,
     /// Bolts.
     pub bolts: Vec<BoltState>,
-    /// Plastic strain of each element (Eq. Y2); empty when no rock yields.
+    /// Plastic strain of each element (Eq. 55); empty when no rock yields.
     pub plastic: Vec<PlasticStrain>,
     /// Free-field columns.
     pub columns: Vec<ColumnState>,

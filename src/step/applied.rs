@@ -25,7 +25,7 @@ impl TimedRecord {
     }
 }
 
-/// Acceleration (m/s²) of the base by its records, its mean over a kick (Eq. W1).
+/// Acceleration (m/s²) of the base by its records, its mean over a kick (Eq. 45).
 pub fn base_motion(slope: &Slope, regime: Regime, state: &State, kick: Kick) -> Vector {
     let of = |base: &crate::state::BaseMotion| {
         let TimedRecord { record, .. } = &base.motion;

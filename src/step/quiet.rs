@@ -78,7 +78,7 @@ impl Step<'_> {
     }
 
     /// What the supports answer to in a step of `dt` (s): springs to the place at its end (Eq. 23), dashpots to the
-    /// mean of the velocities before and after it (Eqs. W2, W3).
+    /// mean of the velocities before and after it (Eqs. 46, 47).
     pub(super) fn load_supports(&mut self, dt: f64) {
         let (slope, state, kick) = (self.slope, &*self.state, self.kick_of(dt));
         let regime = self.regime;

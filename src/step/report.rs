@@ -38,7 +38,7 @@ pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], v
         .sum()
 }
 
-/// Strain energy (J/m) of all blocks that are there (Eqs. 8, Y5).
+/// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
 pub(super) fn strain(slope: &Slope, state: &State) -> f64 {
     let covers = &slope.covers;
     let of_element = |e: usize| covers.element_area[e] * slope.strain_energy(state, e);

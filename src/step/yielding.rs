@@ -10,7 +10,7 @@ use crate::state::{Scratch, Slope, State};
 const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of time `time` (s), and
-/// books what that takes (Eqs. Y4, Y5). Done twice at the same displacements it changes nothing.
+/// books what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
 pub fn update(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64) {
     if state.plastic.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Barton–Bandis joints: friction that grows as the normal stress falls, and hyperbolic closure (Eqs. J1–J5).
+//! Barton–Bandis joints: friction that grows as the normal stress falls, and hyperbolic closure (Eqs. 33–37).
 
 /// Greatest friction angle (rad), which low normal stress does not exceed: 70°.
 pub const ANGLE_MAX: f64 = 70.0 * std::f64::consts::PI / 180.0;
@@ -15,7 +15,7 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    /// tan(min(φr + JRC·log10(JCS/σn), 70°)) under the normal stress σn > 0 (Pa); above JCS it is tan φr (Eq. J1).
+    /// tan(min(φr + JRC·log10(JCS/σn), 70°)) under the normal stress σn > 0 (Pa); above JCS it is tan φr (Eq. 33).
     pub fn friction(&self, stress: f64) -> f64 {
         let dilation = (self.jrc * (self.jcs / stress).log10()).max(0.0).to_radians();
         (self.angle + dilation).min(ANGLE_MAX).tan()
@@ -39,7 +39,7 @@ impl Closure {
     }
 
     /// Force (N/m) after a step in which it reduces the closure that it meets: solves v(N) + c·N = b, where b (m) is
-    /// the closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. J3).
+    /// the closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. 35).
     pub fn solve(&self, b: f64, c: f64) -> f64 {
         let linear = self.stiffness * b / (1.0 + c * self.stiffness);
         if b <= 0.0 || self.most.is_infinite() {
@@ -51,7 +51,7 @@ impl Closure {
         if half >= 0.0 { k * most * b / (half + root) } else { (root - half) / c }
     }
 
-    /// Energy (J/m) stored at closure v (m): k·v_max²·(−ln(1 − v/v_max) − v/v_max) (Eq. J4); of the linear spring for
+    /// Energy (J/m) stored at closure v (m): k·v_max²·(−ln(1 − v/v_max) − v/v_max) (Eq. 36); of the linear spring for
     /// tension. At v_max, which no finite force reaches, it is that of the last number below.
     pub fn energy(&self, closure: f64) -> f64 {
         if closure <= 0.0 || self.most.is_infinite() {

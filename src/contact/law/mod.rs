@@ -5,7 +5,7 @@ mod barton_bandis;
 pub use barton_bandis::{Closure, Roughness};
 
 /// A joint: Mohr–Coulomb with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21), or, with a
-/// roughness, Barton–Bandis (Eq. J1).
+/// roughness, Barton–Bandis (Eq. 33).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct JointLaw {
     /// Normal stiffness (Pa/m).

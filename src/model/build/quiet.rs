@@ -119,7 +119,7 @@ impl Ground<'_> {
         }
     }
 
-    /// Dashpots ρ·cp along the normal and ρ·cs along the tangent of a piece, in its middle (Eq. W2). At the ends of the
+    /// Dashpots ρ·cp along the normal and ρ·cs along the tangent of a piece, in its middle (Eq. 46). At the ends of the
     /// piece they would be twice as many, and give back 7 % more of a wave that comes in under 30°.
     fn dashpots(&self, piece: &OuterPiece, quiet: u32, fix: u32) -> [Support; 2] {
         let along = (piece.piece.b - piece.piece.a) / piece.length();
@@ -176,7 +176,7 @@ impl Ground<'_> {
         self.case.quiets.iter().position(reaches).map_or(Foot::Rigid, |k| Foot::Quiet(k as u32))
     }
 
-    /// What a column gives to the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. W7).
+    /// What a column gives to the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. 51).
     fn beside(&self, column: &Column, piece: &OuterPiece, first: u32, dashpots: &[Support]) -> Vec<FreeFieldPoint> {
         let rock = &self.rocks[self.element_rock[piece.piece.element as usize] as usize];
         let (a, b) = (piece.piece.a, piece.piece.b);

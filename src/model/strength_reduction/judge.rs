@@ -59,7 +59,7 @@ pub struct Sample {
     pub released: f64,
 }
 
-/// What a motion is measured against (Eqs. F2–F5).
+/// What a motion is measured against (Eqs. 61–64).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
     /// Window between samples (s).
@@ -89,7 +89,7 @@ const DEAD_SHARE: f64 = 1e-4;
 /// Growth of displacements in the last quarter of a trial, relative to the quarter before, of one that does not end.
 const ENDLESS: f64 = 0.7;
 
-/// Judges a trial by its samples so far (Eqs. F3–F6); none while it is open.
+/// Judges a trial by its samples so far (Eqs. 62–65); none while it is open.
 pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
     let (last, before) = (samples.last()?, samples.iter().rev().nth(1)?);
     if last.displacement > scales.limit && last.kinetic > before.kinetic {
@@ -109,7 +109,7 @@ pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
     })
 }
 
-/// Slow, poor in energy and going nowhere, in each of the windows (Eq. F3).
+/// Slow, poor in energy and going nowhere, in each of the windows (Eq. 62).
 fn rests(windows: &[Sample], scales: &Scales) -> bool {
     windows.windows(2).all(|pair| {
         let [before, now] = [pair[0], pair[1]];
@@ -120,7 +120,7 @@ fn rests(windows: &[Sample], scales: &Scales) -> bool {
     })
 }
 
-/// Speed grows in a straight line, and has left behind what elasticity can explain (Eq. F5).
+/// Speed grows in a straight line, and has left behind what elasticity can explain (Eq. 64).
 fn accelerates(windows: &[Sample], scales: &Scales) -> bool {
     let (slope, determination) = line(windows.iter().map(|s| (s.time, s.speed)));
     let grows = windows.windows(2).all(|pair| pair[1].displacement > pair[0].displacement);
@@ -128,7 +128,7 @@ fn accelerates(windows: &[Sample], scales: &Scales) -> bool {
     grows && slope > 0.0 && determination >= STRAIGHT && last.displacement > scales.elastic
 }
 
-/// Whether growth of displacements falls off over the last half (Eq. F6).
+/// Whether growth of displacements falls off over the last half (Eq. 65).
 fn ends(samples: &[Sample], scales: &Scales) -> bool {
     let n = samples.len();
     let place = |quarters: usize| samples[(n - 1) * quarters / 4].displacement;

@@ -165,7 +165,7 @@ fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reas
     running.then_some((Verdict::Unstable, judge::Reason::Runaway))
 }
 
-/// Times, speeds and lengths of a model's motion (Eqs. F2, F4).
+/// Times, speeds and lengths of a model's motion (Eqs. 61, 63).
 fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let (slope, state) = (simulation.slope(), simulation.state());
     let (low, high) = polygon::bounds(&slope.covers.star_position);

@@ -12,7 +12,7 @@ pub const PROBLEM: Problem = Problem {
     title: "Drop on a spring",
     source: "A mass m falls by H on a spring k: it arrives with √(2gH), sinks in by mg/k + √((mg/k)² + 2mgH/k) and, \
              undamped, comes back to H. The spring is a joint's own stiffness, which the open–close iteration takes \
-             centred in time (theory, Eqs. W8 and W9), so that it keeps its energy at any step that resolves it. \
+             centred in time (theory, Eqs. 52 and 53), so that it keeps its energy at any step that resolves it. \
              Catches contacts that gain or lose energy, stick, or are entered late.",
     parameters: &[
         Parameter { name: "m", unit: "kg/m", default: 2500.0, range: [100.0, 1e5], doc: "mass" },
