@@ -96,6 +96,11 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
+    /// A vector of the reference turned with the element: R·v.
+    pub fn turn(&self, v: Vector) -> Vector {
+        Vector::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
+    }
+
     /// Rotation (rad), counter-clockwise.
     pub fn rotation(&self) -> f64 {
         self.sin.atan2(self.cos)
