@@ -63,6 +63,10 @@ pub struct ImplicitScratch {
     pub forces_before: Vec<[f64; 2]>,
     /// Forces (N/m) of supports at the start of the sub-step.
     pub bearing_before: Vec<f64>,
+    /// Normal force (N/m) of each contact that friction is measured by along a solution.
+    pub pressing: Vec<f64>,
+    /// Whether contacts that slip keep the secant of their shear spring in the factor.
+    pub cautious: bool,
     /// State of each contact that the factor holds.
     pub factored: Vec<ContactState>,
 }

@@ -1,6 +1,7 @@
 //! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
 
 use crate::contact::{ContactState, VertexEdge};
+use crate::geometry::Vector;
 use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_block};
 
 use super::{Inertia, Step};
@@ -108,6 +109,7 @@ impl Step<'_> {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,
+                ContactState::Slip if buffers.cautious => secant(contact, &buffers.moved),
                 ContactState::Slip => 0.0,
                 ContactState::Lock => contact.stiffness[1],
             };
@@ -149,6 +151,13 @@ fn six(contact: &VertexEdge) -> [u32; 6] {
 /// Their weights, those of the edge negative.
 fn six_weights(contact: &VertexEdge) -> [f64; 6] {
     std::array::from_fn(|k| contact.pair.weights[k / 3][k % 3] * if k < 3 { 1.0 } else { -1.0 })
+}
+
+/// Shear force over the way that its spring alone would have taken (N/m per m): between no spring, which lets a block
+/// go in one iteration that is held in the next, and the spring of a contact that does not slip.
+fn secant(contact: &VertexEdge, moved: &[Vector]) -> f64 {
+    let asked = (contact.history.shear_stored - contact.stiffness[1] * contact.relative(moved)[1]).abs();
+    contact.stiffness[1] * (contact.history.shear_force.abs() / asked.max(f64::MIN_POSITIVE)).min(1.0)
 }
 
 /// k_n·n⊗n + k_t·t⊗t of a contact, row by row.

@@ -1,14 +1,11 @@
 //! Forces out of balance: inertia, elements, contacts and supports at the places reached.
 
-use crate::contact::{ContactState, VertexEdge};
+use crate::contact::VertexEdge;
 use crate::geometry::Vector;
 use crate::mechanics::{self, Deformation, push_mass};
 
 use super::super::blocks::pre_stress;
 use super::{Inertia, Step};
-
-/// Penetration, relative to the mesh size, from which an open contact closes.
-const CLOSING: f64 = 1e-10;
 
 impl Step<'_> {
     /// Internal forces at the places reached (Eq. 7).
@@ -31,19 +28,35 @@ impl Step<'_> {
 
     /// Judges all contacts at the places reached; returns whether one is not as the factor holds it.
     pub(super) fn implicit_judge(&mut self) -> bool {
-        let least = CLOSING * self.slope.covers.mesh.size;
         let scratch = &mut *self.scratch;
         let buffers = &scratch.implicit;
         let mut changed = buffers.factored.len() != scratch.contacts.len();
         for (k, contact) in scratch.contacts.iter_mut().enumerate() {
-            judge(contact, &buffers.moved, least);
+            judge(contact, &buffers.moved);
             changed |= buffers.factored.get(k) != Some(&contact.history.state);
         }
+        self.bear();
+        changed
+    }
+
+    /// Forces of all contacts at the places reached, friction under the pressure kept in `pressing`.
+    pub(super) fn implicit_probe(&mut self) {
+        let scratch = &mut *self.scratch;
+        let buffers = &scratch.implicit;
+        for (contact, pressing) in scratch.contacts.iter_mut().zip(&buffers.pressing) {
+            judge_under(contact, &buffers.moved, *pressing);
+        }
+        self.bear();
+    }
+
+    /// Forces of all supports at the places reached.
+    fn bear(&mut self) {
+        let scratch = &mut *self.scratch;
         for row in &mut scratch.rows {
             let support = &self.slope.supports[row.support as usize];
-            row.force = support.preload - support.stiffness * (row.displacement + support.sample(&buffers.moved));
+            let moved = support.sample(&scratch.implicit.moved);
+            row.force = support.preload - support.stiffness * (row.displacement + moved);
         }
-        changed
     }
 
     /// Forces out of balance (Eq. I1) at the places reached; returns their norm and the norm of the largest part.
@@ -68,14 +81,31 @@ impl Step<'_> {
                 scale = scale.max(momentum.sum::<f64>().sqrt());
             }
         }
-        for (i, force) in buffers.residual.iter_mut().enumerate() {
-            for axis in 0..2 {
-                if buffers.held[2 * i + axis] {
-                    force[axis] = 0.0;
-                }
+        self.drop_held();
+        let buffers = &self.scratch.implicit;
+        [norm(&buffers.residual), scale]
+    }
+
+    /// Forces out of balance at the start of the sub-step, by the contact forces of the last one; into the residual.
+    pub(super) fn start_balance(&mut self) {
+        self.push_bearing();
+        let buffers = &mut self.scratch.implicit;
+        let others = buffers.applied_before.iter().zip(&buffers.internal_before);
+        buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
+        self.drop_held();
+    }
+
+    /// Takes what acts on held rows out of the residual.
+    fn drop_held(&mut self) {
+        let buffers = &mut self.scratch.implicit;
+        if !buffers.any_held {
+            return;
+        }
+        for (force, held) in buffers.residual.iter_mut().zip(buffers.held.chunks_exact(2)) {
+            for axis in (0..2).filter(|&axis| held[axis]) {
+                force[axis] = 0.0;
             }
         }
-        [norm(&buffers.residual), scale]
     }
 
     /// Forces of contacts and supports on the covers, into the residual.
@@ -83,7 +113,10 @@ impl Step<'_> {
         let scratch = &mut *self.scratch;
         let residual = &mut scratch.implicit.residual;
         residual.fill(Vector::zeros());
-        for contact in scratch.contacts.iter().filter(|c| c.history.state != ContactState::Open) {
+        for contact in &scratch.contacts {
+            if contact.history.normal_force == 0.0 && contact.history.shear_force == 0.0 {
+                continue;
+            }
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
             mechanics::spread(&contact.pair.covers[0], &contact.pair.weights[0], force, residual);
             mechanics::spread(&contact.pair.covers[1], &contact.pair.weights[1], -force, residual);
@@ -97,12 +130,24 @@ impl Step<'_> {
 
 /// Forces and state of a contact after displacements of its covers (Eq. I4): the springs at the places reached, within
 /// what the joint can carry.
-fn judge(contact: &mut VertexEdge, moved: &[Vector], least: f64) {
+fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
+    let [normal, shear] = springs(contact, moved);
+    contact.decide(normal, shear);
+}
+
+/// The same with the shear limit of an earlier normal force.
+fn judge_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
+    let [normal, shear] = springs(contact, moved);
+    let limit = contact.limits.shear(pressing);
+    contact.decide(normal, shear);
+    contact.history.shear_force = shear.clamp(-limit, limit);
+}
+
+/// Normal and shear force (N/m) that the springs of a contact ask for.
+fn springs(contact: &VertexEdge, moved: &[Vector]) -> [f64; 2] {
     let [opened, sheared] = contact.relative(moved);
-    let gap = contact.gap + opened;
-    let was_open = contact.history.state == ContactState::Open;
-    let normal = if was_open && gap < 0.0 && gap > -least { 0.0 } else { -contact.stiffness[0] * gap };
-    contact.decide(normal, contact.history.shear_stored - contact.stiffness[1] * sheared);
+    let shear = contact.history.shear_stored - contact.stiffness[1] * sheared;
+    [-contact.stiffness[0] * (contact.gap + opened), shear]
 }
 
 /// Euclidean norm of a cover field.

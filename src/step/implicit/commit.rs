@@ -132,17 +132,8 @@ impl Step<'_> {
 
     /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
     fn implicit_unbalanced(&mut self) -> f64 {
-        self.push_bearing();
-        let state = &*self.state;
-        let buffers = &mut self.scratch.implicit;
-        for i in 0..buffers.residual.len() {
-            buffers.residual[i] += buffers.applied_before[i] + buffers.internal_before[i];
-            for axis in 0..2 {
-                if buffers.held[2 * i + axis] {
-                    buffers.residual[i][axis] = 0.0;
-                }
-            }
-        }
+        self.start_balance();
+        let (state, buffers) = (&*self.state, &self.scratch.implicit);
         let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
         norm(&buffers.residual) / applied.max(f64::MIN_POSITIVE)
     }

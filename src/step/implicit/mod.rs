@@ -24,8 +24,8 @@ const CUT: f64 = 0.3;
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
-/// Time for which inertia counts in a static stage over the step: a static step starts from rest, and inertia only
-/// keeps loose blocks in hand.
+/// Least time for which inertia counts in a static stage, over the step: a static step starts from rest, and inertia
+/// only keeps loose blocks in hand.
 const STATIC_STRETCH: f64 = 10.0;
 
 /// Sizes the buffers; the matrix gets its pattern in the next step.
@@ -67,15 +67,29 @@ struct Inertia {
     rests: bool,
 }
 
-impl Inertia {
-    fn of(implicit: &Implicit, regime: Regime, dt: f64) -> Self {
-        match (regime, implicit.rule) {
-            (Regime::Static { .. }, _) => {
-                Self { dt, factor: 2.0 / (STATIC_STRETCH * dt).powi(2), end: 1.0, rests: true }
-            }
-            (Regime::Dynamic { .. }, Rule::Constant) => Self { dt, factor: 2.0 / (dt * dt), end: 1.0, rests: false },
-            (Regime::Dynamic { .. }, Rule::Trapezoidal) => Self { dt, factor: 4.0 / (dt * dt), end: 0.5, rests: false },
+impl Step<'_> {
+    fn inertia(&self, implicit: &Implicit, dt: f64) -> Inertia {
+        let (factor, end, rests) = match (self.regime, implicit.rule) {
+            (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
+            (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
+            (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
+        };
+        Inertia { dt, factor, end, rests }
+    }
+
+    /// Inertia over displacement (1/s²) of a static sub-step (Eq. I6): the square of the frequency that the displacement
+    /// of the stage suggests, so that a step takes half of what is left; never more than that of ten steps from rest.
+    fn static_inertia(&self, dt: f64) -> f64 {
+        let (mut work, mut inertia) = (0.0, 0.0);
+        let state = &*self.state;
+        for i in 0..state.displacement.len() {
+            let moved = state.displacement[i] - state.stage_displacement[i];
+            work += state.stage_force[i].dot(&moved);
+            inertia += self.slope.metric.mass[i] * moved.norm_squared();
         }
+        let most = 2.0 / (STATIC_STRETCH * dt).powi(2);
+        let square = self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE);
+        if square > 0.0 { most.min(square * (self.slope.dt / dt).powi(2)) } else { most }
     }
 }
 
@@ -88,7 +102,7 @@ impl Step<'_> {
             let report = self.implicit_begin(implicit, part);
             first.get_or_insert(report);
             self.report = false;
-            let inertia = Inertia::of(implicit, self.regime, part);
+            let inertia = self.inertia(implicit, part);
             let settled = self.implicit_open_close(implicit, &inertia);
             if !settled && cuts < CUTS_MAX {
                 self.state.counters.halved += 1;
@@ -116,10 +130,16 @@ impl Step<'_> {
         self.implicit_contacts(dt);
         let clock = Instant::now();
         self.implicit_places();
-        self.implicit_loads(implicit, dt);
+        let first = self.state.stage_step == 0 && self.state.part == 0.0 && self.time == self.state.stage_start;
+        let loaded_at_once = first && self.regime == Regime::Static { ramp: 0.0 };
+        self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
         self.implicit_internal();
         let buffers = &mut self.scratch.implicit;
         buffers.internal_before.copy_from_slice(&buffers.internal);
+        if loaded_at_once {
+            self.start_balance();
+            self.state.stage_force.copy_from_slice(&self.scratch.implicit.residual);
+        }
         let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
         if trapezoidal && self.state.acceleration.is_empty() {
             self.implicit_start_acceleration();
@@ -150,8 +170,7 @@ impl Step<'_> {
     }
 
     /// Forces of loads and gravity at the end of the sub-step, and at its start where they are needed.
-    fn implicit_loads(&mut self, implicit: &Implicit, dt: f64) {
-        let before = self.report || implicit.rule == Rule::Trapezoidal;
+    fn implicit_loads(&mut self, before: bool, dt: f64) {
         let Scratch { implicit: buffers, .. } = &mut *self.scratch;
         for (wanted, force, time) in [
             (true, &mut buffers.applied, self.time + dt),

@@ -36,25 +36,15 @@ pub fn stop(slope: &Slope, state: &mut State) {
 impl Step<'_> {
     /// M·a = forces at the start of the sub-step, solved for a.
     pub(super) fn implicit_start_acceleration(&mut self) {
-        self.push_bearing();
+        self.start_balance();
         let buffers = &mut self.scratch.implicit;
-        for i in 0..buffers.residual.len() {
-            buffers.residual[i] += buffers.applied_before[i] + buffers.internal_before[i];
-            for axis in 0..2 {
-                if buffers.held[2 * i + axis] {
-                    buffers.residual[i][axis] = 0.0;
-                }
-            }
-        }
         buffers.matrix.zero();
         self.add_elements(1.0, 0.0);
         if self.finish_matrix().is_err() {
             self.singular = true;
         }
         self.solve();
-        let buffers = &mut self.scratch.implicit;
-        self.state.acceleration.clone_from(&buffers.moved);
-        buffers.moved.fill(Vector::zeros());
+        self.state.acceleration.extend(self.scratch.implicit.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
     }
 
     /// Damps the velocities of the state relative to the rigid motion of every block by exp(−2ξπ·cs/√A·dt) (Eq. 11);
