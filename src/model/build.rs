@@ -310,6 +310,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         plastic: Vec::new(),
         columns: Vec::new(),
         acceleration: Vec::new(),
+        static_stretch: 0.0,
         events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
         ledger: Default::default(),
         counters: Default::default(),

@@ -71,6 +71,8 @@ pub struct State {
     pub columns: Vec<ColumnState>,
     /// Acceleration of each physical cover (m/s²) at the end of the last implicit step; empty in explicit runs.
     pub acceleration: Vec<Vector>,
+    /// Implicit: time for which inertia counts in the next static sub-step, over its length; 0 before the first.
+    pub static_stretch: f64,
     /// What happened.
     pub events: Events,
     /// Energy ledger.
@@ -102,6 +104,7 @@ impl State {
         self.columns.clone_from(&other.columns);
         self.acceleration.clone_from(&other.acceleration);
         self.drive.copy_from(&other.drive);
+        self.static_stretch = other.static_stretch;
         self.events.copy_from(&other.events);
     }
 }

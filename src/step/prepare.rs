@@ -70,6 +70,7 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
         }
     }
     state.acceleration.clear();
+    state.static_stretch = 0.0;
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;

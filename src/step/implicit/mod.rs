@@ -24,9 +24,9 @@ const CUT: f64 = 0.3;
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
-/// Least time for which inertia counts in a static stage, over the step: a static step starts from rest, and inertia
-/// only keeps loose blocks in hand.
-const STATIC_STRETCH: f64 = 10.0;
+/// First and longest time for which inertia counts in a static sub-step, over its length: it starts from rest, and
+/// inertia only keeps loose blocks in hand.
+const STRETCH: [f64; 2] = [1.0, 3.0];
 
 /// Sizes the buffers; the matrix gets its pattern in the next step.
 pub(super) fn prepare(slope: &Slope, metric: &Metric, scratch: &mut crate::state::ImplicitScratch) {
@@ -68,7 +68,7 @@ struct Inertia {
 }
 
 impl Step<'_> {
-    fn inertia(&self, implicit: &Implicit, dt: f64) -> Inertia {
+    fn inertia(&mut self, implicit: &Implicit, dt: f64) -> Inertia {
         let (factor, end, rests) = match (self.regime, implicit.rule) {
             (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
             (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
@@ -77,19 +77,12 @@ impl Step<'_> {
         Inertia { dt, factor, end, rests }
     }
 
-    /// Inertia over displacement (1/s²) of a static sub-step (Eq. I6): the square of the frequency that the displacement
-    /// of the stage suggests, so that a step takes half of what is left; never more than that of ten steps from rest.
-    fn static_inertia(&self, dt: f64) -> f64 {
-        let (mut work, mut inertia) = (0.0, 0.0);
-        let state = &*self.state;
-        for i in 0..state.displacement.len() {
-            let moved = state.displacement[i] - state.stage_displacement[i];
-            work += state.stage_force[i].dot(&moved);
-            inertia += self.slope.metric.mass[i] * moved.norm_squared();
-        }
-        let most = 2.0 / (STATIC_STRETCH * dt).powi(2);
-        let square = self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE);
-        if square > 0.0 { most.min(square * (self.slope.dt / dt).powi(2)) } else { most }
+    /// Inertia over displacement (1/s²) of a static sub-step (Eq. I6): that of a step from rest over a time that grows
+    /// while sub-steps settle easily and is cut when one does not.
+    fn static_inertia(&mut self, dt: f64) -> f64 {
+        let stretch = &mut self.state.static_stretch;
+        *stretch = if *stretch > 0.0 { stretch.min(STRETCH[1]) } else { STRETCH[0] };
+        2.0 / (*stretch * dt).powi(2)
     }
 }
 
@@ -107,7 +100,9 @@ impl Step<'_> {
             if !settled && cuts < CUTS_MAX {
                 self.state.counters.halved += 1;
                 cuts += 1;
-                part *= CUT;
+                if !inertia.rests {
+                    part *= CUT;
+                }
                 continue;
             }
             self.state.counters.unsettled += u64::from(!settled);

@@ -7,12 +7,16 @@ use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::state::{Implicit, Rule};
 
-use super::{Inertia, Step};
+use super::{CUT, Inertia, Step};
 
 /// Forces out of balance over the largest part at which a dynamic sub-step has settled.
 const BALANCED: f64 = 1e-5;
 /// The same of a static one, of which the next takes up what is left.
-const BALANCED_STATIC: f64 = 1e-3;
+const BALANCED_STATIC: f64 = 1e-4;
+/// Forces out of balance with which a static sub-step is taken when its iterations are used up.
+const ENOUGH_STATIC: f64 = 3e-3;
+/// Forces out of balance from which a static sub-step was easy: the next has less inertia.
+const EASY_STATIC: f64 = 1e-3;
 /// Solutions with an old factor for every one with a new one.
 const CORRECTIONS: u32 = 3;
 /// Decrease of the forces out of balance in a correction below which a new factor is worth its price.
@@ -43,7 +47,7 @@ impl Step<'_> {
         self.scratch.implicit.factored.clear();
         let (mut factors, mut solutions, mut last) = (0, 0, f64::INFINITY);
         let tolerance = if inertia.rests { BALANCED_STATIC } else { BALANCED };
-        self.scratch.implicit.cautious = inertia.rests;
+        self.scratch.implicit.cautious = false;
         let mut balance = self.evaluate(inertia);
         self.presume_closed();
         let settled = loop {
@@ -66,7 +70,16 @@ impl Step<'_> {
             balance = self.search_line(inertia);
             solutions += 1;
         };
+        let settled = settled || inertia.rests && balance.residual <= ENOUGH_STATIC * balance.scale;
         self.count_implicit(inertia.dt, solutions);
+        if std::env::var("DBG").is_ok() {
+            eprintln!("t {:.4} dt {:.2e} S {:.2} f {factors} it {solutions} r/s {:.2e} move {:.1e} ok {settled}", self.time, inertia.dt, self.state.static_stretch, balance.residual/balance.scale, self.largest_move());
+        }
+        if inertia.rests {
+            let easy = balance.residual <= EASY_STATIC * balance.scale;
+            let change = if !settled { CUT } else if easy { 1.5 } else { 1.0 };
+            self.state.static_stretch *= change;
+        }
         settled && self.largest_move() <= implicit.displacement_max
     }
 
@@ -118,11 +131,6 @@ impl Step<'_> {
         }
         let changed = self.implicit_judge();
         let [residual, scale] = self.implicit_residual(inertia);
-        if std::env::var("DBG").is_ok() {
-                let n = [ContactState::Open, ContactState::Slip, ContactState::Lock].map(|w| self.count_contacts(w));
-                let ch = self.scratch.contacts.iter().zip(&self.scratch.implicit.factored).filter(|(c,f)| c.history.state != **f).count();
-                eprintln!("t {:.4} dt {:.2e} sh {share:.2} r/s {:.2e} s {scale:.2e} states {n:?} changed {ch} {:?} sw {:.3}", self.time, inertia.dt, residual/scale, [self.state.counters.substeps, self.state.counters.factorisations, self.state.counters.sweeps], self.scratch.seconds.sweep);
-            }
         Balance { changed, residual, scale }
     }
 
