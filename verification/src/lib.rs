@@ -1,6 +1,7 @@
 //! Verification problems with exact answers: each builds its models from its parameters, runs them and sets computed
 //! values beside exact ones. Nothing here knows a number that the formula of the problem does not give.
 
+pub mod comparison;
 mod model;
 mod outcome;
 mod problem;

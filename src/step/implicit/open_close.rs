@@ -13,6 +13,9 @@ use super::{CUT, Inertia, Step};
 const BALANCED: f64 = 1e-5;
 /// The same of a static one, of which the next takes up what is left.
 const BALANCED_STATIC: f64 = 1e-4;
+/// Forces out of balance with which a dynamic sub-step is taken when its iterations are used up: what is left goes into
+/// the next.
+const ENOUGH: f64 = 1e-3;
 /// Forces out of balance with which a static sub-step is taken when its iterations are used up.
 const ENOUGH_STATIC: f64 = 3e-3;
 /// Forces out of balance from which a static sub-step was easy: the next has less inertia.
@@ -70,11 +73,9 @@ impl Step<'_> {
             balance = self.search_line(inertia);
             solutions += 1;
         };
-        let settled = settled || inertia.rests && balance.residual <= ENOUGH_STATIC * balance.scale;
+        let enough = if inertia.rests { ENOUGH_STATIC } else { ENOUGH };
+        let settled = settled || balance.residual <= enough * balance.scale;
         self.count_implicit(inertia.dt, solutions);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("t {:.4} dt {:.2e} S {:.2} f {factors} it {solutions} r/s {:.2e} move {:.1e} ok {settled}", self.time, inertia.dt, self.state.static_stretch, balance.residual/balance.scale, self.largest_move());
-        }
         if inertia.rests {
             let easy = balance.residual <= EASY_STATIC * balance.scale;
             let change = if !settled { CUT } else if easy { 1.5 } else { 1.0 };
