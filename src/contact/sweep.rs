@@ -224,7 +224,7 @@ impl OpenClose<'_> {
 
 impl VertexEdge {
     /// Clamps the forces that the springs ask for to what the joint can carry.
-    fn decide(&mut self, normal: f64, shear: f64) {
+    pub fn decide(&mut self, normal: f64, shear: f64) {
         let history = &mut self.history;
         self.torn = normal < -self.limits.tension;
         if self.torn || (normal <= 0.0 && self.limits.tension == 0.0) {

@@ -137,6 +137,11 @@ impl Deformation {
         [p[0] * c - p[1] * s, p[2] * s + p[3] * c, p[0] * s + p[1] * c]
     }
 
+    /// A vector of the reference turned with the element: R·v.
+    pub fn turn_vector(&self, v: Vector) -> Vector {
+        Vector::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
+    }
+
     /// Rotation (rad), counter-clockwise.
     pub fn rotation(&self) -> f64 {
         self.sin.atan2(self.cos)

@@ -2,6 +2,8 @@
 //! Knows nothing of contact or files.
 
 mod column;
+mod consistent;
+mod cover_matrix;
 mod elasticity;
 mod internal;
 mod load;
@@ -12,6 +14,8 @@ pub mod pressure;
 mod record;
 
 pub use column::{Column, ColumnDrive, ColumnPlace, ColumnState, Foot};
+pub use consistent::{PAIRS, element_mass, push_mass, stiffness_block};
+pub use cover_matrix::{CoverMatrix, NotPositive, UNCOUPLED};
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};

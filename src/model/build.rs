@@ -2,6 +2,7 @@
 
 mod bolts;
 mod geometry;
+mod implicit;
 mod place;
 mod ports;
 mod quiet;
@@ -62,7 +63,9 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
+    implicit::know(case)?;
     let slope = Slope {
+        implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
@@ -117,8 +120,14 @@ fn stiffest(rocks: &[Elasticity]) -> f64 {
 
 /// The internal step: an integer fraction of a tenth of the communication step, within the stability limit.
 fn internal_step(case: &Case, critical: f64) -> f64 {
-    let limit = (case.solver.dt_safety * critical).min(case.solver.dt_max.unwrap_or(f64::INFINITY));
-    let tenth = case.solver.communication_step.map_or_else(|| two_digits_below(limit), |step| step / 10.0);
+    let solver = &case.solver;
+    let stable = match solver.integrator {
+        case::Integrator::Explicit => solver.dt_safety * critical,
+        case::Integrator::Implicit => solver.implicit_step.unwrap_or(implicit::STEPS * solver.dt_safety * critical),
+    };
+    let limit = stable.min(solver.dt_max.unwrap_or(f64::INFINITY));
+    let rounded = || if limit == solver.implicit_step.unwrap_or(0.0) { limit } else { two_digits_below(limit) };
+    let tenth = solver.communication_step.map_or_else(rounded, |step| step / 10.0);
     tenth / (tenth / limit - 1e-9).ceil().max(1.0)
 }
 
@@ -325,6 +334,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         plastic: rock::plastic(slope),
         columns: slope.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
         acceleration: Vec::new(),
+        static_stretch: 0.0,
         events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
         ledger: Default::default(),
         counters: Default::default(),

@@ -2,12 +2,14 @@
 
 mod element;
 mod events;
+mod implicit;
 mod inputs;
 mod ledger;
 mod scratch;
 mod slope;
 
 pub use events::{Event, EventKind, Events};
+pub use implicit::{Implicit, ImplicitScratch, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use scratch::{Scratch, Seconds};
@@ -36,11 +38,13 @@ pub struct State {
     pub step: u64,
     /// Part of the next internal step that is done already (s); 0 on the grid of internal steps.
     pub part: f64,
-    /// Part of an internal step by which the last kick was shifted: the last sub-step (s).
+    /// Part of an internal step by which the last kick was shifted: the last sub-step (s); 0 after an implicit step,
+    /// whose velocities are those of its end.
     pub dt_last: f64,
     /// Displacement of each physical cover (m).
     pub displacement: Vec<Vector>,
-    /// Velocity of each physical cover half a step ago (m/s).
+    /// Velocity of each physical cover half a step ago (m/s). Implicit: that of the end of the last step, and in a static
+    /// stage, where every step starts from rest, the mean of the last step.
     pub velocity: Vec<Vector>,
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,
@@ -72,6 +76,8 @@ pub struct State {
     pub columns: Vec<ColumnState>,
     /// Acceleration of each physical cover (m/s²) at the end of the last implicit step; empty in explicit runs.
     pub acceleration: Vec<Vector>,
+    /// Implicit: time for which inertia counts in the next static sub-step, over its length; 0 before the first.
+    pub static_stretch: f64,
     /// What happened.
     pub events: Events,
     /// Energy ledger.
@@ -104,6 +110,7 @@ impl State {
         self.columns.clone_from(&other.columns);
         self.acceleration.clone_from(&other.acceleration);
         self.drive.copy_from(&other.drive);
+        self.static_stretch = other.static_stretch;
         self.events.copy_from(&other.events);
     }
 }
@@ -135,4 +142,6 @@ pub struct Counters {
     pub searches: u64,
     /// Contacts judged, summed over sub-steps and sweeps.
     pub judged: u64,
+    /// Implicit: numeric factorisations.
+    pub factorisations: u64,
 }

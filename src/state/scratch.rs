@@ -4,6 +4,8 @@ use crate::contact::{BlockPush, BoltRow, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
+use super::ImplicitScratch;
+
 /// Buffers, sized at the first step and reused.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
@@ -43,6 +45,8 @@ pub struct Scratch {
     pub yielded: Vec<f64>,
     /// Whether each block touches another.
     pub touching: Vec<bool>,
+    /// Buffers of the implicit integrator.
+    pub implicit: ImplicitScratch,
     /// Largest speed of a cover (m/s).
     pub speed_max: f64,
     /// Whether the step keeps to the calling thread; the bits are the same.

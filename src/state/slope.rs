@@ -5,6 +5,8 @@ use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, PreStress, Record, StressField};
 
+use super::Implicit;
+
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Fixity {
@@ -175,6 +177,8 @@ pub struct Slope {
     pub tolerance: f64,
     /// Most sweeps of the open–close iteration.
     pub sweeps_max: u32,
+    /// What the implicit integrator needs; none for the explicit one.
+    pub implicit: Option<Implicit>,
     /// Penetration (m) at which the run fails.
     pub penetration_limit: f64,
     /// Displacement (m) beyond which a block counts as failed.

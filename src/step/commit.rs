@@ -151,7 +151,7 @@ impl Step<'_> {
     }
 
     /// Histories of this sub-step's contacts and supports.
-    fn record_contacts(&mut self, dt: f64) {
+    pub(super) fn record_contacts(&mut self, dt: f64) {
         let (state, scratch) = (&mut *self.state, &*self.scratch);
         let fade = (-dt / OFFSET_FADE).exp();
         state.contacts.clear();

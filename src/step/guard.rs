@@ -10,6 +10,9 @@ pub enum Failure {
     /// A velocity is not a number.
     #[error("the velocity is not finite")]
     NotFinite,
+    /// The matrix of an implicit step is not positive definite.
+    #[error("the matrix of the implicit step is not positive definite (take a smaller solver.implicit_step)")]
+    Singular,
     /// A velocity exceeds the wave speed of the rock.
     #[error("the speed {speed:.3e} m/s exceeds the wave speed {limit:.3e} m/s of the rock (runaway)")]
     Runaway {
@@ -46,6 +49,10 @@ impl Step<'_> {
     /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
     pub(super) fn guard(&self) -> Result<(), StepError> {
         let slope = self.slope;
+        if self.singular {
+            let (place, failure) = (slope.covers.star_position[0], Failure::Singular);
+            return Err(StepError { block: 0, place, time: self.time, failure });
+        }
         let limit = slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max);
         let square = limit * limit;
         if let Some(i) =

@@ -5,6 +5,7 @@ mod blocks;
 mod commit;
 mod events;
 mod guard;
+mod implicit;
 mod prepare;
 mod quiet;
 mod report;
@@ -98,7 +99,10 @@ pub fn outlook(slope: &Slope, regime: Regime, mut state: State, scratch: &Scratc
     let rest = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     step.report = true;
-    step.interval(rest, 0)
+    match &slope.implicit {
+        Some(implicit) => step.implicit_outlook(implicit, rest),
+        None => step.interval(rest, 0),
+    }
 }
 
 /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
@@ -106,10 +110,14 @@ pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch)
     let (mut state, mut scratch) = (state.clone(), scratch.clone());
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
+    if slope.implicit.is_some() {
+        step.implicit_contacts(dt);
+        return scratch.contacts;
+    }
     step.search();
     step.yield_rock();
     step.predict(dt);
-    step.entrance(dt);
+    step.entrance(step.reach(dt), step.state.dt_last);
     scratch.contacts
 }
 
@@ -133,22 +141,29 @@ struct Step<'a> {
     time: f64,
     report: bool,
     damping: Damping,
+    /// Whether the matrix of an implicit step was not positive definite however short the sub-step.
+    singular: bool,
 }
 
 impl<'a> Step<'a> {
     fn new(slope: &'a Slope, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
         let time = state.stage_start + state.stage_step as f64 * slope.dt + state.part;
-        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0) }
+        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0), singular: false }
     }
 }
 
 impl Step<'_> {
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
     fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
+        let slope = self.slope;
+        if let Some(implicit) = &slope.implicit {
+            return self.implicit_interval(implicit, dt);
+        }
         self.search();
         self.yield_rock();
         self.predict(dt);
-        self.entrance(dt);
+        self.entrance(self.reach(dt), self.state.dt_last);
+        self.answer(dt);
         let swept = self.open_close(dt);
         if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
             self.state.counters.halved += 1;
@@ -249,12 +264,17 @@ impl Step<'_> {
         }
     }
 
-    /// Contacts that take part in this step, with geometry and approach velocities.
-    fn entrance(&mut self, dt: f64) {
+    /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
+    fn reach(&self, dt: f64) -> f64 {
+        REACH * self.slope.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
+    }
+
+    /// Contacts that take part in this step, with geometry and approach velocities: those nearer than `reach` (m);
+    /// covers have moved for `dt_last` (s) with the velocities of the state.
+    fn entrance(&mut self, reach: f64, dt_last: f64) {
         let clock = Instant::now();
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
-        let (is_dynamic, kick) = (matches!(self.regime, Regime::Dynamic { .. }), 0.5 * (state.dt_last + dt));
         let narrow = Narrow {
             boundary: &slope.boundary,
             place: &scratch.place,
@@ -267,10 +287,10 @@ impl Step<'_> {
             strength: state.drive.strength_factor(state.drive.share(self.time)),
             default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
             velocity: &state.velocity,
-            dt_last: state.dt_last,
+            dt_last,
             history: &state.contacts,
             size,
-            reach: REACH * size + 8.0 * dt * scratch.speed_max,
+            reach,
             theta: slope.theta,
             behind: &state.near.behind,
             first: state.step == 0,
@@ -278,6 +298,14 @@ impl Step<'_> {
         };
         scratch.contacts.clear();
         contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
+        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// How contacts, supports and bolts answer in a step of `dt` (s).
+    fn answer(&mut self, dt: f64) {
+        let clock = Instant::now();
+        let (state, scratch) = (&*self.state, &mut *self.scratch);
+        let (is_dynamic, kick) = (matches!(self.regime, Regime::Dynamic { .. }), 0.5 * (state.dt_last + dt));
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
             let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);

@@ -4,7 +4,7 @@ use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
 use crate::state::{Scratch, Slope, State};
 
-use super::{Regime, applied, quiet};
+use super::{Regime, applied, implicit, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
@@ -27,6 +27,7 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
+    implicit::prepare(slope, &scratch.metric, &mut scratch.implicit);
 }
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
@@ -63,11 +64,17 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.
 ///
 /// Velocities count as those of the start itself when they are `at_rest`, so that a sudden change of strength acts for
-/// half a step only in the first kick; otherwise the leapfrog goes on.
+/// half a step only in the first kick; otherwise the leapfrog goes on. An implicit stage after a static one begins
+/// from rest.
 pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
     if at_rest {
         state.dt_last = 0.0;
+        if slope.implicit.is_some() && stage > 0 {
+            implicit::stop(slope, state);
+        }
     }
+    state.acceleration.clear();
+    state.static_stretch = 0.0;
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;

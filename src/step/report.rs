@@ -6,8 +6,7 @@ use crate::mechanics::{self, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
 
 use super::blocks::resting;
-
-use super::quiet;
+use super::{implicit, quiet};
 
 /// A step as seen from outside; energies hold at the step's start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,6 +31,9 @@ pub struct StepReport {
 
 /// Kinetic energy (J/m) of all blocks that can move.
 pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], velocity: &[Vector]) -> f64 {
+    if let Some(implicit) = &slope.implicit {
+        return implicit::kinetic_energy(slope, implicit, metric, velocity);
+    }
     (0..slope.covers.block_count())
         .filter(|&b| !metric.fixed[b])
         .map(|b| mechanics::kinetic_energy(&resting(slope, metric, displacement, velocity, b)))

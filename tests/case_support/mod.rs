@@ -232,6 +232,9 @@ contact_theta = 4.0
 contact_tolerance = 0.01
 sweeps_max = 12
 penetration_limit = 0.5
+implicit_step = 0.01
+iterations_max = 8
+displacement_ratio = 0.01
 failure_displacement = 0.1
 memory_limit = 1000000000
 

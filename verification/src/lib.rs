@@ -3,8 +3,9 @@
 
 //!
 //! [`choose`] makes jobs from what a user asks for, [`solve_all`] solves them, [`Record`] is what came out as data,
-//! [`report`] writes the manual from it.
+//! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side.
 
+pub mod comparison;
 mod model;
 mod outcome;
 pub mod plot;

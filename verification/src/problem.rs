@@ -45,6 +45,11 @@ impl Values {
         Self(problem.parameters.iter().map(|p| (p.name, p.default)).collect())
     }
 
+    /// No values: of models that have no parameters.
+    pub fn none() -> Self {
+        Self(Vec::new())
+    }
+
     /// The value of a parameter.
     ///
     /// # Panics

@@ -320,6 +320,10 @@ fn solver(key: &Key, solver: &Solver) -> Check {
     number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
     whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "100 is the default")?;
     number(key, "penetration_limit", solver.penetration_limit, share, "", "0.2 is the default")?;
+    let hint = "leave it out for 20 explicit steps";
+    optional(key, "implicit_step", solver.implicit_step, time, "s", hint)?;
+    whole(key, "iterations_max", u64::from(solver.iterations_max), ONE_TO_THOUSAND, "8 is the default")?;
+    number(key, "displacement_ratio", solver.displacement_ratio, share, "", "0.01 is the default")?;
     let length = Range::above(0.0).to(COORDINATE_MAX);
     let hint = "leave it out for the mesh size";
     optional(key, "failure_displacement", solver.failure_displacement, length, "m", hint)?;

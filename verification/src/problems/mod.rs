@@ -4,11 +4,15 @@ mod a1;
 mod a2;
 mod a3;
 mod a4;
+mod b1;
+mod b2;
+mod b3;
 mod b4;
 mod b5;
 mod b6;
 mod b7;
 mod b8;
+mod beam;
 mod block;
 mod c1;
 mod c10;
@@ -30,6 +34,8 @@ mod d4;
 mod d5;
 mod d6;
 mod dice;
+mod e1;
+mod e2;
 mod incline;
 mod newmark;
 mod plane;
@@ -39,6 +45,8 @@ mod slider;
 mod strip;
 mod toppling;
 
+pub(crate) use beam::{Beam, Plane};
+
 use crate::Problem;
 
 /// Every problem.
@@ -47,6 +55,9 @@ pub const ALL: &[Problem] = &[
     a2::PROBLEM,
     a3::PROBLEM,
     a4::PROBLEM,
+    b1::PROBLEM,
+    b2::PROBLEM,
+    b3::PROBLEM,
     b4::PROBLEM,
     b5::PROBLEM,
     b6::PROBLEM,
@@ -70,4 +81,6 @@ pub const ALL: &[Problem] = &[
     d4::PROBLEM,
     d5::PROBLEM,
     d6::PROBLEM,
+    e1::PROBLEM,
+    e2::PROBLEM,
 ];

@@ -1,0 +1,168 @@
+//! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
+
+use crate::contact::{ContactState, VertexEdge};
+use crate::geometry::Vector;
+use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_block};
+
+use super::{Inertia, Step};
+
+impl Step<'_> {
+    /// The pattern, when the near pairs are new, and the places of this sub-step's contacts in it.
+    ///
+    /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
+    pub(super) fn implicit_places(&mut self) {
+        if self.scratch.implicit.matrix.is_empty() {
+            self.set_pattern();
+        }
+        let scratch = &mut *self.scratch;
+        let buffers = &mut scratch.implicit;
+        let matrix = &buffers.matrix;
+        buffers.contact_places.clear();
+        buffers.contact_places.extend(scratch.contacts.iter().map(|contact| {
+            let ids = six(contact);
+            std::array::from_fn(|k| {
+                let (row, column) = (ids[k / 6], ids[k % 6]);
+                if row < column { UNCOUPLED } else { matrix.place(row, column) }
+            })
+        }));
+    }
+
+    fn set_pattern(&mut self) {
+        let covers = &self.slope.covers;
+        let boundary = &self.slope.boundary;
+        let buffers = &mut self.scratch.implicit;
+        let free = |i: u32| !(buffers.held[2 * i as usize] && buffers.held[2 * i as usize + 1]);
+        let pairs = &mut buffers.pairs;
+        pairs.clear();
+        let mut couple = |a: u32, b: u32| {
+            if a != b && free(a) && free(b) {
+                pairs.push([a.min(b), a.max(b)]);
+            }
+        };
+        for ids in &covers.element_covers {
+            PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
+        }
+        for near in &self.state.near.candidates {
+            let node = boundary.covers[boundary.node_point[near.node as usize] as usize];
+            for a in node {
+                boundary.covers[near.edge as usize].iter().for_each(|&b| couple(a, b));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        buffers.matrix.set_pattern(covers.cover_count(), pairs);
+        let matrix = &buffers.matrix;
+        buffers.element_places.clear();
+        buffers.element_places.extend(covers.element_covers.iter().map(|ids| {
+            PAIRS.map(|[a, b]| matrix.place(ids[a].max(ids[b]), ids[a].min(ids[b])))
+        }));
+    }
+
+    /// Assembles the matrix at the places reached and the contacts as they are judged, and factorises it.
+    pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
+        self.scratch.implicit.matrix.zero();
+        self.add_elements(inertia.factor, 1.0);
+        self.add_contacts();
+        self.add_supports();
+        self.finish_matrix()
+    }
+
+    /// Holds what is held and factorises.
+    pub(super) fn finish_matrix(&mut self) -> Result<(), NotPositive> {
+        let buffers = &mut self.scratch.implicit;
+        if buffers.any_held {
+            buffers.matrix.hold(&buffers.held);
+        }
+        self.state.counters.factorisations += 1;
+        buffers.matrix.factorise()
+    }
+
+    /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. I3).
+    pub(super) fn add_elements(&mut self, mass: f64, stiffness: f64) {
+        let (slope, state) = (self.slope, &*self.state);
+        let (covers, buffers) = (&slope.covers, &mut self.scratch.implicit);
+        let Some(implicit) = &slope.implicit else { return };
+        for (e, places) in buffers.element_places.iter().enumerate() {
+            let ids = covers.element_covers[e];
+            let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
+            let rock = &slope.rocks[slope.element_rock[e] as usize];
+            let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
+            let deformation = Deformation::new(u, gradients);
+            let turned = gradients.map(|g| deformation.turn_vector(g));
+            let area = covers.element_area[e] * stiffness;
+            for (k, [a, b]) in PAIRS.into_iter().enumerate() {
+                let (row, column) = if ids[a] >= ids[b] { (a, b) } else { (b, a) };
+                let mut block = stiffness_block(area, rock, turned[row], turned[column]);
+                block[0] += mass * implicit.element_mass[e][k];
+                block[3] += mass * implicit.element_mass[e][k];
+                buffers.matrix.add(places[k], ids[column], block, a == b);
+            }
+        }
+    }
+
+    /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
+    fn add_contacts(&mut self) {
+        let scratch = &mut *self.scratch;
+        let buffers = &mut scratch.implicit;
+        buffers.factored.clear();
+        for (contact, places) in scratch.contacts.iter().zip(&buffers.contact_places) {
+            buffers.factored.push(contact.history.state);
+            let shear = match contact.history.state {
+                ContactState::Open => continue,
+                ContactState::Slip if buffers.cautious => secant(contact, &buffers.moved),
+                ContactState::Slip => 0.0,
+                ContactState::Lock => contact.stiffness[1],
+            };
+            let spring = spring(contact, shear);
+            let ids = six(contact);
+            let weights = six_weights(contact);
+            for (k, &place) in places.iter().enumerate().filter(|(_, place)| **place != UNCOUPLED) {
+                let (a, b) = (k / 6, k % 6);
+                let block = spring.map(|v| v * weights[a] * weights[b]);
+                buffers.matrix.add(place, ids[b], block, ids[a] == ids[b]);
+            }
+        }
+    }
+
+    fn add_supports(&mut self) {
+        let slope = self.slope;
+        let matrix = &mut self.scratch.implicit.matrix;
+        for row in &self.scratch.rows {
+            let support = &slope.supports[row.support as usize];
+            let d = support.direction;
+            let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);
+            for k in 0..9 {
+                let (a, b) = (k / 3, k % 3);
+                let (i, j) = (support.covers[a], support.covers[b]);
+                if i >= j {
+                    let block = spring.map(|v| v * support.weights[a] * support.weights[b]);
+                    matrix.add(matrix.place(i, j), j, block, i == j);
+                }
+            }
+        }
+    }
+}
+
+/// Covers of the node and of the edge.
+fn six(contact: &VertexEdge) -> [u32; 6] {
+    std::array::from_fn(|k| contact.pair.covers[k / 3][k % 3])
+}
+
+/// Their weights, those of the edge negative.
+fn six_weights(contact: &VertexEdge) -> [f64; 6] {
+    std::array::from_fn(|k| contact.pair.weights[k / 3][k % 3] * if k < 3 { 1.0 } else { -1.0 })
+}
+
+/// Shear force over the way that its spring alone would have taken (N/m per m): between no spring, which lets a block
+/// go in one iteration that is held in the next, and the spring of a contact that does not slip.
+fn secant(contact: &VertexEdge, moved: &[Vector]) -> f64 {
+    let asked = (contact.history.shear_stored - contact.stiffness[1] * contact.relative(moved)[1]).abs();
+    contact.stiffness[1] * (contact.history.shear_force.abs() / asked.max(f64::MIN_POSITIVE)).min(1.0)
+}
+
+/// k_n·n⊗n + k_t·t⊗t of a contact, row by row.
+fn spring(contact: &VertexEdge, shear: f64) -> [f64; 4] {
+    let (n, t, normal) = (contact.normal, contact.tangent(), contact.stiffness[0]);
+    let off = normal * n.x * n.y + shear * t.x * t.y;
+    [normal * n.x * n.x + shear * t.x * t.x, off, off, normal * n.y * n.y + shear * t.y * t.y]
+}

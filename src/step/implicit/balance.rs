@@ -1,0 +1,155 @@
+//! Forces out of balance: inertia, elements, contacts and supports at the places reached.
+
+use crate::contact::VertexEdge;
+use crate::geometry::Vector;
+use crate::mechanics::{self, Deformation, push_mass};
+
+use super::{Inertia, Step};
+
+impl Step<'_> {
+    /// Internal forces at the places reached (Eq. 7).
+    pub(super) fn implicit_internal(&mut self) {
+        let (slope, state) = (self.slope, &*self.state);
+        let (covers, buffers) = (&slope.covers, &mut self.scratch.implicit);
+        buffers.internal.fill(Vector::zeros());
+        for e in 0..covers.element_count() {
+            let ids = covers.element_covers[e];
+            let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
+            let rock = &slope.rocks[slope.element_rock[e] as usize];
+            let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
+            let deformation = Deformation::new(u, gradients);
+            let forces = deformation.forces(gradients, covers.element_area[e], rock, &slope.pre_stress_of(e));
+            for (i, f) in ids.into_iter().zip(forces) {
+                buffers.internal[i as usize] += f;
+            }
+        }
+    }
+
+    /// Judges all contacts at the places reached; returns whether one is not as the factor holds it.
+    pub(super) fn implicit_judge(&mut self) -> bool {
+        let scratch = &mut *self.scratch;
+        let buffers = &scratch.implicit;
+        let mut changed = buffers.factored.len() != scratch.contacts.len();
+        for (k, contact) in scratch.contacts.iter_mut().enumerate() {
+            judge(contact, &buffers.moved);
+            changed |= buffers.factored.get(k) != Some(&contact.history.state);
+        }
+        self.bear();
+        changed
+    }
+
+    /// Forces of all contacts at the places reached, friction under the pressure kept in `pressing`.
+    pub(super) fn implicit_probe(&mut self) {
+        let scratch = &mut *self.scratch;
+        let buffers = &scratch.implicit;
+        for (contact, pressing) in scratch.contacts.iter_mut().zip(&buffers.pressing) {
+            judge_under(contact, &buffers.moved, *pressing);
+        }
+        self.bear();
+    }
+
+    /// Forces of all supports at the places reached.
+    fn bear(&mut self) {
+        let scratch = &mut *self.scratch;
+        for row in &mut scratch.rows {
+            let support = &self.slope.supports[row.support as usize];
+            let moved = support.sample(&scratch.implicit.moved);
+            row.force = support.preload - support.stiffness * (row.displacement + moved);
+        }
+    }
+
+    /// Forces out of balance (Eq. I1) at the places reached; returns their norm and the norm of the largest part.
+    pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
+        let slope = self.slope;
+        self.push_bearing();
+        let buffers = &mut self.scratch.implicit;
+        let mut scale = norm(&buffers.residual).max(norm(&buffers.applied));
+        for (i, acceleration) in buffers.field.iter_mut().enumerate() {
+            *acceleration = buffers.moved[i] * -inertia.factor - buffers.offset[i];
+        }
+        let bearing_and_rest = buffers.applied.iter().zip(&buffers.internal);
+        for (sum, (applied, internal)) in buffers.residual.iter_mut().zip(bearing_and_rest) {
+            *sum += applied + internal;
+        }
+        if let Some(implicit) = &slope.implicit {
+            for (mass, ids) in implicit.element_mass.iter().zip(&slope.covers.element_covers) {
+                push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+            }
+            if !inertia.rests {
+                let momentum = buffers.field.iter().zip(&slope.metric.row_sum).map(|(a, m)| (a * *m).norm_squared());
+                scale = scale.max(momentum.sum::<f64>().sqrt());
+            }
+        }
+        self.drop_held();
+        let buffers = &self.scratch.implicit;
+        [norm(&buffers.residual), scale]
+    }
+
+    /// Forces out of balance at the start of the sub-step, by the contact forces of the last one; into the residual.
+    pub(super) fn start_balance(&mut self) {
+        self.push_bearing();
+        let buffers = &mut self.scratch.implicit;
+        let others = buffers.applied_before.iter().zip(&buffers.internal_before);
+        buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
+        self.drop_held();
+    }
+
+    /// Takes what acts on held rows out of the residual.
+    fn drop_held(&mut self) {
+        let buffers = &mut self.scratch.implicit;
+        if !buffers.any_held {
+            return;
+        }
+        for (force, held) in buffers.residual.iter_mut().zip(buffers.held.chunks_exact(2)) {
+            for axis in (0..2).filter(|&axis| held[axis]) {
+                force[axis] = 0.0;
+            }
+        }
+    }
+
+    /// Forces of contacts and supports on the covers, into the residual.
+    pub(super) fn push_bearing(&mut self) {
+        let scratch = &mut *self.scratch;
+        let residual = &mut scratch.implicit.residual;
+        residual.fill(Vector::zeros());
+        for contact in &scratch.contacts {
+            if contact.history.normal_force == 0.0 && contact.history.shear_force == 0.0 {
+                continue;
+            }
+            let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
+            mechanics::spread(&contact.pair.covers[0], &contact.pair.weights[0], force, residual);
+            mechanics::spread(&contact.pair.covers[1], &contact.pair.weights[1], -force, residual);
+        }
+        for row in &scratch.rows {
+            let support = &self.slope.supports[row.support as usize];
+            mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
+        }
+    }
+}
+
+/// Forces and state of a contact after displacements of its covers (Eq. I4): the springs at the places reached, within
+/// what the joint can carry.
+fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
+    let [normal, shear] = springs(contact, moved);
+    contact.decide(normal, shear);
+}
+
+/// The same with the shear limit of an earlier normal force.
+fn judge_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
+    let [normal, shear] = springs(contact, moved);
+    let limit = contact.limits.shear(pressing);
+    contact.decide(normal, shear);
+    contact.history.shear_force = shear.clamp(-limit, limit);
+}
+
+/// Normal and shear force (N/m) that the springs of a contact ask for.
+fn springs(contact: &VertexEdge, moved: &[Vector]) -> [f64; 2] {
+    let [opened, sheared] = contact.relative(moved);
+    let shear = contact.history.shear_stored - contact.stiffness[1] * sheared;
+    [-contact.stiffness[0] * (contact.gap + opened), shear]
+}
+
+/// Euclidean norm of a cover field.
+pub(super) fn norm(field: &[Vector]) -> f64 {
+    field.iter().map(|f| f.norm_squared()).sum::<f64>().sqrt()
+}

@@ -1,0 +1,140 @@
+//! The end of a sub-step: velocities, places, histories, ledger; and the report of its start.
+
+use std::time::Instant;
+
+use crate::contact::ContactState;
+use crate::state::{Implicit, Ledger, Rule};
+
+use super::super::report::{potential, stored, strain};
+use super::balance::norm;
+use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
+
+impl Step<'_> {
+    /// Ends a sub-step with the forces and places that the iteration left.
+    pub(super) fn implicit_commit(&mut self, inertia: &Inertia) {
+        let slope = self.slope;
+        let Some(implicit) = &slope.implicit else { return };
+        let clock = Instant::now();
+        let mut works = self.implicit_works(implicit, inertia);
+        let scratch = &mut *self.scratch;
+        for (mean, moved) in scratch.predicted.iter_mut().zip(&scratch.implicit.moved) {
+            *mean = moved / inertia.dt;
+        }
+        self.record_contacts(inertia.dt);
+        self.move_covers(implicit, inertia);
+        if let Regime::Dynamic { damping } = self.regime {
+            works.damping += self.implicit_damp(implicit, damping, inertia);
+        }
+        self.state.ledger.add_works(&works, 1.0);
+        self.state.dt_last = 0.0;
+        self.time += inertia.dt;
+        self.scratch.seconds.commit += clock.elapsed().as_secs_f64();
+    }
+
+    /// Places, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. I1).
+    fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
+        let (state, scratch) = (&mut *self.state, &*self.scratch);
+        let buffers = &scratch.implicit;
+        for i in 0..buffers.moved.len() {
+            state.displacement[i] += buffers.moved[i];
+            let mean = scratch.predicted[i];
+            let velocity = if inertia.rests { mean } else { mean * 2.0 - state.velocity[i] };
+            for axis in 0..2 {
+                state.velocity[i][axis] = if buffers.held[2 * i + axis] { 0.0 } else { velocity[axis] };
+            }
+        }
+        if implicit.rule == Rule::Trapezoidal && !inertia.rests {
+            let accelerations = buffers.moved.iter().zip(&buffers.offset).map(|(u, w)| u * inertia.factor + w);
+            state.acceleration.clear();
+            state.acceleration.extend(accelerations);
+        }
+    }
+
+    /// Works of this sub-step (Eq. I5): every force by what its point has moved, the forces of the end by their share.
+    fn implicit_works(&mut self, implicit: &Implicit, inertia: &Inertia) -> Ledger {
+        let mut works = self.bearing_works(inertia);
+        works.external_work = self.load_work(inertia);
+        let buffers = &self.scratch.implicit;
+        let change = buffers.internal_before.iter().zip(&buffers.internal).zip(&buffers.moved);
+        let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
+        works.damping = (inertia.end - 0.5) * numerical;
+        if inertia.rests {
+            self.scratch.implicit.field.clone_from(&self.scratch.implicit.moved);
+            self.mass_times_field(implicit);
+            let buffers = &self.scratch.implicit;
+            let spent: f64 = buffers.residual.iter().zip(&buffers.moved).map(|(p, u)| p.dot(u)).sum();
+            works.damping += inertia.factor * spent;
+        }
+        works
+    }
+
+    fn bearing_works(&self, inertia: &Inertia) -> Ledger {
+        let scratch = &*self.scratch;
+        let buffers = &scratch.implicit;
+        let mut works = Ledger::default();
+        let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
+        for (contact, before) in scratch.contacts.iter().zip(&buffers.forces_before) {
+            let [opened, sheared] = contact.relative(&buffers.moved);
+            let shear = mean(contact.history.shear_force, before[1]) * sheared;
+            works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
+            if contact.history.state == ContactState::Slip {
+                let (kept, _) = contact.shear_after(sheared);
+                let old = contact.history.shear_stored;
+                works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
+            }
+        }
+        for (row, before) in scratch.rows.iter().zip(&buffers.bearing_before) {
+            let support = &self.slope.supports[row.support as usize];
+            works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
+        }
+        works
+    }
+
+    /// Work of loads, and of gravity beyond what the potential holds.
+    fn load_work(&self, inertia: &Inertia) -> f64 {
+        let (slope, buffers) = (self.slope, &self.scratch.implicit);
+        let mut work = 0.0;
+        for (i, moved) in buffers.moved.iter().enumerate() {
+            let mut force = buffers.applied[i] * inertia.end;
+            if inertia.end < 1.0 {
+                force += buffers.applied_before[i] * (1.0 - inertia.end);
+            }
+            work += (force - slope.gravity * slope.metric.row_sum[i]).dot(moved);
+        }
+        work
+    }
+
+    /// Energies and the unbalanced ratio at the start of this sub-step.
+    pub(super) fn implicit_report(&mut self, dt: f64) -> StepReport {
+        let slope = self.slope;
+        let Some(implicit) = &slope.implicit else { return StepReport::default() };
+        let unbalanced = self.implicit_unbalanced();
+        let (state, scratch) = (&*self.state, &*self.scratch);
+        let mut ledger = state.ledger;
+        ledger.kinetic = kinetic_energy(slope, implicit, &scratch.metric, &state.velocity);
+        if let Regime::Static { .. } = self.regime {
+            ledger.damping -= ledger.kinetic;
+        }
+        ledger.strain = strain(slope, state);
+        ledger.potential = potential(slope, state);
+        ledger.stored = stored(slope, state, scratch);
+        StepReport {
+            time: self.time,
+            dt,
+            ledger,
+            unbalanced,
+            locked: self.count_contacts(ContactState::Lock),
+            slipping: self.count_contacts(ContactState::Slip),
+            penetration_max: scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max),
+            speed_max: scratch.speed_max,
+        }
+    }
+
+    /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
+    fn implicit_unbalanced(&mut self) -> f64 {
+        self.start_balance();
+        let (state, buffers) = (&*self.state, &self.scratch.implicit);
+        let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
+        norm(&buffers.residual) / applied.max(f64::MIN_POSITIVE)
+    }
+}

@@ -1,0 +1,188 @@
+//! One step of the implicit integrator: Newmark's rule, global stiffness and open–close iteration with
+//! refactorisation, on the same covers, contacts and histories as the explicit one.
+
+mod assembly;
+mod balance;
+mod commit;
+mod motion;
+mod open_close;
+
+pub use motion::kinetic_energy;
+pub(super) use motion::stop;
+
+use std::time::Instant;
+
+use crate::geometry::Vector;
+use crate::mechanics::Metric;
+use crate::state::{Implicit, Rule, Scratch, Slope};
+
+use super::{REACH, Regime, Step, StepReport, applied, ramp};
+
+/// Factor on a sub-step that has not settled.
+const CUT: f64 = 0.3;
+/// Most cuts in a row; a sub-step after that is taken as it is, and counted as unsettled.
+const CUTS_MAX: u32 = 5;
+/// Distance of a contact in reach over the way of the fastest cover in a sub-step.
+const REACH_STEPS: f64 = 2.0;
+/// First and longest time for which inertia counts in a static sub-step, over its length: it starts from rest, and
+/// inertia only keeps loose blocks in hand.
+const STRETCH: [f64; 2] = [1.0, 3.0];
+
+/// Sizes the buffers; the matrix gets its pattern in the next step.
+pub(super) fn prepare(slope: &Slope, metric: &Metric, scratch: &mut crate::state::ImplicitScratch) {
+    if slope.implicit.is_none() {
+        return;
+    }
+    let covers = slope.covers.cover_count();
+    for field in [
+        &mut scratch.moved,
+        &mut scratch.offset,
+        &mut scratch.applied,
+        &mut scratch.applied_before,
+        &mut scratch.internal,
+        &mut scratch.internal_before,
+        &mut scratch.residual,
+        &mut scratch.field,
+    ] {
+        field.clear();
+        field.resize(covers, Vector::zeros());
+    }
+    scratch.unknowns.resize(2 * covers, 0.0);
+    scratch.held.clear();
+    scratch.held.extend(metric.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
+    scratch.any_held = scratch.held.contains(&true);
+    scratch.matrix.clear();
+}
+
+/// How inertia enters a sub-step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Inertia {
+    /// Length (s).
+    dt: f64,
+    /// Acceleration over displacement (1/s²): 1/(β·dt²).
+    factor: f64,
+    /// Share of the forces at the end in the mean that works.
+    end: f64,
+    /// Whether the sub-step starts from rest.
+    rests: bool,
+}
+
+impl Step<'_> {
+    fn inertia(&mut self, implicit: &Implicit, dt: f64) -> Inertia {
+        let (factor, end, rests) = match (self.regime, implicit.rule) {
+            (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
+            (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
+            (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
+        };
+        Inertia { dt, factor, end, rests }
+    }
+
+    /// Inertia over displacement (1/s²) of a static sub-step (Eq. I6): that of a step from rest over a time that grows
+    /// while sub-steps settle easily and is cut when one does not.
+    fn static_inertia(&mut self, dt: f64) -> f64 {
+        let stretch = &mut self.state.static_stretch;
+        *stretch = if *stretch > 0.0 { stretch.min(STRETCH[1]) } else { STRETCH[0] };
+        2.0 / (*stretch * dt).powi(2)
+    }
+}
+
+impl Step<'_> {
+    /// Covers `dt` (s) by sub-steps: one that does not settle is cut, and the rest follows.
+    pub(super) fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
+        let (mut left, mut part, mut cuts) = (dt, dt, 0);
+        let mut first = None;
+        loop {
+            let report = self.implicit_begin(implicit, part);
+            first.get_or_insert(report);
+            self.report = false;
+            let inertia = self.inertia(implicit, part);
+            let settled = self.implicit_open_close(implicit, &inertia);
+            if !settled && cuts < CUTS_MAX {
+                self.state.counters.halved += 1;
+                cuts += 1;
+                if !inertia.rests {
+                    part *= CUT;
+                }
+                continue;
+            }
+            self.state.counters.unsettled += u64::from(!settled);
+            self.implicit_commit(&inertia);
+            left -= part;
+            if left <= 1e-9 * dt || self.singular {
+                return first.unwrap_or_default();
+            }
+            (part, cuts) = (left, 0);
+        }
+    }
+
+    /// The report that the next step would give; nothing advances.
+    pub(super) fn implicit_outlook(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
+        self.implicit_begin(implicit, dt)
+    }
+
+    /// Near pairs, contacts, loads and forces at the start of a sub-step.
+    fn implicit_begin(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
+        self.implicit_contacts(dt);
+        let clock = Instant::now();
+        self.implicit_places();
+        let first = self.state.stage_step == 0 && self.state.part == 0.0 && self.time == self.state.stage_start;
+        let loaded_at_once = first && self.regime == Regime::Static { ramp: 0.0 };
+        self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
+        self.implicit_internal();
+        let buffers = &mut self.scratch.implicit;
+        buffers.internal_before.copy_from_slice(&buffers.internal);
+        if loaded_at_once {
+            self.start_balance();
+            self.state.stage_force.copy_from_slice(&self.scratch.implicit.residual);
+        }
+        let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
+        if trapezoidal && self.state.acceleration.is_empty() {
+            self.implicit_start_acceleration();
+        }
+        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        if self.report { self.implicit_report(dt) } else { StepReport::default() }
+    }
+
+    /// Contacts that take part in a sub-step of `dt` (s), with the forces of the last one.
+    pub(super) fn implicit_contacts(&mut self, dt: f64) {
+        let searches = self.state.counters.searches;
+        self.search();
+        if self.state.counters.searches != searches {
+            self.scratch.implicit.matrix.clear();
+        }
+        let scratch = &mut *self.scratch;
+        scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let reach = REACH * self.slope.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
+        let moved_for = if self.state.step > 0 { self.slope.dt } else { 0.0 };
+        self.entrance(reach.min(super::CUTOFF * self.slope.covers.mesh.size), moved_for);
+        self.load_supports(dt);
+        let buffers = &mut self.scratch.implicit;
+        buffers.forces_before.clear();
+        let forces = self.scratch.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        buffers.forces_before.extend(forces);
+        buffers.bearing_before.clear();
+        buffers.bearing_before.extend(self.scratch.rows.iter().map(|row| row.force));
+        buffers.moved.fill(Vector::zeros());
+    }
+
+    /// Forces of loads and gravity at the end of the sub-step, and at its start where they are needed.
+    fn implicit_loads(&mut self, before: bool, dt: f64) {
+        let Scratch { implicit: buffers, .. } = &mut *self.scratch;
+        for (wanted, force, time) in [
+            (true, &mut buffers.applied, self.time + dt),
+            (before, &mut buffers.applied_before, self.time),
+        ] {
+            if !wanted {
+                continue;
+            }
+            let share = ramp(self.regime, time - self.state.stage_start);
+            let whole = applied::Kick { from: self.time, to: self.time + dt };
+            let base = applied::base_motion(self.slope, self.regime, self.state, whole);
+            let acceleration = applied::acceleration(self.slope, self.state, time) * share - base;
+            for (force, mass) in force.iter_mut().zip(&self.slope.metric.row_sum) {
+                *force = acceleration * *mass;
+            }
+            applied::push_forces(self.slope, self.state, time, share, force);
+        }
+    }
+}

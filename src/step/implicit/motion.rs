@@ -1,0 +1,120 @@
+//! Velocities with the consistent mass: energy, damping of deformation, the first acceleration of the trapezoidal rule.
+
+use crate::geometry::{Point, Vector};
+use crate::mechanics::{Metric, push_mass};
+use crate::state::{Implicit, Slope, State};
+
+use super::{Inertia, Step};
+
+/// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
+pub fn kinetic_energy(slope: &Slope, implicit: &Implicit, metric: &Metric, velocity: &[Vector]) -> f64 {
+    (0..slope.covers.block_count()).filter(|&b| !metric.fixed[b]).map(|b| block_energy(slope, implicit, velocity, b)).sum()
+}
+
+/// Kinetic energy (J/m) of one block by the consistent mass.
+pub fn block_energy(slope: &Slope, implicit: &Implicit, velocity: &[Vector], block: usize) -> f64 {
+    let of_element = |e: usize| {
+        let [v0, v1, v2] = slope.covers.element_covers[e].map(|i| velocity[i as usize]);
+        let [m00, m11, m22, m01, m02, m12] = implicit.element_mass[e];
+        0.5 * (m00 * v0.norm_squared() + m11 * v1.norm_squared() + m22 * v2.norm_squared())
+            + m01 * v0.dot(&v1)
+            + m02 * v0.dot(&v2)
+            + m12 * v1.dot(&v2)
+    };
+    slope.covers.elements_of(block).map(of_element).sum()
+}
+
+/// Takes the velocities of a static stage, which its steps do not use, and their energy, which its reports hold.
+pub fn stop(slope: &Slope, state: &mut State) {
+    let Some(implicit) = &slope.implicit else { return };
+    let moving = (0..slope.covers.block_count()).filter(|&b| !state.removed[b]);
+    let energy: f64 = moving.map(|b| block_energy(slope, implicit, &state.velocity, b)).sum();
+    state.ledger.damping -= energy;
+    state.velocity.fill(Vector::zeros());
+}
+
+impl Step<'_> {
+    /// M·a = forces at the start of the sub-step, solved for a.
+    pub(super) fn implicit_start_acceleration(&mut self) {
+        self.start_balance();
+        let buffers = &mut self.scratch.implicit;
+        buffers.matrix.zero();
+        self.add_elements(1.0, 0.0);
+        if self.finish_matrix().is_err() {
+            self.singular = true;
+        }
+        self.solve();
+        self.state.acceleration.extend(self.scratch.implicit.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
+    }
+
+    /// Damps the velocities of the state relative to the rigid motion of every block by exp(−2ξπ·cs/√A·dt) (Eq. 11);
+    /// returns the energy (J/m) that this took.
+    pub(super) fn implicit_damp(&mut self, implicit: &Implicit, ratio: f64, inertia: &Inertia) -> f64 {
+        if ratio == 0.0 || inertia.rests {
+            return 0.0;
+        }
+        let slope = self.slope;
+        let mut taken = 0.0;
+        for block in 0..slope.covers.block_count() {
+            if self.scratch.metric.fixed[block] {
+                continue;
+            }
+            let before = block_energy(slope, implicit, &self.state.velocity, block);
+            let factor = (-ratio * inertia.dt * slope.block_frequency[block]).exp();
+            self.damp_block(implicit, block, factor);
+            taken += before - block_energy(slope, implicit, &self.state.velocity, block);
+        }
+        taken
+    }
+
+    fn damp_block(&mut self, implicit: &Implicit, block: usize, factor: f64) {
+        let slope = self.slope;
+        let (state, buffers) = (&mut *self.state, &mut self.scratch.implicit);
+        let range = slope.covers.covers_of(block);
+        let mass = &slope.metric.row_sum;
+        let total: f64 = slope.metric.total[block];
+        let place = |u: &[Vector], i: usize| slope.covers.star_position[i] + u[i];
+        let centre: Point = range.clone().map(|i| place(&state.displacement, i) * mass[i]).sum::<Point>() / total;
+        let mean: Vector = range.clone().map(|i| state.velocity[i] * mass[i]).sum::<Vector>() / total;
+        for i in range.clone() {
+            let arm = place(&state.displacement, i) - centre;
+            buffers.field[i] = Vector::new(-arm.y, arm.x);
+        }
+        let [spun, inertia] = [&state.velocity, &buffers.field].map(|field| {
+            let of_element = |e: usize| {
+                let ids = slope.covers.element_covers[e].map(|i| i as usize);
+                turned_product(&implicit.element_mass[e], ids, &buffers.field, field)
+            };
+            slope.covers.elements_of(block).map(of_element).sum::<f64>()
+        });
+        let spin = spun / inertia;
+        for i in range {
+            let rigid = mean + buffers.field[i] * spin;
+            let damped = rigid + (state.velocity[i] - rigid) * factor;
+            for axis in 0..2 {
+                state.velocity[i][axis] = if buffers.held[2 * i + axis] { 0.0 } else { damped[axis] };
+            }
+        }
+    }
+
+    /// M times a cover field, into the residual.
+    pub(super) fn mass_times_field(&mut self, implicit: &Implicit) {
+        let buffers = &mut self.scratch.implicit;
+        buffers.residual.fill(Vector::zeros());
+        for (mass, ids) in implicit.element_mass.iter().zip(&self.slope.covers.element_covers) {
+            push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+        }
+    }
+}
+
+/// aᵀ·M·b of one element.
+fn turned_product(mass: &[f64; 6], ids: [usize; 3], a: &[Vector], b: &[Vector]) -> f64 {
+    let [m00, m11, m22, m01, m02, m12] = *mass;
+    let product = |p: usize, q: usize| a[ids[p]].dot(&b[ids[q]]);
+    m00 * product(0, 0)
+        + m11 * product(1, 1)
+        + m22 * product(2, 2)
+        + m01 * (product(0, 1) + product(1, 0))
+        + m02 * (product(0, 2) + product(2, 0))
+        + m12 * (product(1, 2) + product(2, 1))
+}

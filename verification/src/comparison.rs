@@ -1,0 +1,160 @@
+//! The explicit method beside the implicit one: the same models, error against the exact answer, and cost.
+
+mod models;
+mod report;
+
+use std::time::Instant;
+
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+use enmm::model::case::Integrator;
+
+use crate::{Plot, Setup, Trouble, Values};
+
+pub use models::slope_text;
+pub(crate) use models::{block_displacements, difference};
+
+/// One run of one model by one method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Model.
+    pub model: &'static str,
+    /// What varies.
+    pub variant: String,
+    /// Method.
+    pub integrator: Integrator,
+    /// Blocks, covers and contacts.
+    pub counts: [usize; 3],
+    /// Internal step (s).
+    pub dt: f64,
+    /// Relative error against the exact answer, or difference from the explicit method where there is none.
+    pub error: f64,
+    /// Wall time (s).
+    pub wall: f64,
+    /// Processor time of all threads (s).
+    pub cpu: f64,
+    /// Steps and sub-steps.
+    pub steps: [u64; 2],
+    /// Open–close sweeps, or solutions of the implicit iteration.
+    pub iterations: u64,
+    /// Factorisations.
+    pub factorisations: u64,
+    /// Bytes of matrix, factor and fields over covers.
+    pub bytes: usize,
+    /// Whether all stages that should come to rest did.
+    pub at_rest: bool,
+}
+
+/// All runs of a comparison.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Pairs of runs over sizes: explicit, then implicit.
+    pub entries: Vec<Entry>,
+    /// Sizes of the implicit step on one model, after the explicit run.
+    pub sweep: Vec<Entry>,
+    /// Plots of error and cost.
+    pub plots: Vec<Plot>,
+    /// Whether the sizes are those of a quick run.
+    pub quick: bool,
+}
+
+/// Both methods on beams, blocks on inclines and fractured slopes of several sizes, in one run.
+///
+/// # Errors
+/// A case that does not build, or a run that fails.
+pub fn compare(quick: bool) -> Result<Comparison, Trouble> {
+    let mut entries = Vec::new();
+    let beams: &[f64] = if quick { &[2.0, 4.0, 8.0] } else { &[4.0, 8.0, 16.0] };
+    for &rows in beams {
+        entries.extend(pair(|integrator| models::beam(integrator, rows, None))?);
+    }
+    let inclines: &[f64] = if quick { &[0.6, 0.45, 0.3] } else { &[0.6, 0.3, 0.15] };
+    for &size in inclines {
+        entries.extend(pair(|integrator| models::incline(integrator, size, None))?);
+    }
+    let spacings: &[f64] = if quick { &[24.0, 16.0, 12.0] } else { &[6.4, 3.2, 1.65] };
+    for &spacing in spacings {
+        let mut places = Vec::new();
+        entries.extend(pair(|integrator| models::slope(integrator, spacing, &mut places))?);
+    }
+    let sweep = sweep(quick)?;
+    let plots = report::plots(&entries, &sweep);
+    Ok(Comparison { entries, sweep, plots, quick })
+}
+
+fn pair(mut run: impl FnMut(Integrator) -> Result<Entry, Trouble>) -> Result<[Entry; 2], Trouble> {
+    Ok([run(Integrator::Explicit)?, run(Integrator::Implicit)?])
+}
+
+/// The sliding block with implicit steps of several sizes.
+fn sweep(quick: bool) -> Result<Vec<Entry>, Trouble> {
+    let size = if quick { 0.6 } else { 0.3 };
+    let explicit = models::incline(Integrator::Explicit, size, None)?;
+    let factors: &[f64] = if quick { &[5.0, 20.0, 80.0] } else { &[2.0, 5.0, 20.0, 50.0, 100.0, 200.0, 400.0] };
+    let dt = explicit.dt;
+    let mut entries = vec![explicit];
+    for factor in factors {
+        entries.push(models::incline(Integrator::Implicit, size, Some(factor * dt))?);
+    }
+    Ok(entries)
+}
+
+/// A model built by one method, and the clock of its run.
+struct Run {
+    simulation: Simulation,
+    integrator: Integrator,
+    wall: Instant,
+    cpu: f64,
+}
+
+impl Run {
+    fn start(integrator: Integrator, text: String) -> Result<Self, Trouble> {
+        let values = Values::none();
+        let mut setup = Setup { values, integrator, quick: false, cases: Vec::new() };
+        let simulation = setup.simulation("comparison", text)?;
+        Ok(Self { simulation, integrator, wall: Instant::now(), cpu: cpu_seconds() })
+    }
+
+    fn entry(&self, model: &'static str, variant: String, error: f64, at_rest: bool) -> Entry {
+        let (simulation, counters) = (&self.simulation, &self.simulation.state().counters);
+        let covers = &simulation.slope().covers;
+        Entry {
+            model,
+            variant,
+            integrator: self.integrator,
+            counts: [covers.block_count(), covers.cover_count(), simulation.state().contacts.len()],
+            dt: simulation.slope().dt,
+            error,
+            wall: self.wall.elapsed().as_secs_f64(),
+            cpu: cpu_seconds() - self.cpu,
+            steps: [simulation.state().step, counters.substeps],
+            iterations: counters.sweeps,
+            factorisations: counters.factorisations,
+            bytes: bytes(simulation),
+            at_rest,
+        }
+    }
+}
+
+/// Bytes of matrix and factor, of the fields over covers and of the contacts.
+fn bytes(simulation: &Simulation) -> usize {
+    let scratch = simulation.scratch();
+    let [matrix, factor] = scratch.implicit.matrix.bytes();
+    let vectors = [&scratch.load_force, &scratch.force, &scratch.predicted, &scratch.damped, &scratch.increment];
+    let implicit = [&scratch.implicit.moved, &scratch.implicit.offset, &scratch.implicit.applied];
+    let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
+    let state = 2 * simulation.state().displacement.len();
+    let places = scratch.implicit.contact_places.len() * 144 + scratch.implicit.element_places.len() * 24;
+    let contacts = scratch.contacts.len() * size_of::<enmm::contact::VertexEdge>();
+    matrix + factor + (fields + state) * size_of::<Vector>() + contacts + places
+}
+
+/// Processor time (s) of all threads of this process so far; 0 where the system does not tell.
+fn cpu_seconds() -> f64 {
+    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
+    let of = |task: std::fs::DirEntry| -> Option<f64> {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
+    };
+    tasks.flatten().filter_map(of).sum()
+}

@@ -1,0 +1,121 @@
+//! The models of the comparison: a beam, a block on an incline, a fractured slope.
+
+use enmm::geometry::Vector;
+use enmm::model::case::Integrator;
+
+use super::{Entry, Run};
+use crate::problems::{Beam, Plane};
+use crate::{Trouble, run_stage};
+
+/// Line of a case that sets the implicit step (s).
+fn step_line(step: Option<f64>) -> String {
+    step.map_or_else(String::new, |dt| format!("[solver]\nimplicit_step = {dt:e}\n"))
+}
+
+/// A simply supported beam under a uniform load, settled; error of the sag between points a tenth inside.
+pub(super) fn beam(integrator: Integrator, rows: f64, step: Option<f64>) -> Result<Entry, Trouble> {
+    let beam = Beam { length: 10.0, depth: 1.0, young: 1e9, poisson: 0.25, density: 2500.0, plane: Plane::Stress };
+    let monitors: String =
+        [1, 5, 9].map(|x| format!("[[monitor]]\nname = \"x{x}\"\npoint = [{x}.0, 0.0]\n")).concat();
+    let text = format!(
+        "{}[[fix]]\npoint = [0.0, 0.0]\n[[fix]]\npoint = [10.0, 0.0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
+         edge = [[0.0, 0.5], [10.0, 0.5]]\ntraction = [0.0, -1e4]\n{monitors}[[stage]]\nname = \"load\"\n\
+         kind = \"static\"\nduration = 60.0\nramp = 0.0\nconvergence = 1e-5\n{}",
+        beam.text(rows),
+        step_line(step)
+    );
+    let mut run = Run::start(integrator, text)?;
+    let report = run_stage(&mut run.simulation)?;
+    let [left, middle, right] = [0, 1, 2].map(|k| -run.simulation.monitor(k).0.y);
+    let exact = beam.uniform(1e4, 0.0) - beam.uniform(1e4, 4.0);
+    let error = (middle - 0.5 * (left + right)) / exact - 1.0;
+    Ok(run.entry("beam, static", format!("{rows} rows"), error, run.simulation.at_rest(&report)))
+}
+
+/// A block on an incline of 30° that settles and then slides for 1 s under 20°; error of the slip.
+pub(super) fn incline(integrator: Integrator, size: f64, step: Option<f64>) -> Result<Entry, Trouble> {
+    let (dip, friction) = (30f64.to_radians(), 20f64.to_radians());
+    let turn = |x: f64, y: f64| [dip.cos() * x + dip.sin() * y, -dip.sin() * x + dip.cos() * y];
+    let corners = [(-1.0, -0.8), (5.0, -0.8), (5.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0), (-1.0, 0.0)];
+    let text = format!(
+        "title = \"Incline\"\n[domain]\noutline = {:?}\n[mesh]\nsize = {size:e}\norigin = [0.031, 0.017]\n[[joint]]\n\
+         points = {:?}\n[joint_law.joint]\nfriction_deg = 35.0\n[rock.rock]\ndensity = 2650.0\nyoung = 1e10\n\
+         poisson = 0.25\n[[fix]]\nblock = {:?}\n[[monitor]]\nname = \"block\"\npoint = {:?}\n[[stage]]\n\
+         name = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n[[stage]]\nname = \"slide\"\n\
+         kind = \"dynamic\"\nduration = 1.0\ndamping = 0.1\n[[stage.law]]\nlaw = \"joint\"\nfriction_deg = 20.0\n{}",
+        corners.map(|(x, y)| turn(x, y)),
+        [turn(0.0, 0.0), turn(1.0, 0.0)],
+        turn(-0.5, -0.4),
+        turn(0.52, 0.48),
+        step_line(step)
+    );
+    let mut run = Run::start(integrator, text)?;
+    let report = run_stage(&mut run.simulation)?;
+    let at_rest = run.simulation.at_rest(&report);
+    run.simulation.next_stage()?;
+    let (start, from) = (run.simulation.time(), run.simulation.monitor(0).0);
+    run_stage(&mut run.simulation)?;
+    let (slid, time) = ((run.simulation.monitor(0).0 - from).norm(), run.simulation.time() - start);
+    let exact = 0.5 * 9.81 * (dip.sin() - dip.cos() * friction.tan()) * time * time;
+    let variant = step.map_or_else(|| format!("h = {size} m"), |dt| format!("dt = {dt:.2e} s"));
+    Ok(run.entry("sliding block", variant, slid / exact - 1.0, at_rest))
+}
+
+/// A slope of 100 m under two sets of joints at a spacing (m); it settles under a friction of 45°.
+pub fn slope_text(spacing: f64, seconds: f64) -> String {
+    let set = |dip: f64, seed: u32, ratio: f64| {
+        format!(
+            "[[joint_set]]\ndip_deg = {dip:?}\ndip_sd_deg = 1.0\nspacing = {:e}\nspacing_sd = {:e}\nseed = {seed}\n\
+             region = [[58, 18], [122, 122], [200, 122]]\n",
+            spacing * ratio,
+            0.16 * spacing
+        )
+    };
+    let failure = format!(
+        "[[stage]]\nname = \"failure\"\nkind = \"dynamic\"\nduration = {seconds:e}\ndamping = 0.1\n[[stage.law]]\n\
+         law = \"joint\"\nfriction_deg = 28.0\n"
+    );
+    format!(
+        "title = \"Fractured slope\"\n[domain]\noutline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\n\
+         [mesh]\nsize = {:e}\nangle_deg = 7.0\n{}{}[rock.gneiss]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n\
+         [joint_law.joint]\nfriction_deg = 45\n[[fix]]\nedge = [[0, 0], [230, 0]]\n[[fix]]\nedge = [[0, 0], [0, 20]]\n\
+         axes = \"x\"\n[[fix]]\nedge = [[230, 0], [230, 120]]\naxes = \"x\"\n[[stage]]\nname = \"gravity\"\n\
+         kind = \"static\"\nduration = 12.0\n{}",
+        0.65 * spacing,
+        set(36.0, 11, 1.0),
+        set(118.0, 12, 1.06),
+        if seconds > 0.0 { failure } else { String::new() },
+    )
+}
+
+/// The slope under its weight; difference of the final places of all blocks from those in `places`, which the first
+/// call fills.
+pub(super) fn slope(integrator: Integrator, spacing: f64, places: &mut Vec<Vector>) -> Result<Entry, Trouble> {
+    let mut run = Run::start(integrator, slope_text(spacing, 0.0))?;
+    let report = run_stage(&mut run.simulation)?;
+    let at_rest = run.simulation.at_rest(&report);
+    let mine = block_displacements(&run.simulation);
+    if places.is_empty() {
+        places.clone_from(&mine);
+    }
+    let error = difference(&mine, places);
+    Ok(run.entry("fractured slope", format!("spacing {spacing} m"), error, at_rest))
+}
+
+/// Mean displacement of every block (m).
+pub(crate) fn block_displacements(simulation: &enmm::model::Simulation) -> Vec<Vector> {
+    let slope = simulation.slope();
+    let of = |b: usize| {
+        let covers = slope.covers.covers_of(b);
+        let sum: Vector = covers.map(|i| simulation.state().displacement[i] * slope.metric.row_sum[i]).sum();
+        sum / slope.metric.total[b]
+    };
+    (0..slope.covers.block_count()).map(of).collect()
+}
+
+/// Root mean square of the difference of two displacement fields over that of the second.
+pub(crate) fn difference(a: &[Vector], b: &[Vector]) -> f64 {
+    let square = |v: f64| v.max(f64::MIN_POSITIVE);
+    let apart: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()).sum();
+    (apart / square(b.iter().map(Vector::norm_squared).sum())).sqrt()
+}

@@ -1,0 +1,204 @@
+//! B1: a simply supported beam under a uniform load and under a force in its middle.
+
+use enmm::mechanics::Deformation;
+use enmm::model::Simulation;
+
+use super::beam::{Beam, Plane};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, at_rest_by_end, run_stage};
+
+pub const PROBLEM: Problem = Problem {
+    id: "B1",
+    title: "Simply supported beam",
+    source: "Timoshenko and Goodier, uniform load (exact plane problem); force in the middle by bending and shear. \
+             Catches wrong elasticity, plane stress taken for plane strain, and locking of linear covers",
+    parameters: &[
+        Parameter { name: "length", unit: "m", default: 10.0, range: [4.0, 20.0], doc: "span" },
+        Parameter { name: "depth", unit: "m", default: 1.0, range: [0.5, 1.25], doc: "depth of the beam" },
+        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
+        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter { name: "q", unit: "Pa", default: 1e4, range: [10.0, 1e5], doc: "uniform load on the top" },
+        Parameter { name: "force", unit: "N/m", default: 1e5, range: [10.0, 1e6], doc: "force in the middle" },
+        Parameter { name: "rows", unit: "", default: 16.0, range: [8.0, 24.0], doc: "rows of the finest mesh" },
+    ],
+    quick: true,
+    implicit: true,
+    run,
+};
+
+/// Loads of the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Load {
+    Uniform,
+    Point,
+}
+
+/// What one mesh gives.
+#[derive(Debug, Clone, Copy)]
+struct Result {
+    /// Deflection (m) of the middle over the supports, and below the mean of the points L/10 inside.
+    sag: [f64; 2],
+    /// Root mean square of the error of stress xx over the middle half, relative to the greatest stress.
+    stress: f64,
+}
+
+fn run(setup: &mut Setup) -> std::result::Result<Outcome, Trouble> {
+    let finest = if setup.quick { 8.0 } else { setup.get("rows") };
+    let rows = [0.25 * finest, 0.5 * finest, finest];
+    let mut outcome = Outcome::default();
+    let mut curves = Vec::new();
+    let cases = [(Plane::Stress, Load::Uniform), (Plane::Strain, Load::Uniform), (Plane::Stress, Load::Point)];
+    let count = if setup.quick { 2 } else { 3 };
+    for (plane, load) in cases.into_iter().take(count) {
+        let beam = beam(setup, plane);
+        let name = format!("{} load, plane {}", if load == Load::Uniform { "uniform" } else { "mid point" }, plane.name());
+        let mut results = Vec::new();
+        for n in rows {
+            let (result, ledger) = solve(setup, &beam, load, n)?;
+            results.push(result);
+            if n == finest {
+                outcome.rows.push(Row { quantity: format!("{name}: {}", ledger.quantity), ..ledger });
+            }
+        }
+        judge(&mut outcome, setup, &beam, load, &name, &results, finest);
+        curves.push((name, results));
+    }
+    outcome.plots = plots(setup, &curves, rows);
+    Ok(outcome)
+}
+
+fn beam(setup: &Setup, plane: Plane) -> Beam {
+    let [length, depth, young, poisson] = ["length", "depth", "young", "poisson"].map(|name| setup.get(name));
+    Beam { length, depth, young, poisson, density: 2500.0, plane }
+}
+
+/// Exact deflection over the supports and below the points L/10 inside.
+fn exact(setup: &Setup, beam: &Beam, load: Load) -> [f64; 2] {
+    let l = beam.length;
+    match load {
+        Load::Uniform => {
+            let at = |x: f64| beam.uniform(setup.get("q"), x);
+            [at(0.0), at(0.0) - at(0.4 * l)]
+        }
+        Load::Point => {
+            let at = |x: f64| beam.point(setup.get("force"), x);
+            [at(0.5 * l), at(0.5 * l) - at(0.1 * l)]
+        }
+    }
+}
+
+fn solve(setup: &mut Setup, beam: &Beam, load: Load, rows: f64) -> std::result::Result<(Result, Row), Trouble> {
+    let (l, c) = (beam.length, 0.5 * beam.depth);
+    let loading = match load {
+        Load::Uniform => format!(
+            "kind = \"traction\"\nedge = [[0.0, {c:e}], [{l:e}, {c:e}]]\ntraction = [0.0, {:e}]\n",
+            -setup.get("q")
+        ),
+        Load::Point => {
+            format!("kind = \"point\"\npoint = [{:e}, {c:e}]\nforce = [0.0, {:e}]\n", 0.5 * l, -setup.get("force"))
+        }
+    };
+    let monitors: String = [0.1, 0.5, 0.9]
+        .iter()
+        .map(|s| format!("[[monitor]]\nname = \"x{s}\"\npoint = [{:e}, 0.0]\n", s * l))
+        .collect();
+    let text = format!(
+        "{}[[fix]]\npoint = [0.0, 0.0]\n[[fix]]\npoint = [{l:e}, 0.0]\naxes = \"y\"\n[[load]]\n{loading}{monitors}\
+         [[stage]]\nname = \"load\"\nkind = \"static\"\nduration = 60.0\nramp = 0.0\nconvergence = 1e-5\n",
+        beam.text(rows)
+    );
+    let name = format!("b1_{}_{load:?}_{rows}_rows", beam.plane.name()).to_lowercase();
+    let mut simulation = setup.simulation(&name, text)?;
+    let report = run_stage(&mut simulation)?;
+    if !at_rest_by_end(&simulation, &report) {
+        return Err(Trouble(format!("{name}: the beam has not come to rest in its time")));
+    }
+    let [left, middle, right] = [0, 1, 2].map(|k| -simulation.monitor(k).0.y);
+    let stress = stress_error(&simulation, beam, setup.get("q"));
+    Ok((Result { sag: [middle, middle - 0.5 * (left + right)], stress }, Row::ledger(&report)))
+}
+
+/// Root mean square, by area, of the error of stress xx in the middle half of the beam over the greatest stress.
+fn stress_error(simulation: &Simulation, beam: &Beam, q: f64) -> f64 {
+    let slope = simulation.slope();
+    let covers = &slope.covers;
+    let (mut sum, mut area) = (0.0, 0.0);
+    for e in 0..covers.element_count() {
+        let p = covers.element_centroid[e];
+        let x = p.x - 0.5 * beam.length;
+        if x.abs() > 0.25 * beam.length {
+            continue;
+        }
+        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i as usize]);
+        let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
+        let computed = Deformation::new(u, gradients).stress(&slope.rocks[0], &[0.0; 3])[0];
+        sum += covers.element_area[e] * (computed - beam.uniform_stress(q, x, p.y)).powi(2);
+        area += covers.element_area[e];
+    }
+    (sum / area).sqrt() / beam.uniform_stress(q, 0.0, -0.5 * beam.depth).abs()
+}
+
+fn judge(outcome: &mut Outcome, setup: &Setup, beam: &Beam, load: Load, name: &str, results: &[Result], finest: f64) {
+    let exact = exact(setup, beam, load);
+    let sag = |k: usize| results[k].sag[1];
+    let bending = 3.0 / (finest * finest);
+    let local = if load == Load::Point { 6e-3 } else { 0.0 };
+    let last = results.len() - 1;
+    outcome.rows.push(
+        Row::new(format!("{name}: deflection over the supports"), "m", results[last].sag[0], exact[0])
+            .within(Tolerance::Relative(bending + 6e-3 + local), "2.1/rows² of linear covers; the supports' dents"),
+    );
+    outcome.rows.push(
+        Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1])
+            .within(Tolerance::Relative(bending + local), "linear covers bend like constant-strain triangles: 2.1/rows²"),
+    );
+    let limit = sag(last) + (sag(last) - sag(last - 1)) / 3.0;
+    let left = 1e-3 + local + 4.0 * (2.1 / (finest * finest)).powi(2);
+    outcome.rows.push(
+        Row::new(format!("{name}: sag, extrapolated"), "m", limit, exact[1])
+            .within(Tolerance::Relative(left.max(2e-3)), "Richardson's rule leaves the square of the finest error"),
+    );
+    let order = ((sag(last - 1) / exact[1] - 1.0) / (sag(last) / exact[1] - 1.0)).log2();
+    let width = if load == Load::Point { 0.8 } else { 0.5 };
+    outcome.rows.push(
+        Row::new(format!("{name}: order of the sag in h"), "", order, 2.0)
+            .within(Tolerance::Absolute(width), "h²; the mesh does not fit the beam; a force is a singular load"),
+    );
+    if load == Load::Uniform {
+        let order = (results[last - 1].stress / results[last].stress).log2();
+        outcome.rows.push(
+            Row::new(format!("{name}: order of stress in h"), "", order, 1.0)
+                .within(Tolerance::Absolute(0.35), "stress is uniform in an element: error h"),
+        );
+    }
+}
+
+fn plots(setup: &Setup, curves: &[(String, Vec<Result>)], rows: [f64; 3]) -> Vec<Plot> {
+    let plane = |name: &str| if name.ends_with("strain") { Plane::Strain } else { Plane::Stress };
+    let error = |name: &str, result: &Result| {
+        let load = if name.starts_with("uniform") { Load::Uniform } else { Load::Point };
+        (result.sag[1] / exact(setup, &beam(setup, plane(name)), load)[1] - 1.0).abs()
+    };
+    let size = |k: usize| setup.get("depth") / rows[k];
+    let line = |label: String, value: &dyn Fn(usize) -> f64| Series {
+        name: label,
+        points: (0..3).map(|k| [size(k), value(k)]).collect(),
+        marks: false,
+    };
+    let mut series: Vec<Series> =
+        curves.iter().map(|(name, results)| line(name.clone(), &|k| error(name, &results[k]))).collect();
+    series.push(line("h²".into(), &|k| 2.1 * (size(k) / setup.get("depth")).powi(2)));
+    let stress = curves.iter().filter(|(name, _)| name.starts_with("uniform"));
+    let mut stresses: Vec<Series> =
+        stress.map(|(name, results)| line(name.clone(), &|k| results[k].stress)).collect();
+    stresses.push(line("h".into(), &|k| size(k) / setup.get("depth")));
+    let plot = |title: &str, axis: &str, series| Plot {
+        title: title.into(),
+        axes: ["mesh size h [m]".into(), axis.into()],
+        logarithmic: [true, true],
+        series,
+    };
+    vec![
+        plot("B1: error of the sag over the mesh size", "relative error [-]", series),
+        plot("B1: error of stress xx over the mesh size", "rms error / greatest stress [-]", stresses),
+    ]
+}

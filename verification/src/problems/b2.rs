@@ -1,0 +1,184 @@
+//! B2: frequencies of beams and of a bar in free vibration.
+
+use std::f64::consts::PI;
+
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+
+use super::beam::{Beam, Plane};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "B2",
+    title: "Eigenfrequencies",
+    source: "Rayleigh–Lamb equation (simply supported), slender beam with shear and rotary inertia (cantilever), bar \
+             with lateral inertia (free–free). Catches wrong mass, numerical damping and period error",
+    parameters: &[
+        Parameter { name: "length", unit: "m", default: 10.0, range: [5.0, 20.0], doc: "length" },
+        Parameter { name: "depth", unit: "m", default: 1.0, range: [0.5, 1.25], doc: "depth" },
+        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
+        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter { name: "density", unit: "kg/m³", default: 2500.0, range: [500.0, 8000.0], doc: "density" },
+        Parameter { name: "rows", unit: "", default: 8.0, range: [4.0, 16.0], doc: "rows of the finest mesh" },
+    ],
+    quick: true,
+    implicit: true,
+    run,
+};
+
+/// What swings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Supported,
+    Cantilever,
+    Axial,
+}
+
+/// A vibration that was measured: frequency (Hz) and the signal over time (s, m).
+struct Swing {
+    frequency: f64,
+    signal: Vec<[f64; 2]>,
+    ledger: Row,
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let finest = if setup.quick { 4.0 } else { setup.get("rows") };
+    let mut outcome = Outcome::default();
+    let mut cases = vec![(Kind::Supported, Plane::Stress), (Kind::Axial, Plane::Stress)];
+    if !setup.quick {
+        cases.extend([(Kind::Cantilever, Plane::Stress), (Kind::Cantilever, Plane::Strain)]);
+    }
+    for (kind, plane) in cases {
+        let [length, depth, young, poisson, density] =
+            ["length", "depth", "young", "poisson", "density"].map(|name| setup.get(name));
+        let beam = Beam { length, depth, young, poisson, density, plane };
+        let coarse = swing(setup, &beam, kind, 0.5 * finest)?;
+        let fine = swing(setup, &beam, kind, finest)?;
+        judge(&mut outcome, &beam, kind, finest, [&coarse, &fine]);
+        if outcome.plots.len() < 2 {
+            outcome.plots.push(plot(&beam, kind, &fine));
+        }
+        outcome.rows.push(Row { quantity: format!("{kind:?}: {}", fine.ledger.quantity), ..fine.ledger });
+    }
+    Ok(outcome)
+}
+
+fn exact(beam: &Beam, kind: Kind) -> f64 {
+    match kind {
+        Kind::Supported => beam.supported(),
+        Kind::Cantilever => beam.cantilever()[1],
+        Kind::Axial => beam.axial()[1],
+    }
+}
+
+fn judge(outcome: &mut Outcome, beam: &Beam, kind: Kind, rows: f64, swings: [&Swing; 2]) {
+    let (exact, name) = (exact(beam, kind), format!("{kind:?}, plane {}", beam.plane.name()));
+    let [coarse, fine] = swings.map(|s| s.frequency);
+    let (tolerance, reason) = match kind {
+        Kind::Axial => (0.05 / rows + 1e-3, "axial strain is nearly uniform in an element"),
+        _ => (1.6 / (rows * rows) + 3e-3, "half of the share 2.1/rows² of the stiffness that linear covers add"),
+    };
+    let row = Row::new(format!("{name}: frequency"), "Hz", fine, exact);
+    outcome.rows.push(row.within(Tolerance::Relative(tolerance), reason));
+    if kind != Kind::Axial {
+        let limit = fine + (fine - coarse) / 3.0;
+        let left = 2.0 * (2.1 / (rows * rows)).powi(2) + if kind == Kind::Cantilever { 4e-3 } else { 1.5e-3 };
+        let row = Row::new(format!("{name}: frequency, extrapolated"), "Hz", limit, exact);
+        let reason = "Richardson's rule leaves the square of the error; the clamp's corners are singular";
+        outcome.rows.push(row.within(Tolerance::Relative(left), reason));
+    }
+}
+
+/// Starts the mode with a small velocity and measures by upward zero crossings.
+fn swing(setup: &mut Setup, beam: &Beam, kind: Kind, rows: f64) -> Result<Swing, Trouble> {
+    let (l, c) = (beam.length, 0.5 * beam.depth);
+    let fix = |x: f64, axes: &str| format!("[[fix]]\nedge = [[{x:e}, {:e}], [{x:e}, {c:e}]]\naxes = \"{axes}\"\n", -c);
+    let fixes = match kind {
+        Kind::Supported => fix(0.0, "y") + &fix(l, "y"),
+        Kind::Cantilever => fix(0.0, "xy"),
+        Kind::Axial => String::new(),
+    };
+    let period = 1.0 / exact(beam, kind);
+    let text = format!(
+        "{}{fixes}[[monitor]]\nname = \"middle\"\npoint = [{:e}, 0.0]\n[[monitor]]\nname = \"end\"\n\
+         point = [{l:e}, 0.0]\n[[stage]]\nname = \"swing\"\nkind = \"dynamic\"\nduration = {:e}\ndamping = 0.0\n\
+         [solver]\nnewmark = \"trapezoidal\"\nimplicit_step = {:e}\n",
+        beam.text(rows),
+        0.5 * l,
+        20.0 * period,
+        period / 200.0
+    );
+    let name = format!("b2_{kind:?}_{}_{rows}_rows", beam.plane.name()).to_lowercase();
+    let mut simulation = setup.simulation(&name, text)?;
+    start(&mut simulation, beam, kind);
+    let signal = |s: &Simulation| match kind {
+        Kind::Supported => s.monitor(0).0.y,
+        Kind::Cantilever => s.monitor(1).0.y,
+        Kind::Axial => s.monitor(1).0.x,
+    };
+    measure(&mut simulation, signal, if kind == Kind::Axial { 6 } else { 2 })
+}
+
+fn start(simulation: &mut Simulation, beam: &Beam, kind: Kind) {
+    let (l, speed) = (beam.length, 1e-3);
+    let mode = |x: Vector| match kind {
+        Kind::Supported => {
+            let k = PI / l;
+            Vector::new(-k * x.y * (k * x.x).cos(), (k * x.x).sin())
+        }
+        Kind::Axial => {
+            let (k, (_, poisson)) = (PI / l, beam.plane_stress());
+            Vector::new((k * x.x).cos(), poisson * k * x.y * (k * x.x).sin())
+        }
+        Kind::Cantilever => {
+            let (b, r, z) = (1.875104 / l, 0.734096, 1.875104 / l * x.x);
+            let turn = b * (z.sinh() + z.sin() - r * (z.cosh() - z.cos()));
+            Vector::new(-x.y * turn, z.cosh() - z.cos() - r * (z.sinh() - z.sin()))
+        }
+    };
+    let mut state = simulation.state().clone();
+    state.velocity = simulation.slope().covers.star_position.iter().map(|x| mode(*x) * speed).collect();
+    simulation.restore(state.clone());
+    let energy = simulation.report().ledger.kinetic;
+    state.ledger.baseline += energy;
+    simulation.restore(state);
+}
+
+fn measure(simulation: &mut Simulation, signal: impl Fn(&Simulation) -> f64, swings: usize) -> Result<Swing, Trouble> {
+    let (mut before, mut crossings, mut points) = ([0.0; 2], Vec::new(), Vec::new());
+    while crossings.len() <= swings {
+        if simulation.stage_is_over(None) {
+            return Err(Trouble(format!("only {} of {swings} swings within the stage", crossings.len())));
+        }
+        simulation.advance(false)?;
+        let now = [simulation.time(), signal(simulation)];
+        if before[1] < 0.0 && now[1] >= 0.0 {
+            crossings.push(now[0] - (now[0] - before[0]) * now[1] / (now[1] - before[1]));
+        }
+        points.push(now);
+        before = now;
+    }
+    let frequency = swings as f64 / (crossings[swings] - crossings[0]);
+    let ledger = Row::ledger(&simulation.report());
+    let every = (points.len() / 400).max(1);
+    Ok(Swing { frequency, signal: points.into_iter().step_by(every).collect(), ledger })
+}
+
+fn plot(beam: &Beam, kind: Kind, swing: &Swing) -> Plot {
+    let most = swing.signal.iter().map(|p| p[1].abs()).fold(0.0, f64::max);
+    let sign = if swing.signal.len() > 1 { swing.signal[1][1].signum() } else { 1.0 };
+    let exact = |t: f64| sign * most * (2.0 * PI * exact(beam, kind) * t).sin();
+    Plot {
+        title: format!("B2: {kind:?}, free vibration"),
+        axes: ["time [s]".into(), "displacement [m]".into()],
+        logarithmic: [false; 2],
+        series: vec![
+            Series { name: "computed".into(), points: swing.signal.clone(), marks: false },
+            Series {
+                name: "exact".into(),
+                points: swing.signal.iter().map(|p| [p[0], exact(p[0])]).collect(),
+                marks: false,
+            },
+        ],
+    }
+}
