@@ -24,10 +24,6 @@ const CUT: f64 = 0.3;
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
-/// First and longest time for which inertia counts in a static sub-step, over its length: it starts from rest, and
-/// inertia only keeps loose blocks in hand.
-const STRETCH: [f64; 2] = [1.0, 3.0];
-
 /// Sizes the buffers; the matrix gets its pattern in the next step.
 pub(super) fn prepare(slope: &Slope, metric: &Metric, scratch: &mut crate::state::ImplicitScratch) {
     if slope.implicit.is_none() {
@@ -81,7 +77,9 @@ impl Step<'_> {
     /// while sub-steps settle easily and is cut when one does not.
     fn static_inertia(&mut self, dt: f64) -> f64 {
         let stretch = &mut self.state.static_stretch;
-        *stretch = if *stretch > 0.0 { stretch.min(STRETCH[1]) } else { STRETCH[0] };
+        if *stretch == 0.0 {
+            *stretch = 1.0;
+        }
         2.0 / (*stretch * dt).powi(2)
     }
 }

@@ -34,8 +34,12 @@ pub fn stop(slope: &Slope, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// M·a = forces at the start of the sub-step, solved for a.
+    /// M·a = forces at the start of the sub-step, solved for a; contacts are judged by the limits that hold now.
     pub(super) fn implicit_start_acceleration(&mut self) {
+        self.implicit_judge();
+        let forces = self.scratch.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        self.scratch.implicit.forces_before.clear();
+        self.scratch.implicit.forces_before.extend(forces);
         self.start_balance();
         let buffers = &mut self.scratch.implicit;
         buffers.matrix.zero();

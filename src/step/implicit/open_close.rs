@@ -20,6 +20,12 @@ const ENOUGH: f64 = 1e-3;
 const ENOUGH_STATIC: f64 = 3e-3;
 /// Forces out of balance from which a static sub-step was easy: the next has less inertia.
 const EASY_STATIC: f64 = 1e-3;
+/// Solutions up to which contacts hardly change in a static sub-step.
+const FEW: u32 = 3;
+/// Longest time for which inertia counts in a static sub-step, over its length, while contacts hardly change.
+const STRETCH_FREE: f64 = 1000.0;
+/// The same while contacts slip, whose order should be that of a slow loading.
+const STRETCH_SLIPPING: f64 = 3.0;
 /// Solutions with an old factor for every one with a new one.
 const CORRECTIONS: u32 = 3;
 /// Decrease of the forces out of balance in a correction below which a new factor is worth its price.
@@ -77,11 +83,23 @@ impl Step<'_> {
         let settled = settled || balance.residual <= enough * balance.scale;
         self.count_implicit(inertia.dt, solutions);
         if inertia.rests {
-            let easy = balance.residual <= EASY_STATIC * balance.scale;
-            let change = if !settled { CUT } else if easy { 1.5 } else { 1.0 };
-            self.state.static_stretch *= change;
+            let balanced = balance.residual <= EASY_STATIC * balance.scale;
+            self.renew_stretch(settled, solutions, balanced);
         }
         settled && self.largest_move() <= implicit.displacement_max
+    }
+
+    /// The time for which inertia counts in the next static sub-step: cut when this one has not settled, longer when it
+    /// was easy, without a limit that matters when it took but a few solutions.
+    fn renew_stretch(&mut self, settled: bool, solutions: u32, balanced: bool) {
+        let stretch = &mut self.state.static_stretch;
+        if !settled {
+            *stretch *= CUT;
+        } else if solutions <= FEW {
+            *stretch = (2.0 * *stretch).min(STRETCH_FREE);
+        } else if balanced {
+            *stretch = stretch.max((1.5 * *stretch).min(STRETCH_SLIPPING));
+        }
     }
 
     /// Forces at the places reached, and how far they are from balance.

@@ -1,0 +1,29 @@
+//! Claim: every problem that both integrators know passes in its quick form with either.
+
+use enmm::model::case::Integrator;
+use enmm_verification::{Setup, Values, problems::ALL};
+
+/// Problems of the continuum and of walls at rest; tolerances are the problems' own, the same for both.
+#[test]
+fn beams_columns_and_walls_pass_with_either() {
+    for problem in ALL.iter().filter(|p| ["B1", "B2", "B3", "E2"].contains(&p.id)) {
+        for integrator in [Integrator::Explicit, Integrator::Implicit] {
+            let mut setup = Setup { values: Values::of(problem), integrator, quick: true, cases: Vec::new() };
+            let outcome = (problem.run)(&mut setup).unwrap_or_else(|e| panic!("{}: {}", problem.id, e.0));
+            for row in outcome.rows.iter().filter(|row| !row.passes()) {
+                panic!("{} {integrator:?}: {} is {:e}, exact {:e}", problem.id, row.quantity, row.computed, row.exact);
+            }
+            assert!(outcome.passes(), "{} has no rows", problem.id);
+        }
+    }
+}
+
+/// A document comes out of a comparison, with every model in it.
+#[test]
+fn long_a_quick_comparison_writes_its_document() {
+    let comparison = enmm_verification::comparison::compare(true).unwrap_or_else(|e| panic!("{}", e.0));
+    let text = comparison.markdown(&[]);
+    assert!(["Beam", "Sliding block", "Fractured slope"].iter().all(|name| text.contains(name)));
+    assert!(comparison.entries.iter().all(|e| e.error.is_finite() && e.at_rest), "{text}");
+    assert_eq!(comparison.plots.len(), 4);
+}
