@@ -13,6 +13,12 @@ const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
 const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
 
+/// Further cases with the command that draws their picture, its name, and the name under which the README shows it.
+const CASES: [[&str; 4]; 2] = [
+    ["run", "examples/cases/shaken_slope.toml", "history.png", "shaken.png"],
+    ["fos", "examples/cases/plane_slide.toml", "fos.png", "fos.png"],
+];
+
 /// Coupling examples, which each draw a picture.
 const COUPLINGS: [&str; 2] = ["earthquake", "reservoir"];
 
@@ -85,7 +91,7 @@ pub fn write_schema(house: &House) -> Result<(), String> {
     Ok(())
 }
 
-/// Runs the main case and copies its pictures to where the README shows them.
+/// Runs the main case and further ones and copies their pictures to where the README shows them.
 ///
 /// # Errors
 /// When the case does not run or a picture is missing.
@@ -100,7 +106,20 @@ pub fn write_pictures(house: &House) -> Result<(), String> {
         std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
         println!("wrote docs/pictures/{name}");
     }
+    write_cases(house, &pictures)?;
     write_couplings(house, &pictures)
+}
+
+/// Runs the further cases and copies one picture of each.
+fn write_cases(house: &House, pictures: &Path) -> Result<(), String> {
+    for [command, case, name, shown] in CASES {
+        let results = house.target.join("picture-results").join(shown);
+        house::run(house.command(house.enmm()).args([command, case, "-o"]).arg(&results))?;
+        let from = results.join(name);
+        std::fs::copy(&from, pictures.join(shown)).map_err(|error| format!("{}: {error}", from.display()))?;
+        println!("wrote docs/pictures/{shown}");
+    }
+    Ok(())
 }
 
 /// Runs the coupling examples, which draw the pictures of `docs/coupling.md`.
