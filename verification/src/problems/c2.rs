@@ -23,7 +23,7 @@ pub const PROBLEM: Problem = Problem {
         Parameter { name: "mesh", unit: "", default: 0.45, range: [0.1, 1.0], doc: "mesh size over block height" },
     ],
     quick: true,
-    implicit: false,
+    implicit: true,
     run,
 };
 
