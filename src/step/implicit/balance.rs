@@ -4,8 +4,8 @@ use crate::contact::VertexEdge;
 use crate::geometry::Vector;
 use crate::mechanics::{self, Deformation, push_mass};
 
-use super::super::blocks::pre_stress;
 use super::{Inertia, Step};
+use crate::step::blocks::pre_stress;
 
 impl Step<'_> {
     /// Internal forces at the places reached (Eq. 7).
