@@ -114,9 +114,8 @@ impl CoverMatrix {
             return;
         }
         let place = place as usize;
-        let second = place + (self.column_start[2 * column as usize + 1] - self.column_start[2 * column as usize])
-            as usize
-            - 1;
+        let second =
+            place + (self.column_start[2 * column as usize + 1] - self.column_start[2 * column as usize]) as usize - 1;
         self.value[place] += block[0];
         self.value[place + 1] += block[2];
         if !diagonal {

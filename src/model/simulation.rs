@@ -150,7 +150,9 @@ impl Simulation {
             && state.laws.len() == own.laws.len()
             && state.law_switch.len() == own.law_switch.len()
             && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
-            && [state.stage_start, state.dt_last, state.part, state.static_stretch].iter().all(|t| t.is_finite() && *t >= 0.0)
+            && [state.stage_start, state.dt_last, state.part, state.static_stretch]
+                .iter()
+                .all(|t| t.is_finite() && *t >= 0.0)
             && state.bolts.len() == own.bolts.len()
             && state.plastic.len() == own.plastic.len()
             && state.columns.len() == slope.columns.len()

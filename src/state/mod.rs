@@ -43,8 +43,8 @@ pub struct State {
     pub dt_last: f64,
     /// Displacement of each physical cover (m).
     pub displacement: Vec<Vector>,
-    /// Velocity of each physical cover half a step ago (m/s). Implicit: that of the end of the last step, and in a static
-    /// stage, where every step starts from rest, the mean of the last step.
+    /// Velocity of each physical cover half a step ago (m/s). Implicit: that of the end of the last step, and in a
+    /// static stage, where every step starts from rest, the mean of the last step.
     pub velocity: Vec<Vector>,
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,

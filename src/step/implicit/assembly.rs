@@ -53,9 +53,12 @@ impl Step<'_> {
         buffers.matrix.set_pattern(covers.cover_count(), pairs);
         let matrix = &buffers.matrix;
         buffers.element_places.clear();
-        buffers.element_places.extend(covers.element_covers.iter().map(|ids| {
-            PAIRS.map(|[a, b]| matrix.place(ids[a].max(ids[b]), ids[a].min(ids[b])))
-        }));
+        buffers.element_places.extend(
+            covers
+                .element_covers
+                .iter()
+                .map(|ids| PAIRS.map(|[a, b]| matrix.place(ids[a].max(ids[b]), ids[a].min(ids[b])))),
+        );
     }
 
     /// Assembles the matrix at the places reached and the contacts as they are judged, and factorises it.

@@ -5,9 +5,9 @@ use std::time::Instant;
 use crate::contact::ContactState;
 use crate::state::{Implicit, Ledger, Rule};
 
-use super::super::report::{potential, stored, strain};
 use super::balance::norm;
 use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
+use crate::step::report::{potential, stored, strain};
 
 impl Step<'_> {
     /// Ends a sub-step with the forces and places that the iteration left.

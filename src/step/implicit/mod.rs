@@ -166,10 +166,9 @@ impl Step<'_> {
     /// Forces of loads and gravity at the end of the sub-step, and at its start where they are needed.
     fn implicit_loads(&mut self, before: bool, dt: f64) {
         let Scratch { implicit: buffers, .. } = &mut *self.scratch;
-        for (wanted, force, time) in [
-            (true, &mut buffers.applied, self.time + dt),
-            (before, &mut buffers.applied_before, self.time),
-        ] {
+        for (wanted, force, time) in
+            [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.applied_before, self.time)]
+        {
             if !wanted {
                 continue;
             }

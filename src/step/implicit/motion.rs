@@ -8,7 +8,10 @@ use super::{Inertia, Step};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
 pub fn kinetic_energy(slope: &Slope, implicit: &Implicit, metric: &Metric, velocity: &[Vector]) -> f64 {
-    (0..slope.covers.block_count()).filter(|&b| !metric.fixed[b]).map(|b| block_energy(slope, implicit, velocity, b)).sum()
+    (0..slope.covers.block_count())
+        .filter(|&b| !metric.fixed[b])
+        .map(|b| block_energy(slope, implicit, velocity, b))
+        .sum()
 }
 
 /// Kinetic energy (J/m) of one block by the consistent mass.

@@ -15,8 +15,7 @@ fn step_line(step: Option<f64>) -> String {
 /// A simply supported beam under a uniform load, settled; error of the sag between points a tenth inside.
 pub(super) fn beam(integrator: Integrator, rows: f64, step: Option<f64>) -> Result<Entry, Trouble> {
     let beam = Beam { length: 10.0, depth: 1.0, young: 1e9, poisson: 0.25, density: 2500.0, plane: Plane::Stress };
-    let monitors: String =
-        [1, 5, 9].map(|x| format!("[[monitor]]\nname = \"x{x}\"\npoint = [{x}.0, 0.0]\n")).concat();
+    let monitors: String = [1, 5, 9].map(|x| format!("[[monitor]]\nname = \"x{x}\"\npoint = [{x}.0, 0.0]\n")).concat();
     let text = format!(
         "{}[[fix]]\npoint = [0.0, 0.0]\n[[fix]]\npoint = [10.0, 0.0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
          edge = [[0.0, 0.5], [10.0, 0.5]]\ntraction = [0.0, -1e4]\n{monitors}[[stage]]\nname = \"load\"\n\
@@ -76,8 +75,9 @@ pub fn slope_text(spacing: f64, seconds: f64) -> String {
          law = \"joint\"\nfriction_deg = 28.0\n"
     );
     format!(
-        "title = \"Fractured slope\"\n[domain]\noutline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\n\
-         [mesh]\nsize = {:e}\nangle_deg = 7.0\n{}{}[rock.gneiss]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n\
+        "title = \"Fractured slope\"\n[domain]\n\
+         outline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\n[mesh]\nsize = {:e}\n\
+         angle_deg = 7.0\n{}{}[rock.gneiss]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n\
          [joint_law.joint]\nfriction_deg = 45\n[[fix]]\nedge = [[0, 0], [230, 0]]\n[[fix]]\nedge = [[0, 0], [0, 20]]\n\
          axes = \"x\"\n[[fix]]\nedge = [[230, 0], [230, 120]]\naxes = \"x\"\n[[stage]]\nname = \"gravity\"\n\
          kind = \"static\"\nduration = 12.0\n{}",

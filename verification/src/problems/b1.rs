@@ -50,7 +50,8 @@ fn run(setup: &mut Setup) -> std::result::Result<Outcome, Trouble> {
     let count = if setup.quick { 2 } else { 3 };
     for (plane, load) in cases.into_iter().take(count) {
         let beam = beam(setup, plane);
-        let name = format!("{} load, plane {}", if load == Load::Uniform { "uniform" } else { "mid point" }, plane.name());
+        let name =
+            format!("{} load, plane {}", if load == Load::Uniform { "uniform" } else { "mid point" }, plane.name());
         let mut results = Vec::new();
         for n in rows {
             let (result, ledger) = solve(setup, &beam, load, n)?;
@@ -97,10 +98,8 @@ fn solve(setup: &mut Setup, beam: &Beam, load: Load, rows: f64) -> std::result::
             format!("kind = \"point\"\npoint = [{:e}, {c:e}]\nforce = [0.0, {:e}]\n", 0.5 * l, -setup.get("force"))
         }
     };
-    let monitors: String = [0.1, 0.5, 0.9]
-        .iter()
-        .map(|s| format!("[[monitor]]\nname = \"x{s}\"\npoint = [{:e}, 0.0]\n", s * l))
-        .collect();
+    let monitors: String =
+        [0.1, 0.5, 0.9].iter().map(|s| format!("[[monitor]]\nname = \"x{s}\"\npoint = [{:e}, 0.0]\n", s * l)).collect();
     let text = format!(
         "{}[[fix]]\npoint = [0.0, 0.0]\n[[fix]]\npoint = [{l:e}, 0.0]\naxes = \"y\"\n[[load]]\n{loading}{monitors}\
          [[stage]]\nname = \"load\"\nkind = \"static\"\nduration = 60.0\nramp = 0.0\nconvergence = 1e-5\n",
@@ -141,7 +140,8 @@ fn judge(outcome: &mut Outcome, setup: &Setup, beam: &Beam, load: Load, name: &s
     let exact = exact(setup, beam, load);
     let sag = |k: usize| results[k].sag[1];
     let bending = 3.0 / (finest * finest);
-    // The dent of a force is of the order P/E, the sag P/E·(L/D)³/4: 0.4 % of a beam of L/D = 10, as the cube otherwise.
+    // The dent of a force is of the order P/E, the sag P/E·(L/D)³/4: 0.4 % of a beam of L/D = 10, as
+    // the cube otherwise.
     let local = if load == Load::Point { 6e-3 * (10.0 * beam.depth / beam.length).powi(3) } else { 0.0 };
     let last = results.len() - 1;
     outcome.rows.push(
@@ -149,8 +149,10 @@ fn judge(outcome: &mut Outcome, setup: &Setup, beam: &Beam, load: Load, name: &s
             .within(Tolerance::Relative(bending + 6e-3 + local), "2.1/rows² of linear covers; the supports' dents"),
     );
     outcome.rows.push(
-        Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1])
-            .within(Tolerance::Relative(bending + local), "linear covers bend like constant-strain triangles: 2.1/rows²"),
+        Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1]).within(
+            Tolerance::Relative(bending + local),
+            "linear covers bend like constant-strain triangles: 2.1/rows²",
+        ),
     );
     let limit = sag(last) + (sag(last) - sag(last - 1)) / 3.0;
     let left = 1e-3 + local + 4.0 * (2.1 / (finest * finest)).powi(2);
@@ -189,8 +191,7 @@ fn plots(setup: &Setup, curves: &[(String, Vec<Result>)], rows: [f64; 3]) -> Vec
         curves.iter().map(|(name, results)| line(name.clone(), &|k| error(name, &results[k]))).collect();
     series.push(line("h²".into(), &|k| 2.1 * (size(k) / setup.get("depth")).powi(2)));
     let stress = curves.iter().filter(|(name, _)| name.starts_with("uniform"));
-    let mut stresses: Vec<Series> =
-        stress.map(|(name, results)| line(name.clone(), &|k| results[k].stress)).collect();
+    let mut stresses: Vec<Series> = stress.map(|(name, results)| line(name.clone(), &|k| results[k].stress)).collect();
     stresses.push(line("h".into(), &|k| size(k) / setup.get("depth")));
     let plot = |title: &str, axis: &str, series| Plot {
         title: title.into(),

@@ -117,9 +117,8 @@ fn base_stress(simulation: &Simulation, stress: &[[f64; 2]]) -> [f64; 2] {
 fn profile(setup: &Setup, simulation: &Simulation, stress: &[[f64; 2]]) -> Plot {
     let covers = &simulation.slope().covers;
     let [height, gamma, poisson] = ["height", "gamma", "poisson"].map(|name| setup.get(name));
-    let computed = |k: usize| -> Vec<[f64; 2]> {
-        stress.iter().zip(&covers.element_centroid).map(|(s, p)| [s[k], p.y]).collect()
-    };
+    let computed =
+        |k: usize| -> Vec<[f64; 2]> { stress.iter().zip(&covers.element_centroid).map(|(s, p)| [s[k], p.y]).collect() };
     let exact = |share: f64| vec![[-gamma * height * share, 0.0], [0.0, height]];
     let line = |name: &str, points, marks| Series { name: name.into(), points, marks };
     Plot {

@@ -31,7 +31,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         false => (setup.get("columns") as usize, setup.get("courses") as usize, setup.get("seconds")),
     };
     let mut outcome = Outcome::default();
-    for (name, columns, courses, bond) in [("wall", columns, courses, true), ("stacks", columns.min(4), courses, false)] {
+    for (name, columns, courses, bond) in [("wall", columns, courses, true), ("stacks", columns.min(4), courses, false)]
+    {
         rest(setup, &mut outcome, name, text(setup, columns, courses, bond, seconds), seconds)?;
     }
     Ok(outcome)
@@ -51,7 +52,8 @@ fn text(setup: &Setup, columns: usize, courses: usize, bond: bool, seconds: f64)
     format!(
         "title = \"Masonry at rest\"\n[domain]\noutline = [[-1.0, -0.6], [{right:?}, -0.6], [{right:?}, 0.0], \
          [{width:?}, 0.0], [{width:?}, {height:?}], [0.0, {height:?}], [0.0, 0.0], [-1.0, 0.0]]\n[mesh]\nsize = 1.0\n\
-         origin = [0.137, 0.071]\n{joints}[joint_law.mortar]\nfriction_deg = {:e}\n[rock.brick]\ndensity = {DENSITY:e}\n\
+         origin = [0.137, 0.071]\n{joints}[joint_law.mortar]\nfriction_deg = {:e}\n\
+         [rock.brick]\ndensity = {DENSITY:e}\n\
          young = {:e}\npoisson = 0.25\n[[fix]]\nblock = [-0.9, -0.5]\n[[stage]]\nname = \"settle\"\nkind = \"static\"\n\
          duration = 60.0\nconvergence = 1e-6\n[[stage]]\nname = \"rest\"\nkind = \"dynamic\"\nduration = {seconds:e}\n\
          damping = 0.1\n",
@@ -89,7 +91,13 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seco
     let drift = drift(&simulation, &before);
     outcome.rows.extend([
         row("drift over the last two thirds", "m", drift, 0.5e-6, "1e-6 of a brick's height"),
-        row("kinetic energy over that of 1 m/s", "", report.ledger.kinetic / (0.5 * mass), 1e-12, "round-off of forces"),
+        row(
+            "kinetic energy over that of 1 m/s",
+            "",
+            report.ledger.kinetic / (0.5 * mass),
+            1e-12,
+            "round-off of forces",
+        ),
         row("penetration over the mesh size", "", report.penetration_max, 1e-3, "σh/0.5Ec is 4e-4 under 20 courses"),
     ]);
     let ledger = Row::ledger(&report);
