@@ -229,7 +229,8 @@ impl Narrow<'_> {
     /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
     /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
     /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
-    /// shallower one. Faces that lie on each other do not exclude each other.
+    /// shallower one. Faces that lie on each other do not exclude each other. Where the node's own face beyond slides
+    /// on the facet round the corner, as where two joints cross, the side behind it is no more than a ledge.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
@@ -249,6 +250,9 @@ impl Narrow<'_> {
         let own = self.node_place(neighbour as usize) - p;
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
+        if !flush && -facing.dot(&outward) > FLUSH_COSINE {
+            return (p - q).dot(&outward) < -LEDGE * self.size;
+        }
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
         }
@@ -375,10 +379,11 @@ impl Narrow<'_> {
         let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
         let mut facing = 0.0;
         if q > p {
-            facing += overlap(q) + high * self.reach_beyond(self.boundary.node_next[before], to, q, pick);
+            let beyond = boundary.node_next[boundary.node_next[before] as usize];
+            facing += overlap(q) + high * self.reach_beyond(beyond, to, q, pick);
         }
         if r < p {
-            let beyond = self.boundary.node_previous[before];
+            let beyond = boundary.node_previous[before];
             facing += overlap(r) + low * self.reach_beyond(beyond, from, r, pick);
         }
         let share = self.share_at_corner(node, pick);

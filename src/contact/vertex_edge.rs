@@ -97,12 +97,13 @@ impl VertexEdge {
     ///
     /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
     /// stiffer one gets a dashpot that grows towards that of θ. The step is `dt` and the force acts for `kick` (s);
-    /// `last` is the motion (m) normal and shear in the last step.
-    pub fn centre(&mut self, physical: [bool; 2], dt: f64, kick: f64, last: [f64; 2]) {
+    /// `last` is the motion (m) normal and shear in the last step, and `damping` 2ξ·√M of the two blocks against each
+    /// other (kg½/m½): what a spring takes of their bouncing.
+    pub fn centre(&mut self, physical: [bool; 2], dt: f64, kick: f64, last: [f64; 2], damping: f64) {
         for k in (0..2).filter(|k| physical[*k]) {
             let stiff = self.stiffness[k] * self.compliance[k] * dt * kick;
             let dashpot = if stiff > 1.0 { self.forward[k] * (1.0 - 1.0 / stiff) } else { 0.0 };
-            self.forward[k] = CENTRED + dashpot;
+            self.forward[k] = CENTRED + dashpot + damping / (self.stiffness[k].sqrt() * dt);
             self.lag[k] = -CENTRED * last[k];
         }
     }

@@ -305,13 +305,19 @@ impl Step<'_> {
     fn answer(&mut self, dt: f64) {
         let clock = Instant::now();
         let (state, scratch) = (&*self.state, &mut *self.scratch);
-        let (is_dynamic, kick) = (matches!(self.regime, Regime::Dynamic { .. }), 0.5 * (state.dt_last + dt));
+        let kick = 0.5 * (state.dt_last + dt);
+        let (is_dynamic, ratio) = match self.regime {
+            Regime::Dynamic { damping } => (true, damping),
+            Regime::Static { .. } => (false, 0.0),
+        };
         for contact in &mut scratch.contacts {
             contact.approach = contact.relative(&scratch.predicted);
             let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
             if physical != [false; 2] {
                 let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
-                contact.centre(physical, dt, kick, last);
+                let inverse: f64 = contact.pair.blocks.map(|b| scratch.metric.inverse_total[b as usize]).iter().sum();
+                let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
+                contact.centre(physical, dt, kick, last, bouncing);
             }
         }
         self.load_supports(dt);

@@ -5,7 +5,6 @@ use crate::geometry::Vector;
 use crate::mechanics::{self, Deformation, push_mass};
 
 use super::{Inertia, Step};
-use crate::step::blocks::pre_stress;
 
 impl Step<'_> {
     /// Internal forces at the places reached (Eq. 7).
