@@ -8,7 +8,7 @@ use super::Elasticity;
 pub const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
 
 /// ∫ρ w_a w_b (kg/m) over an element's polygon for the six pairs of its covers, exact since the weights are affine
-/// (Eq. I2): A·w_a·w_b at the centroid plus the second moments of area about it.
+/// (Eq. 68): A·w_a·w_b at the centroid plus the second moments of area about it.
 pub fn element_mass(density: f64, weights: [f64; 3], g: &[Vector; 3], about_centroid: &polygon::Moments) -> [f64; 6] {
     let [xx, yy, xy] = about_centroid.second;
     PAIRS.map(|[a, b]| {
@@ -28,7 +28,7 @@ pub fn push_mass(mass: &[f64; 6], ids: [usize; 3], field: &[Vector], out: &mut [
     }
 }
 
-/// Stiffness (N/m per metre) between two covers of an element with turned gradients R·G, row by row (Eq. I3).
+/// Stiffness (N/m per metre) between two covers of an element with turned gradients R·G, row by row (Eq. 69).
 pub fn stiffness_block(area: f64, rock: &Elasticity, ga: Vector, gb: Vector) -> [f64; 4] {
     let (lambda, mu) = (area * rock.lambda, area * rock.mu);
     let common = mu * ga.dot(&gb);

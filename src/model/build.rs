@@ -44,10 +44,32 @@ pub struct Built {
 /// The first key of the case that does not fit the model: geometry, references to places without rock, memory.
 pub fn build(case: &Case) -> Result<Built, Invalid> {
     case.validate()?;
+    implicit::know(case)?;
     let plane = geometry::arrange_case(case)?;
-    let covers = cover::cut(plane.mesh, &plane.arrangement);
+    let noding = plane.arrangement.report.clone();
+    let mut warnings = warnings(&noding);
+    let covers = cover::cut(plane.mesh.clone(), &plane.arrangement);
+    let tolerance = places_tolerance(&noding);
+    let (slope, bolt_warnings) = slope(case, &plane, covers, tolerance)?;
+    quiet::check_columns(&slope)?;
+    let places = Places { covers: &slope.covers, tolerance };
+    let monitors = monitors(case, &places)?;
+    let state = initial_state(case, &slope, &places)?;
+    warnings.extend(rock::overstressed(case, &slope));
+    warnings.extend(bolt_warnings);
+    warnings.extend(quiet::warning(case));
+    Ok(Built { slope, state, monitors, noding, traces: plane.traces, warnings })
+}
+
+/// The fixed part of the model, and what its bolts have to tell.
+fn slope(
+    case: &Case,
+    plane: &geometry::Plane,
+    covers: Covers,
+    tolerance: f64,
+) -> Result<(Slope, Vec<String>), Invalid> {
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, tolerance: places_tolerance(&plane.arrangement.report) };
+    let places = Places { covers: &covers, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
@@ -59,11 +81,9 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     let boundary = Boundary::new(&covers, &BoundaryOptions::default());
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
-    let monitors = monitors(case, &places)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
-    implicit::know(case)?;
     let slope = Slope {
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
@@ -99,14 +119,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
         failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
         covers,
     };
-    let places = Places { covers: &slope.covers, tolerance: places_tolerance(&plane.arrangement.report) };
-    quiet::check_columns(&slope)?;
-    let state = initial_state(case, &slope, &places)?;
-    let mut warnings = warnings(&plane.arrangement.report);
-    warnings.extend(rock::overstressed(case, &slope));
-    warnings.extend(bolt_warnings);
-    warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
+    Ok((slope, bolt_warnings))
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.

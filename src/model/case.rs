@@ -539,7 +539,8 @@ pub struct Stage {
     /// speed in the first stage, 0 in later stages.
     #[serde(default)]
     pub ramp: Option<f64>,
-    /// Dynamic: damping ratio ξ of the deformation of each block.
+    /// Dynamic: damping ratio ξ of the deformation of each block and of bouncing on joints; default 0.1. Waves that
+    /// are to keep their height want 0.
     #[serde(default)]
     pub damping: Option<f64>,
     /// Points (m): the blocks that hold them are removed.

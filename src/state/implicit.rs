@@ -4,7 +4,7 @@ use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::mechanics::CoverMatrix;
 
-/// Newmark's rule: velocities and places from the accelerations at both ends of a step (Eq. I1).
+/// Newmark's rule: velocities and places from the accelerations at both ends of a step (Eq. 67).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// β = ½, γ = 1: the acceleration of the end holds throughout; damps fast motion.
@@ -22,7 +22,7 @@ pub struct Implicit {
     pub iterations_max: u32,
     /// Largest displacement (m) in a sub-step.
     pub displacement_max: f64,
-    /// ∫ρ w_a w_b (kg/m) of each element for the pairs of its covers (Eq. I2).
+    /// ∫ρ w_a w_b (kg/m) of each element for the pairs of its covers (Eq. 68).
     pub element_mass: Vec<[f64; 6]>,
 }
 

@@ -80,7 +80,7 @@ impl Step<'_> {
         buffers.matrix.factorise()
     }
 
-    /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. I3).
+    /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, mass: f64, stiffness: f64) {
         let (slope, state) = (self.slope, &*self.state);
         let (covers, buffers) = (&slope.covers, &mut self.scratch.implicit);

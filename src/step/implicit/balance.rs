@@ -58,7 +58,7 @@ impl Step<'_> {
         }
     }
 
-    /// Forces out of balance (Eq. I1) at the places reached; returns their norm and the norm of the largest part.
+    /// Forces out of balance (Eq. 67) at the places reached; returns their norm and the norm of the largest part.
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
         let slope = self.slope;
         self.push_bearing();
@@ -127,7 +127,7 @@ impl Step<'_> {
     }
 }
 
-/// Forces and state of a contact after displacements of its covers (Eq. I4): the springs at the places reached, within
+/// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the places reached, within
 /// what the joint can carry.
 fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
     let [normal, shear] = springs(contact, moved);

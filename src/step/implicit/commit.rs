@@ -31,7 +31,7 @@ impl Step<'_> {
         self.scratch.seconds.commit += clock.elapsed().as_secs_f64();
     }
 
-    /// Places, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. I1).
+    /// Places, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
     fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let (state, scratch) = (&mut *self.state, &*self.scratch);
         let buffers = &scratch.implicit;
@@ -50,7 +50,7 @@ impl Step<'_> {
         }
     }
 
-    /// Works of this sub-step (Eq. I5): every force by what its point has moved, the forces of the end by their share.
+    /// Works of this sub-step (Eq. 71): every force by what its point has moved, the forces of the end by their share.
     fn implicit_works(&mut self, implicit: &Implicit, inertia: &Inertia) -> Ledger {
         let mut works = self.bearing_works(inertia);
         works.external_work = self.load_work(inertia);

@@ -73,7 +73,7 @@ impl Step<'_> {
         Inertia { dt, factor, end, rests }
     }
 
-    /// Inertia over displacement (1/s²) of a static sub-step (Eq. I6): that of a step from rest over a time that grows
+    /// Inertia over displacement (1/s²) of a static sub-step (Eq. 72): that of a step from rest over a time that grows
     /// while sub-steps settle easily and is cut when one does not.
     fn static_inertia(&mut self, dt: f64) -> f64 {
         let stretch = &mut self.state.static_stretch;

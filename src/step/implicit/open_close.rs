@@ -183,7 +183,7 @@ impl Step<'_> {
         }
     }
 
-    /// What inertia sees besides the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. I1).
+    /// What inertia sees besides the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
     fn set_offset(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let state = &*self.state;
         let buffers = &mut self.scratch.implicit;
