@@ -24,6 +24,10 @@ pub fn parse(file: &str, text: &str) -> Result<Record, CaseError> {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
+        if line.contains(';') && line.contains(',') {
+            let message = format!("{line:?} has commas and semicolons; write decimal points, as in `0.02, 1.5`");
+            return Err(CaseError::at(file, k, "", message));
+        }
         let mut fields = line.split([',', ';', '\t', ' ']).filter(|field| !field.is_empty());
         match [fields.next(), fields.next()].map(number) {
             [Ok(time), Ok(value)] => {
@@ -67,6 +71,7 @@ mod tests {
         for (text, message) in [
             ("t,a\n0,1\n0.1,x\n", "quake.csv:3: \"x\" is no number"),
             ("t,a\nunits,g\n0,1\n", "quake.csv:2: \"units\" is no number"),
+            ("0,00;0,10\n", "quake.csv:1: \"0,00;0,10\" has commas and semicolons"),
             ("0,1\n0.1\n", "quake.csv:2: the line has fewer than 2 columns"),
             ("0,1\n0.1,inf\n", "quake.csv:2: \"inf\" is not finite"),
             ("# nothing\n", "quake.csv:1: the file has no numbers"),

@@ -69,9 +69,9 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
                       an offset of some σ/√(Eρ)";
         outcome.rows.extend([
             Row::new(format!("{name}: speed as the pulse ends"), "m/s", speed, exact.speed)
-                .within(Tolerance::Relative(0.01), reason),
+                .within(Tolerance::Absolute(0.01 * exact.speed + 1e-6), reason),
             Row::new(format!("{name}: slip"), "m", slide.way_at(duration), exact.slip)
-                .within(Tolerance::Relative(0.01), reason),
+                .within(Tolerance::Absolute(0.01 * exact.slip + 1e-6), reason),
             Row::new(format!("{name}: time of the stop"), "s", slide.stop(1e-4 * exact.slip), exact.stop)
                 .within(Tolerance::Relative(0.02), "read where the way is within 1e-4 of its end: 1 % of the braking"),
             Row::ledger(&slide.last),

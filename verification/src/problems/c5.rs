@@ -96,7 +96,7 @@ impl Shake {
         }
         outcome.rows.extend(rows.into_iter().map(|(quantity, unit, computed, exact, share)| {
             let row = Row::new(format!("{name}: {quantity}"), unit, computed, exact).from(origin);
-            row.within(Tolerance::Relative(share), reason)
+            row.within(Tolerance::Absolute(share * exact.abs() + 1e-6), reason)
         }));
         outcome.rows.push(Row::ledger(&slide.last));
         let every = (path.len() / 300).max(1);

@@ -90,7 +90,7 @@ impl Strength {
     fn with_joint(&self, b: f64) -> f64 {
         let [cohesion, phi] = self.joint;
         let share = (1.0 - phi.tan() * b.tan()) * (2.0 * b).sin();
-        if share > 0.0 { (2.0 * cohesion / share).min(self.cap()) } else { self.cap() }
+        if share > 1e-9 { (2.0 * cohesion / share).min(self.cap()) } else { self.cap() }
     }
 }
 
