@@ -229,8 +229,7 @@ impl Narrow<'_> {
     /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
     /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
     /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
-    /// shallower one. Faces that lie on each other do not exclude each other. Where the node's own face beyond slides
-    /// on the facet round the corner, as where two joints cross, the side behind it is no more than a ledge.
+    /// shallower one. Faces that lie on each other do not exclude each other.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
@@ -250,9 +249,10 @@ impl Narrow<'_> {
         let own = self.node_place(neighbour as usize) - p;
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
-        if !flush && -facing.dot(&outward) > FLUSH_COSINE {
-            return (p - q).dot(&outward) < -LEDGE * self.size;
-        }
+        let own_side = || match end {
+            End::Start => boundary.side_of_node_before(node),
+            End::Finish => boundary.side[boundary.node_point[node] as usize],
+        };
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
         }
@@ -260,10 +260,6 @@ impl Narrow<'_> {
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
         }
-        let own_side = || match end {
-            End::Start => boundary.side_of_node_before(node),
-            End::Finish => boundary.side[boundary.node_point[node] as usize],
-        };
         if pick.gap > 0.0 || gap > 0.0 {
             return gap <= tolerance;
         }
