@@ -72,7 +72,7 @@ pub fn compare(quick: bool) -> Result<Comparison, Trouble> {
     for &size in inclines {
         entries.extend(pair(|integrator| models::incline(integrator, size, None))?);
     }
-    let spacings: &[f64] = if quick { &[24.0, 16.0, 12.0] } else { &[6.4, 3.2, 1.65] };
+    let spacings: &[f64] = if quick { &[24.0, 16.0, 12.0] } else { &[12.0, 6.4, 3.2] };
     for &spacing in spacings {
         let mut places = Vec::new();
         entries.extend(pair(|integrator| models::slope(integrator, spacing, &mut places))?);

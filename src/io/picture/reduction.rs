@@ -9,6 +9,9 @@ use super::slope::{
 use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle};
 use crate::model::strength_reduction::{Reduction, Trial, Verdict};
 
+/// Name of a quantity of a trial, and its value.
+type Quantity = (&'static str, fn(&Trial) -> f64);
+
 /// Height (px) of each of the two frames of trials.
 const FRAME: f64 = 380.0;
 /// Distance (px) of the frames.
@@ -24,7 +27,7 @@ const DECADES_MAX: f64 = 12.0;
 pub fn trials_picture(title: &str, reduction: &Reduction) -> Picture {
     let mut sheet = Svg::new(WIDTH, TOP + 2.0 * FRAME + BETWEEN + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     draw_title(&mut sheet, title, &caption(reduction));
-    let quantities: [(&str, fn(&Trial) -> f64); 2] =
+    let quantities: [Quantity; 2] =
         [("largest displacement [m]", |t| t.displacement), ("kinetic energy [J/m]", |t| t.kinetic)];
     for (k, (name, of)) in quantities.into_iter().enumerate() {
         let top = TOP + k as f64 * (FRAME + BETWEEN);

@@ -67,9 +67,12 @@ fn case(setup: &Setup, ratio: f64) -> String {
     )
 }
 
+/// Curve of force over way, forces at the start, and the last report.
+type Lowering = (Vec<[f64; 2]>, [f64; 2], StepReport);
+
 /// Lowers the wedge past its collapse: displacement and force of the supports, the initial horizontal force and their
 /// greatest force, the last report.
-fn lower(setup: &mut Setup, ratio: f64) -> Result<(Vec<[f64; 2]>, [f64; 2], StepReport), Trouble> {
+fn lower(setup: &mut Setup, ratio: f64) -> Result<Lowering, Trouble> {
     let [a, ks, h0] = [setup.get("a_deg").to_radians(), setup.get("ks"), setup.get("h0")];
     let force = collapse(a, setup.get("phi_deg").to_radians(), ratio) * h0;
     let way = force / (2.0 * ks * (a.cos().powi(2) + ratio * a.sin().powi(2)));
