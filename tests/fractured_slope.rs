@@ -44,6 +44,7 @@ fn the_fractured_slope_rests_and_then_fails() {
     let counters = simulation.state().counters;
     println!("worst overlap {worst} of {size}, {counters:?}");
     assert!(simulation.monitor(0).0.norm() > 2.0, "the crest must move");
-    assert!(worst < 0.01 * size, "overlap {worst} m");
+    // A block of M = 6e4 kg/m that comes down at 5 m/s sinks v·√(M/k) = 0.03 m into the springs of a metre of its face.
+    assert!(worst < 0.015 * size, "overlap {worst} m");
     assert!((counters.unsettled as f64) < 1e-3 * counters.substeps as f64, "{counters:?}");
 }
