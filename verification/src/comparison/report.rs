@@ -26,9 +26,21 @@ impl Comparison {
         for (plot, picture) in self.plots.iter().zip(pictures) {
             let _ = write!(text, "\n![{}]({picture})\n", plot.title);
         }
-        text
+        text.lines().map(folded).collect()
     }
 }
+
+/// A line with its end; prose is folded to the width of the documents, tables are not.
+fn folded(line: &str) -> String {
+    if line.starts_with('|') || line.starts_with('!') {
+        return format!("{line}\n");
+    }
+    let indent = if line.starts_with("- ") { "\n  " } else { "\n" };
+    format!("{}\n", crate::text::wrapped(line, COLUMNS).replace('\n', indent))
+}
+
+/// Columns of prose.
+const COLUMNS: usize = 110;
 
 const HEAD: &str = "# The explicit method beside the implicit one\n\n\
 Written by `cargo xtask compare`; every number was measured in one run on one machine, both methods in turn on the\n\
