@@ -63,7 +63,7 @@ fn cases_and_report_are_written_and_the_cases_run() {
     assert_eq!(answer.status, Some(0), "{answer:?}");
     assert!(place.path("report/verification/d5-1.svg").exists());
     assert!(std::fs::read_to_string(place.path("report/verification.md")).expect("a report").contains("## D5 Drop"));
-    let run = place.enmm(&["run", "cases/d5/default_contact.toml", "-o", "results", "--quiet"]);
+    let run = place.enmm(&["run", "cases/d5/default_step.toml", "-o", "results", "--quiet"]);
     assert_eq!(run.status, Some(0), "{run:?}");
 }
 
@@ -79,7 +79,7 @@ fn a_problem_that_does_not_pass_exits_with_1() {
 fn wrong_arguments_exit_with_2_and_name_the_remedy() {
     let place = place();
     let refuse = |arguments: &[&str], parts: &[&str]| place.enmm(arguments).assert_bad_input(parts);
-    refuse(&["verify", "--only", "D9"], &["\"D9\"", "nearest is D"]);
+    refuse(&["verify", "--only", "D9"], &["\"D9\"", "nearest is C9"]);
     refuse(&["verify", "--only", "D5", "--set", "height=1"], &["\"height\"", "m, k, H, omega_dt"]);
     refuse(&["verify", "--only", "D5", "--set", "H=100"], &["H is 100 m", "from 0.05 to 5"]);
     refuse(&["verify", "--only", "D5", "--set", "H"], &["NAME=VALUE"]);
