@@ -97,17 +97,17 @@ impl BoltSegment {
 
     /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without
     /// forces.
-    pub fn row(&self, index: u32, state: &BoltState, slope: &BoltView) -> BoltRow {
-        let places = [0, 1].map(|k| self.place(k, slope.star, slope.displacement));
+    pub fn row(&self, index: u32, state: &BoltState, view: &BoltView) -> BoltRow {
+        let places = [0, 1].map(|k| self.place(k, view.star, view.displacement));
         let span = places[0] - places[1];
         let length = span.norm();
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
-        let arms = [0, 1].map(|k| places[k] - slope.motion[self.blocks[k] as usize].centre);
+        let arms = [0, 1].map(|k| places[k] - view.motion[self.blocks[k] as usize].centre);
         let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
-        let [compliance] = pair.weigh(slope.metric, [direction]);
+        let [compliance] = pair.weigh(view.metric, [direction]);
         BoltRow {
             segment: index,
-            approach: pair.difference(slope.predicted).dot(&direction),
+            approach: pair.difference(view.predicted).dot(&direction),
             pair,
             direction,
             length,

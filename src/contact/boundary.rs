@@ -1,6 +1,6 @@
 //! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
 
-use crate::cover::{BoundaryPiece, Covers, Weights};
+use crate::cover::{self, BoundaryPiece, Covers, Weights};
 use crate::geometry::{NONE, Point, Vector};
 
 /// What the end of a side is.
@@ -105,7 +105,7 @@ impl Boundary {
 
     /// A cover field at point `k`.
     pub fn sample(&self, k: usize, field: &[Vector]) -> Vector {
-        self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
+        cover::sample(&self.covers[k], &self.weights[k], field)
     }
 
     /// Point after point `k`.

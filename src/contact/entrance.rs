@@ -1,6 +1,6 @@
 //! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
 
-use crate::cover::Weights;
+use crate::cover::{self, Weights};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
@@ -249,10 +249,6 @@ impl Narrow<'_> {
         let own = self.node_place(neighbour as usize) - p;
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
-        let own_side = || match end {
-            End::Start => boundary.side_of_node_before(node),
-            End::Finish => boundary.side[boundary.node_point[node] as usize],
-        };
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
         }
@@ -260,6 +256,10 @@ impl Narrow<'_> {
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
         }
+        let own_side = || match end {
+            End::Start => boundary.side_of_node_before(node),
+            End::Finish => boundary.side[boundary.node_point[node] as usize],
+        };
         if pick.gap > 0.0 || gap > 0.0 {
             return gap <= tolerance;
         }
@@ -316,12 +316,9 @@ impl Narrow<'_> {
     fn opened(&self, node: usize, pick: &Pick) -> f64 {
         let boundary = self.boundary;
         let point = boundary.node_point[node] as usize;
-        let at = |covers: &[u32; 3], weights: Weights| -> Vector {
-            covers.iter().zip(weights).map(|(&i, w)| self.velocity[i as usize] * w).sum()
-        };
         let covers = &boundary.covers[pick.edge as usize];
         let weights = self.weights_at(covers, self.node_place(node));
-        let relative = at(&boundary.covers[point], boundary.weights[point]) - at(covers, weights);
+        let relative = boundary.sample(point, self.velocity) - cover::sample(covers, &weights, self.velocity);
         relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 

@@ -1,6 +1,6 @@
 //! Two material points that act on each other: a node and an edge, or the ends of a bolt.
 
-use crate::cover::Weights;
+use crate::cover::{self, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
@@ -22,9 +22,7 @@ pub struct Pair {
 impl Pair {
     /// A cover field at the first point relative to the second.
     pub fn difference(&self, field: &[Vector]) -> Vector {
-        let at = |k: usize| -> Vector {
-            self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| field[i as usize] * w).sum()
-        };
+        let at = |k: usize| cover::sample(&self.covers[k], &self.weights[k], field);
         at(0) - at(1)
     }
 

@@ -1,7 +1,7 @@
 //! Supports: bilateral springs that hold a material point along one direction, and dashpots of quiet boundaries, judged
 //! in the same iteration.
 
-use crate::cover::Weights;
+use crate::cover::{self, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
@@ -62,8 +62,7 @@ impl Support {
 
     /// Sum of a cover field at the point, along the direction.
     pub fn sample(&self, field: &[Vector]) -> f64 {
-        let at: Vector = self.covers.iter().zip(self.weights).map(|(&i, w)| field[i as usize] * w).sum();
-        at.dot(&self.direction)
+        cover::sample(&self.covers, &self.weights, field).dot(&self.direction)
     }
 
     /// Inverse effective mass of the point along the direction (m/kg); its block has the plain lumped metric.

@@ -1,5 +1,6 @@
 //! The open–close iteration: Gauss–Seidel sweeps over contacts and supports (Eqs. 14–17).
 
+use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
@@ -200,8 +201,7 @@ impl OpenClose<'_> {
     fn increment_at(&self, pair: &Pair, k: usize) -> Vector {
         let block = pair.blocks[k] as usize;
         let (metric, push) = (self.metric, &self.push[block]);
-        let own: Vector =
-            pair.covers[k].iter().zip(pair.weights[k]).map(|(&i, w)| self.increment[i as usize] * w).sum();
+        let own = cover::sample(&pair.covers[k], &pair.weights[k], self.increment);
         let share = metric.inverse_total[block];
         let common = (push.impulse * (1.0 + metric.square[block] * share - pair.z[k]) - push.weighted) * share;
         let spin = metric.spin[block] * push.moment;

@@ -11,5 +11,12 @@ pub use cut::{Covers, cut};
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
 
+use crate::geometry::Vector;
+
 /// Weights of the three physical covers of an element at a point.
 pub type Weights = [f64; 3];
+
+/// A field over all covers at the point where three of them have these weights.
+pub fn sample(covers: &[u32; 3], weights: &Weights, field: &[Vector]) -> Vector {
+    covers.iter().zip(weights).map(|(&i, w)| field[i as usize] * *w).sum()
+}

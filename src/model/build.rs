@@ -46,10 +46,9 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     case.validate()?;
     implicit::know(case)?;
     let plane = geometry::arrange_case(case)?;
-    let noding = plane.arrangement.report.clone();
-    let mut warnings = warnings(&noding);
+    let mut warnings = warnings(&plane.arrangement.report);
     let covers = cover::cut(plane.mesh.clone(), &plane.arrangement);
-    let tolerance = places_tolerance(&noding);
+    let tolerance = places_tolerance(&plane.arrangement.report);
     let (slope, bolt_warnings) = slope(case, &plane, covers, tolerance)?;
     quiet::check_columns(&slope)?;
     let places = Places { covers: &slope.covers, tolerance };
@@ -58,7 +57,7 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding, traces: plane.traces, warnings })
+    Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
 }
 
 /// The fixed part of the model, and what its bolts have to tell.

@@ -1,7 +1,7 @@
 //! The built model: nothing in it changes in time.
 
 use crate::contact::{BoltSegment, Boundary, JointLaw, Support};
-use crate::cover::Covers;
+use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, PreStress, Record, StressField};
 
@@ -188,7 +188,6 @@ pub struct Slope {
 impl Slope {
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
     pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
-        let weights = self.covers.weights(element, p);
-        self.covers.element_covers[element].iter().zip(weights).map(|(&i, w)| field[i as usize] * w).sum()
+        cover::sample(&self.covers.element_covers[element], &self.covers.weights(element, p), field)
     }
 }

@@ -91,11 +91,6 @@ pub fn run_all(simulation: &mut Simulation) -> Result<Vec<StepReport>, Trouble> 
     Ok(reports)
 }
 
-/// Whether a static stage that has just ended came to rest, instead of running out of time.
-pub fn at_rest_by_end(simulation: &Simulation, report: &StepReport) -> bool {
-    simulation.at_rest(report)
-}
-
 impl Row {
     /// What the energy ledger leaves unexplained, relative to its largest term (claim A4).
     pub fn ledger(report: &StepReport) -> Self {

@@ -90,6 +90,17 @@ pub struct Series {
     pub marks: bool,
 }
 
+impl Series {
+    /// Computed points as marks beside the line of an exact function of their first coordinate.
+    pub fn beside(name: &str, exact: impl Fn(f64) -> f64, points: Vec<[f64; 2]>) -> Vec<Self> {
+        let line = points.iter().map(|p| [p[0], exact(p[0])]).collect();
+        vec![
+            Self { name: name.to_owned(), points: line, marks: false },
+            Self { name: "computed".to_owned(), points, marks: true },
+        ]
+    }
+}
+
 /// A plot of a problem.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {

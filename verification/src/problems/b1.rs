@@ -4,7 +4,7 @@ use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
 use super::beam::{Beam, Plane};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, at_rest_by_end, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
 
 pub const PROBLEM: Problem = Problem {
     id: "B1",
@@ -108,7 +108,7 @@ fn solve(setup: &mut Setup, beam: &Beam, load: Load, rows: f64) -> std::result::
     let name = format!("b1_{}_{load:?}_{rows}_rows", beam.plane.name()).to_lowercase();
     let mut simulation = setup.simulation(&name, text)?;
     let report = run_stage(&mut simulation)?;
-    if !at_rest_by_end(&simulation, &report) {
+    if !simulation.at_rest(&report) {
         return Err(Trouble(format!("{name}: the beam has not come to rest in its time")));
     }
     let [left, middle, right] = [0, 1, 2].map(|k| -simulation.monitor(k).0.y);

@@ -3,7 +3,7 @@
 use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, at_rest_by_end, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
 
 pub const PROBLEM: Problem = Problem {
     id: "B3",
@@ -33,7 +33,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let size = height / rows;
         let mut simulation = setup.simulation(&format!("b3_{rows}_rows"), text(setup, size))?;
         let report = run_stage(&mut simulation)?;
-        if !at_rest_by_end(&simulation, &report) {
+        if !simulation.at_rest(&report) {
             return Err(Trouble(format!("b3, {rows} rows: the column has not come to rest in its time")));
         }
         let settlement = -simulation.monitor(0).0.y;

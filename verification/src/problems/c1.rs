@@ -1,6 +1,6 @@
 //! C1: a block on an incline.
 
-use super::incline::{GRAVITY, rock, turn};
+use super::incline::{G, rock, turn};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
@@ -39,7 +39,7 @@ pub const PROBLEM: Problem = Problem {
 };
 
 /// Density of the rock (kg/m³) times g.
-const UNIT_WEIGHT: f64 = 2650.0 * GRAVITY;
+const UNIT_WEIGHT: f64 = 2650.0 * G;
 
 /// A block 1 m high and long, or 2 m long on planes of 44° and more, on a plane that falls to the right.
 struct Incline {
@@ -55,7 +55,7 @@ impl Incline {
     /// Acceleration down the plane (m/s²) of a block that slides.
     fn acceleration(&self) -> f64 {
         let (s, c) = self.slope.to_radians().sin_cos();
-        GRAVITY * (s - c * self.friction.to_radians().tan())
+        G * (s - c * self.friction.to_radians().tan())
     }
 
     fn long(&self) -> f64 {
@@ -194,7 +194,7 @@ const SWING: &str = "the drop of friction sets the block swinging: its speed is 
 fn way_row(incline: &Incline, slide: &Slide) -> Row {
     let t = slide.time();
     let exact = 0.5 * incline.acceleration() * t * t;
-    let swing = 0.1 * UNIT_WEIGHT / (incline.young * UNIT_WEIGHT / GRAVITY).sqrt() * t;
+    let swing = 0.1 * UNIT_WEIGHT / (incline.young * UNIT_WEIGHT / G).sqrt() * t;
     let name = format!("slip, a = {}°, φ = {:.2}°, t = {t:.4} s", incline.slope, incline.friction);
     Row::new(name, "m", slide.way(), exact).within(Tolerance::Absolute(1e-4 * exact + swing), SWING)
 }
@@ -213,7 +213,7 @@ fn square(setup: &mut Setup, outcome: &mut Outcome, incline: Incline, t: f64) ->
     let [half, whole] = [points[20], points[40]];
     let ratio = whole[1] / half[1] / (whole[0] / half[0]).powi(2) * 4.0;
     let row = Row::new("s(2t) over s(t)", "", ratio, 4.0);
-    let swing = 0.1 * UNIT_WEIGHT / (incline.young * UNIT_WEIGHT / GRAVITY).sqrt() * t / half[1];
+    let swing = 0.1 * UNIT_WEIGHT / (incline.young * UNIT_WEIGHT / G).sqrt() * t / half[1];
     outcome.rows.push(row.within(Tolerance::Relative(1e-4 + swing), SWING));
     outcome.rows.push(way_row(&incline, &slide));
     outcome.rows.push(Row::ledger(&slide.report));

@@ -1,6 +1,6 @@
 //! C10: a high slope with joints that daylight in its face.
 
-use super::incline::{GRAVITY, factor_row, ledger_row, reduce, trial_plot};
+use super::incline::{G, factor_row, ledger_row, reduce, trial_plot};
 use super::plane_slide::PlaneSlide;
 use crate::{Outcome, Parameter, Problem, Setup, Trouble};
 
@@ -35,8 +35,8 @@ fn slide(setup: &Setup, planes: u32) -> PlaneSlide {
         plane: setup.get("joint_deg").to_radians(),
         cohesion: setup.get("cohesion"),
         friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("density") * GRAVITY,
-        water_weight: 1e3 * GRAVITY,
+        unit_weight: setup.get("density") * G,
+        water_weight: 1e3 * G,
         water: 0.0,
         seismic: 0.0,
         young: setup.get("young"),

@@ -38,7 +38,7 @@ pub const PROBLEM: Problem = Problem {
     run,
 };
 
-const GRAVITY: f64 = 9.81;
+const G: f64 = 9.81;
 /// Length and height (m) of the block.
 const BLOCK: [f64; 2] = [2.0, 1.0];
 /// Distance (m) of the wall upslope of the block in which flat bolts are anchored.
@@ -84,7 +84,7 @@ fn case(setup: &Setup, delta: f64, pretension: f64) -> String {
         format!("[joint_law.joint]\nfriction_deg = {:?}\n", (slope + 15.0).min(85.0)),
         format!(
             "[rock.rock]\ndensity = {:?}\nyoung = {:e}\npoisson = 0.25\n",
-            weight * 1e3 / (GRAVITY * length * height),
+            weight * 1e3 / (G * length * height),
             3e8 * weight
         ),
         format!("[[fix]]\nblock = {:?}\n", turned(&[[0.5 * length, -0.75]], slope)[0]),
@@ -137,7 +137,7 @@ fn least(setup: &mut Setup, delta: f64) -> Result<(f64, StepReport), Trouble> {
     let mut high = 0.1e3 * setup.get("weight");
     let slides = |setup: &mut Setup, force: f64| -> Result<(bool, StepReport), Trouble> {
         let (acceleration, report) = trial(setup, delta, force)?;
-        Ok((acceleration > SLIDING * GRAVITY, report))
+        Ok((acceleration > SLIDING * G, report))
     };
     let (mut low, mut last) = (0.0, StepReport::default());
     let (sliding, report) = slides(setup, 0.0)?;

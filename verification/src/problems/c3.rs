@@ -32,14 +32,14 @@ pub const PROBLEM: Problem = Problem {
     run,
 };
 
-const GRAVITY: f64 = 9.81;
+const G: f64 = 9.81;
 const DENSITY: f64 = 2500.0;
 /// Height (m) of the step on which the lower block stands, so that each block keeps a plane of its own.
 const STEP: f64 = 0.2;
 
 /// Accelerations of lower and upper block (m/s²), and the push between them per unit mass where it is determinate.
 fn exact(slope: f64, lower: f64, upper: f64) -> ([f64; 2], Option<f64>) {
-    let alone = |friction: f64| GRAVITY * (slope.sin() - slope.cos() * friction.tan());
+    let alone = |friction: f64| G * (slope.sin() - slope.cos() * friction.tan());
     let [a, b] = [alone(lower), alone(upper)];
     if a >= b {
         return ([a.max(0.0), b.max(0.0)], Some(0.0));
@@ -52,7 +52,7 @@ fn exact(slope: f64, lower: f64, upper: f64) -> ([f64; 2], Option<f64>) {
 /// slope.
 fn case(setup: &Setup) -> String {
     let [slope, length] = ["a_deg", "length"].map(|name| setup.get(name));
-    let end = 2.0 * length + 0.5 * GRAVITY * setup.get("t").powi(2) + 1.0;
+    let end = 2.0 * length + 0.5 * G * setup.get("t").powi(2) + 1.0;
     let outline = [
         [-1.0, -1.2],
         [end, -1.2],

@@ -199,18 +199,10 @@ impl Joint {
                     .within(Tolerance::Absolute(0.02), reason),
             );
         }
-        let points = motion.points(&shares);
         outcome.plots.push(Plot {
             title: format!("D1: {wave:?} velocity step behind one joint"),
             axes: ["time (s)".into(), "v_t/v0".into()],
-            series: vec![
-                Series {
-                    name: "exact".into(),
-                    points: points.iter().map(|p| [p[0], exact(p[0])]).collect(),
-                    marks: false,
-                },
-                Series { name: "computed".into(), points, marks: true },
-            ],
+            series: Series::beside("exact", exact, motion.points(&shares)),
             ..Plot::default()
         });
         Ok(())

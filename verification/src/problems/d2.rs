@@ -113,18 +113,10 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
         let phase = if t > delay { (2.0 * PI * (t - delay) / period).sin() } else { 0.0 };
         phase.clamp(-ratio, ratio)
     };
-    let points = motion.points(&stress);
     outcome.plots.push(Plot {
         title: format!("D2: stress that passes, {name}"),
         axes: ["time (s)".into(), "stress over that of the incident wave".into()],
-        series: vec![
-            Series {
-                name: "clipped sine".into(),
-                points: points.iter().map(|p| [p[0], clipped(p[0])]).collect(),
-                marks: false,
-            },
-            Series { name: "computed".into(), points, marks: true },
-        ],
+        series: Series::beside("clipped sine", clipped, motion.points(&stress)),
         ..Plot::default()
     });
     Ok(())

@@ -3,9 +3,7 @@
 use enmm::model::case::Integrator;
 
 use crate::comparison::{block_displacements, difference, slope_text};
-use crate::{
-    Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, at_rest_by_end, run_stage,
-};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
 
 pub const PROBLEM: Problem = Problem {
     id: "E1",
@@ -34,7 +32,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let mut simulation =
             setup.simulation(&format!("e1_{integrator:?}").to_lowercase(), slope_text(spacing, 0.0))?;
         let report = run_stage(&mut simulation)?;
-        if !at_rest_by_end(&simulation, &report) {
+        if !simulation.at_rest(&report) {
             return Err(Trouble(format!("e1, {integrator:?}: the slope has not come to rest in its time")));
         }
         let ledger = Row::ledger(&report);

@@ -2,21 +2,19 @@
 
 use enmm::model::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
+use super::block;
+pub use super::block::G;
 use crate::{Plot, Row, Series, Setup, Tolerance, Trouble};
 
 /// Points turned by an angle (degrees) about the origin.
 pub fn turn(points: &[[f64; 2]], degrees: f64) -> Vec<[f64; 2]> {
-    let (s, c) = degrees.to_radians().sin_cos();
-    points.iter().map(|p| [c * p[0] - s * p[1], s * p[0] + c * p[1]]).collect()
+    block::turn(points, degrees.to_radians())
 }
 
 /// A rock of plane strain with ν = 0.25 and this Young's modulus (Pa) and unit weight (N/m³).
 pub fn rock(young: f64, unit_weight: f64) -> String {
-    format!("[rock.rock]\ndensity = {:e}\nyoung = {young:e}\npoisson = 0.25\n", unit_weight / GRAVITY)
+    format!("[rock.rock]\ndensity = {:e}\nyoung = {young:e}\npoisson = 0.25\n", unit_weight / G)
 }
-
-/// Acceleration of gravity (m/s²) of all cases here.
-pub const GRAVITY: f64 = 9.81;
 
 /// Finds the factor of safety of a case; the bracket is 0.2 % wide, or 0.5 % when quick.
 ///

@@ -1,6 +1,6 @@
 //! A slope that can slide on planes which daylight in its face, with a tension crack, water and a seismic coefficient.
 
-use super::incline::{GRAVITY, rock};
+use super::incline::{G, rock};
 
 /// Geometry, strength and loads; the toe is at the origin and the slope falls to the left.
 #[derive(Debug, Clone, Copy)]
@@ -107,11 +107,11 @@ impl PlaneSlide {
             text += &format!("[[joint]]\npoints = {plane:?}\n");
         }
         if self.water > 0.0 {
-            let density = self.water_weight / GRAVITY;
+            let density = self.water_weight / G;
             text += &format!("[water]\ntable = {:?}\ndensity = {density:e}\n", [[0.0, 0.0], [x, y + self.water]]);
         }
         if self.seismic != 0.0 {
-            text += &format!("[[load]]\nkind = \"body\"\nacceleration = [{:e}, 0.0]\n", -self.seismic * GRAVITY);
+            text += &format!("[[load]]\nkind = \"body\"\nacceleration = [{:e}, 0.0]\n", -self.seismic * G);
         }
         text + "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 60.0\n"
     }
