@@ -1,0 +1,91 @@
+//! Geometry, law, stiffness and history of an admitted contact.
+
+use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
+use crate::cover::Weights;
+use crate::geometry::{Point, Vector};
+
+use super::{FIRST_SIGHT_DEPTH, Narrow, Pick, right_of};
+
+impl Narrow<'_> {
+    pub(super) fn contact(&self, node: usize, pick: &Pick) -> VertexEdge {
+        let boundary = self.boundary;
+        let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
+        let p = self.place[point];
+        let normal = right_of(pick.tangent);
+        let covers = [boundary.covers[point], boundary.covers[edge]];
+        let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
+        let blocks = [boundary.block[point], boundary.block[edge]];
+        let arms = blocks.map(|b| p - self.motion[b as usize].centre);
+        let (length, penalty_length) = self.tributary(node, pick);
+        let law = self.law(node, edge);
+        let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
+        let closure_max = self.laws[law as usize].closure_max;
+        let closure = Closure { stiffness: stiffness[0], most: closure_max };
+        let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, closure, normal));
+        let history = ContactHistory { edge: pick.edge, ..history };
+        let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
+        let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
+        VertexEdge {
+            limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
+            gap: pick.gap + history.offset - history.rest,
+            penetration: -pick.gap,
+            history,
+            pair,
+            normal,
+            length,
+            stiffness,
+            closure_max,
+            compliance,
+            law,
+            approach: [0.0; 2],
+            forward: [self.theta; 2],
+            lag: [0.0; 2],
+            torn: false,
+            fresh: pick.held.is_none(),
+        }
+    }
+
+    /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
+    pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
+        let [x0, x1, x2] = covers.map(|i| self.star[i as usize] + self.displacement[i as usize]);
+        let (d1, d2, d) = (x1 - x0, x2 - x0, p - x0);
+        let area = d1.perp(&d2);
+        let (w1, w2) = (d.perp(&d2) / area, d1.perp(&d) / area);
+        [1.0 - w1 - w2, w1, w2]
+    }
+
+    /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
+    fn law(&self, node: usize, edge: usize) -> u32 {
+        let law = |trace: u32| self.trace_law.get(trace as usize).copied();
+        law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
+    }
+
+    fn first_sight(&self, node: usize, pick: &Pick, length: f64, closure: Closure, normal: Vector) -> ContactHistory {
+        let mut history = ContactHistory {
+            node: node as u32,
+            side: pick.side,
+            edge: pick.edge,
+            normal_force: 0.0,
+            shear_force: 0.0,
+            shear_stored: 0.0,
+            offset: 0.0,
+            rest: 0.0,
+            slip: 0.0,
+            state: ContactState::Open,
+            intact: self.first,
+        };
+        if -pick.gap > FIRST_SIGHT_DEPTH * self.size {
+            history.offset = -pick.gap;
+        }
+        if let (true, Some(stress)) = (self.first, self.in_situ) {
+            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
+            let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
+            history.normal_force = -traction.dot(&normal);
+            history.rest = closure.under(history.normal_force);
+            history.shear_force = -traction.dot(&pick.tangent);
+            history.shear_stored = history.shear_force;
+            history.state = ContactState::Lock;
+        }
+        history
+    }
+}

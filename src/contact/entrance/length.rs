@@ -1,0 +1,87 @@
+//! Tributary lengths of nodes over edges (Eq. 13).
+
+use crate::contact::Corner;
+
+use super::{HELD_BEYOND, Narrow, Pick};
+
+/// Least tributary length, relative to the mean of the neighbouring node segments.
+const LENGTH_FLOOR: f64 = 1e-3;
+/// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
+const PENALTY_LENGTH_FLOOR: f64 = 0.5;
+
+impl Narrow<'_> {
+    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness (Eq. 13).
+    pub(super) fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
+        let boundary = self.boundary;
+        let here = self.node_place(node);
+        let p = here.dot(&pick.tangent);
+        let before = boundary.node_before[pick.edge as usize] as usize;
+        let from = self.node_place(before).dot(&pick.tangent);
+        let to = self.node_place(boundary.node_next[before] as usize).dot(&pick.tangent);
+        let overlap = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
+        let previous = self.node_place(boundary.node_previous[node] as usize);
+        let next = self.node_place(boundary.node_next[node] as usize);
+        let (q, r) = (previous.dot(&pick.tangent), next.dot(&pick.tangent));
+        let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
+        let mut facing = 0.0;
+        if q > p {
+            let beyond = boundary.node_next[boundary.node_next[before] as usize];
+            facing += overlap(q) + high * self.reach_beyond(beyond, to, q, pick);
+        }
+        if r < p {
+            let beyond = boundary.node_previous[before];
+            facing += overlap(r) + low * self.reach_beyond(beyond, from, r, pick);
+        }
+        let share = self.share_at_corner(node, pick);
+        let span = 0.5 * ((previous - here).norm() + (next - here).norm());
+        let length = (0.5 * facing).max(LENGTH_FLOOR * span);
+        let stiff = length.max(PENALTY_LENGTH_FLOOR * span);
+        (length * share, stiff * share)
+    }
+
+    /// Whether a node is the convex start of a side.
+    fn is_convex_corner(&self, node: usize) -> bool {
+        let (boundary, point) = (self.boundary, self.boundary.node_point[node]);
+        let side = boundary.side[point as usize] as usize;
+        boundary.side_first[side] == point && boundary.side_corner[side] == Corner::Convex
+    }
+
+    /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from
+    /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
+    fn tie_shares(&self, node: usize, pick: &Pick, before: usize, distances: [f64; 2]) -> [f64; 2] {
+        if !self.is_convex_corner(node) {
+            return [0.0; 2];
+        }
+        let boundary = self.boundary;
+        let after = boundary.node_point[boundary.node_next[before] as usize] as usize;
+        let inner =
+            [boundary.side_first[pick.side as usize] != boundary.node_point[before], boundary.side[after] == pick.side];
+        [0, 1].map(|k| {
+            let share = (1.0 - distances[k] / (HELD_BEYOND * self.size)).clamp(0.0, 1.0);
+            if inner[k] { share } else { 0.0 }
+        })
+    }
+
+    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the pick's edge.
+    fn reach_beyond(&self, far: u32, at: f64, target: f64, pick: &Pick) -> f64 {
+        let far = self.node_place(far as usize).dot(&pick.tangent);
+        if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
+    }
+
+    /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
+    /// an inner node, whose segments that corner has.
+    fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
+        let (boundary, side) = (self.boundary, pick.side as usize);
+        let band = HELD_BEYOND * self.size;
+        let convex = |s: usize| boundary.side_corner[s] == Corner::Convex;
+        let least = if self.is_convex_corner(node) { 0.5 } else { 0.0 };
+        let mut share = 1.0f64;
+        if boundary.side_first[side] == pick.edge && convex(side) {
+            share = share.min(least + (1.0 - least) * pick.along / band);
+        }
+        if boundary.side_last[side] == pick.edge && convex(boundary.side_next[side] as usize) {
+            share = share.min(least + (1.0 - least) * (pick.length - pick.along) / band);
+        }
+        share.clamp(1e-3, 1.0)
+    }
+}

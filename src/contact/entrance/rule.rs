@@ -1,0 +1,192 @@
+//! The vertex rule of theory §6: which of the sides near a node it may enter.
+
+use crate::contact::{ContactState, Corner};
+use crate::cover;
+use crate::geometry::{Point, Vector};
+
+use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, is_convex, right_of};
+
+/// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
+const LEDGE: f64 = 5e-4;
+/// Share of its depth to which another facet must be shallower for a deep contact to give way.
+const SHALLOWER: f64 = 0.25;
+/// Cosine from which two sides of a block look apart, with rock between them: 60°.
+const OPPOSED_COSINE: f64 = 0.5;
+/// Cosine from which two faces that look at each other lie on each other: 10°.
+const FLUSH_COSINE: f64 = 0.985;
+
+/// One end of a side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Start,
+    Finish,
+}
+
+impl Narrow<'_> {
+    /// Rule (ii): at a convex end of the side the node is not beyond the end, and not past the facet round it.
+    pub(super) fn within(&self, node: usize, pick: &Pick, p: Point, beyond: f64) -> bool {
+        let tolerance = self.corner_tolerance(pick);
+        [End::Start, End::Finish].into_iter().all(|end| {
+            let (edge, corner, point) = self.end(pick.side as usize, end);
+            if corner == Corner::Reflex {
+                return true;
+            }
+            let past = match end {
+                End::Start => pick.along < 0.0,
+                End::Finish => pick.along > pick.length,
+            };
+            let missed = edge == pick.edge && past && beyond > tolerance;
+            !missed && ((p - point).norm() >= self.size || self.is_inside_round(node, pick, p, end))
+        })
+    }
+
+    /// Edge, corner and place of an end of a side.
+    fn end(&self, side: usize, end: End) -> (u32, Corner, Point) {
+        let boundary = self.boundary;
+        match end {
+            End::Start => {
+                let first = boundary.side_first[side];
+                (first, boundary.side_corner[side], self.place[first as usize])
+            }
+            End::Finish => {
+                let last = boundary.side_last[side];
+                let corner = boundary.side_corner[boundary.side_next[side] as usize];
+                (last, corner, self.ends(last as usize).1)
+            }
+        }
+    }
+
+    /// Whether the node, at a convex `end` of the side, is inside the facet that meets this one there.
+    ///
+    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's
+    /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
+    /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
+    /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
+    /// shallower one. Faces that lie on each other do not exclude each other.
+    fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
+        let boundary = self.boundary;
+        let tolerance = self.corner_tolerance(pick);
+        let side = pick.side as usize;
+        let (edge, _, q) = self.end(side, end);
+        let (round, corner, neighbour) = match end {
+            End::Start => {
+                (boundary.side_last[boundary.side_previous[side] as usize], edge, boundary.node_previous[node])
+            }
+            End::Finish => {
+                let next = boundary.side_first[boundary.side_next[side] as usize];
+                (next, next, boundary.node_next[node])
+            }
+        };
+        let (a, b) = self.ends(round as usize);
+        let outward = right_of(b - a).normalize();
+        let own = self.node_place(neighbour as usize) - p;
+        let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
+        let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
+        if flush || own.dot(&outward) >= 0.0 {
+            return (p - q).dot(&outward) <= tolerance;
+        }
+        let gap = (q - p).dot(&facing);
+        if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
+            return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
+        }
+        let own_side = || match end {
+            End::Start => boundary.side_of_node_before(node),
+            End::Finish => boundary.side[boundary.node_point[node] as usize],
+        };
+        if pick.gap > 0.0 || gap > 0.0 {
+            return gap <= tolerance;
+        }
+        if pick.is_held {
+            return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
+        }
+        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
+    }
+
+    /// Whether a node carried force against a side in the last step.
+    fn carries(&self, node: u32, side: u32) -> bool {
+        let at = self.history.partition_point(|h| (h.node, h.side) < (node, side));
+        self.history.get(at).is_some_and(|h| (h.node, h.side) == (node, side) && h.state != ContactState::Open)
+    }
+
+    /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
+    pub(super) fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
+        let normal = right_of(pick.tangent);
+        let [d, e] =
+            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
+        let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
+        outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
+    }
+
+    /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
+    /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
+    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Option<Pick>]) {
+        for i in 0..picks.len() {
+            for j in i + 1..picks.len() {
+                let (Some(a), Some(b)) = (picks[i], picks[j]) else { continue };
+                let block = |p: &Pick| self.boundary.block[p.edge as usize];
+                if block(&a) != block(&b) {
+                    continue;
+                }
+                let loser = match self.corner_between(a.side, b.side) {
+                    Some(Corner::Reflex) => None,
+                    corner => self.loser(node, &a, &b, corner.is_some()),
+                };
+                if let Some(first) = loser
+                    && let Some(pick) = &mut picks[if first { i } else { j }]
+                {
+                    pick.admitted = false;
+                }
+            }
+        }
+    }
+
+    /// Whether the node was behind the side already before the last step, so that it did not come in through it.
+    fn was_deep(&self, node: usize, pick: &Pick) -> bool {
+        self.opened(node, pick) - pick.gap > FIRST_SIGHT_DEPTH * self.size
+    }
+
+    /// How far (m) the gap opened in the last step.
+    fn opened(&self, node: usize, pick: &Pick) -> f64 {
+        let boundary = self.boundary;
+        let point = boundary.node_point[node] as usize;
+        let covers = &boundary.covers[pick.edge as usize];
+        let weights = self.weights_at(covers, self.node_place(node));
+        let relative = boundary.sample(point, self.velocity) - cover::sample(covers, &weights, self.velocity);
+        relative.dot(&right_of(pick.tangent)) * self.dt_last
+    }
+
+    fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {
+        let (boundary, s, t) = (self.boundary, s as usize, t as usize);
+        if boundary.side_next[s] as usize == t {
+            Some(boundary.side_corner[t])
+        } else if boundary.side_next[t] as usize == s {
+            Some(boundary.side_corner[s])
+        } else {
+            None
+        }
+    }
+
+    /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
+    /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
+    fn loser(&self, node: usize, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
+        let first_is_deeper = a.gap < b.gap;
+        let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
+        let cosine = deep.tangent.dot(&shallow.tangent);
+        let opposed = cosine < -OPPOSED_COSINE && shallow.gap < deep.gap * cosine;
+        if !adjacent && !opposed {
+            return None;
+        }
+        let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
+        let deep_loses = if deep.is_held {
+            shallow.is_held && shallow.admitted
+        } else {
+            let far = !adjacent && shallow.gap > 0.0 || deep.held.is_none() && self.was_deep(node, deep);
+            behind && far || shallow.admitted && shallow.gap <= 0.0
+        };
+        if deep_loses {
+            return Some(first_is_deeper);
+        }
+        let contest = deep.gap <= 0.0 && shallow.gap <= 0.0 && deep.admitted && shallow.admitted;
+        contest.then_some(!first_is_deeper)
+    }
+}

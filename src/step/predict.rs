@@ -1,0 +1,71 @@
+//! The first half of a step: forces without contact, damping and kick.
+
+use std::time::Instant;
+
+use crate::geometry::Vector;
+use crate::mechanics::Damping;
+
+use super::{DECAY_MAX, Regime, Step, applied, blocks, ramp, yielding};
+
+impl Step<'_> {
+    /// Plastic strain at the current displacements.
+    pub(super) fn yield_rock(&mut self) {
+        let clock = Instant::now();
+        yielding::update(self.slope, self.state, self.scratch, self.time);
+        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+    }
+
+    /// Internal forces, loads and the kick of every block without contact forces.
+    pub(super) fn predict(&mut self, dt: f64) {
+        let clock = Instant::now();
+        let kick_dt = 0.5 * (self.state.dt_last + dt);
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let ramp = ramp(self.regime, self.time - state.stage_start);
+        scratch.load_force.fill(Vector::zeros());
+        applied::push_forces(slope, state, self.time, ramp, &mut scratch.load_force);
+        self.damping = self.damping_of(dt);
+        let pass = blocks::Pass {
+            slope,
+            state: &*self.state,
+            acceleration: self.acceleration(dt),
+            damping: self.damping,
+            dt: kick_dt,
+            grain: blocks::grain(self.scratch.serial),
+        };
+        pass.run(self.scratch);
+        self.kick_columns(dt);
+        for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
+            *spin = motion.spin;
+        }
+        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+    }
+
+    /// Acceleration of all rock (m/s²) in a step of `dt` (s).
+    pub(super) fn acceleration(&self, dt: f64) -> Vector {
+        let base = applied::base_motion(self.slope, self.regime, self.state, self.kick_of(dt));
+        applied::acceleration(self.slope, self.state, self.time) * self.ramp() - base
+    }
+
+    /// Share of gravity that acts at this time.
+    pub(super) fn ramp(&self) -> f64 {
+        ramp(self.regime, self.time - self.state.stage_start)
+    }
+
+    /// Damping of a step of `dt` (s) (Eqs. 11, 12).
+    pub(super) fn damping_of(&self, dt: f64) -> Damping {
+        match self.regime {
+            Regime::Dynamic { damping } => Damping::Deformation(damping * dt),
+            Regime::Static { .. } => {
+                let (mut work, mut inertia) = (0.0, 0.0);
+                let state = &*self.state;
+                for i in 0..state.displacement.len() {
+                    let moved = state.displacement[i] - state.stage_displacement[i];
+                    work += state.stage_force[i].dot(&moved);
+                    inertia += self.slope.metric.mass[i] * moved.norm_squared();
+                }
+                let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
+                Damping::Mass((-(rate * dt).min(DECAY_MAX)).exp())
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The second half of a step: who touches whom, and what contacts, supports and bolts answer.
+
+use std::time::Instant;
+
+use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport};
+use crate::geometry::{Point, Vector};
+
+use super::{Regime, Step};
+
+/// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
+const SKIN: f64 = 0.1;
+/// Distance, relative to the mesh size, within which pairs are kept.
+pub(super) const CUTOFF: f64 = 0.25;
+/// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
+pub(super) const REACH: f64 = 0.005;
+
+impl Step<'_> {
+    /// Current places of boundary points, and near pairs when nodes have moved.
+    pub(super) fn search(&mut self) {
+        let clock = Instant::now();
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        let boundary = &slope.boundary;
+        let star = &slope.covers.star_position;
+        let displacement = &self.state.displacement;
+        scratch.place.clear();
+        scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
+            (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
+        }));
+        let size = slope.covers.mesh.size;
+        if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
+            let view = SearchView {
+                boundary,
+                place: &scratch.place,
+                cell: size,
+                cutoff: CUTOFF * size,
+                removed: &self.state.removed,
+                fixed: &scratch.metric.fixed,
+            };
+            scratch.search.search(&view, &mut self.state.near);
+            self.state.counters.searches += 1;
+        }
+        scratch.seconds.search += clock.elapsed().as_secs_f64();
+    }
+
+    /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
+    pub(super) fn reach(&self, dt: f64) -> f64 {
+        REACH * self.slope.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
+    }
+
+    /// Contacts that take part in this step, with geometry and approach velocities: those nearer than `reach` (m);
+    /// covers have moved for `dt_last` (s) with the velocities of the state.
+    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64) {
+        let clock = Instant::now();
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let size = slope.covers.mesh.size;
+        let narrow = Narrow {
+            boundary: &slope.boundary,
+            place: &scratch.place,
+            star: &slope.covers.star_position,
+            displacement: &state.displacement,
+            metric: &scratch.metric,
+            motion: &scratch.motion,
+            laws: &state.laws,
+            trace_law: &scratch.trace_law,
+            strength: state.drive.strength_factor(state.drive.share(self.time)),
+            default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
+            velocity: &state.velocity,
+            dt_last,
+            history: &state.contacts,
+            size,
+            reach,
+            theta: slope.theta,
+            behind: &state.near.behind,
+            first: state.step == 0,
+            in_situ: slope.in_situ.as_ref(),
+        };
+        scratch.contacts.clear();
+        contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
+        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// How contacts, supports and bolts answer in a step of `dt` (s).
+    pub(super) fn answer(&mut self, dt: f64) {
+        let clock = Instant::now();
+        let (state, scratch) = (&*self.state, &mut *self.scratch);
+        let kick = 0.5 * (state.dt_last + dt);
+        let (is_dynamic, ratio) = match self.regime {
+            Regime::Dynamic { damping } => (true, damping),
+            Regime::Static { .. } => (false, 0.0),
+        };
+        for contact in &mut scratch.contacts {
+            contact.approach = contact.relative(&scratch.predicted);
+            let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
+            if physical != [false; 2] {
+                let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
+                let inverse: f64 = contact.pair.blocks.map(|b| scratch.metric.inverse_total[b as usize]).iter().sum();
+                let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
+                contact.centre(physical, dt, kick, last, bouncing);
+            }
+        }
+        self.load_supports(dt);
+        self.load_bolts();
+        self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// Bolts that bear in this step.
+    pub(super) fn load_bolts(&mut self) {
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let view = BoltView {
+            star: &slope.covers.star_position,
+            displacement: &state.displacement,
+            predicted: &scratch.predicted,
+            metric: &scratch.metric,
+            motion: &scratch.motion,
+        };
+        let rows = slope.bolts.iter().zip(&state.bolts).enumerate();
+        let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
+        scratch.bolts.clear();
+        scratch.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
+    }
+
+    /// Open–close iteration on the predicted velocities.
+    pub(super) fn open_close(&mut self, dt: f64) -> SweepReport {
+        let clock = Instant::now();
+        let kick = 0.5 * (self.state.dt_last + dt);
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        scratch.increment.fill(Vector::zeros());
+        scratch.push.fill(contact::BlockPush::default());
+        let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
+        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
+        let iteration =
+            OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
+        let (contacts, rows, bolts) = (&mut scratch.contacts, &mut scratch.rows, &mut scratch.bolts);
+        let swept = contact::open_close(iteration, contacts, &slope.supports, rows, bolts);
+        scratch.seconds.sweep += clock.elapsed().as_secs_f64();
+        swept
+    }
+}

@@ -1,0 +1,46 @@
+//! Works of a sub-step: what the ledger of energies adds up.
+
+use crate::contact::ContactState;
+use crate::geometry::Vector;
+use crate::state::Ledger;
+
+use super::{Step, blocks};
+
+impl Step<'_> {
+    /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
+    pub(super) fn works(&self, dt: f64) -> Ledger {
+        let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
+        let pass =
+            blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt, grain: usize::MAX };
+        let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
+        let kick_dt = 0.5 * (state.dt_last + dt);
+        for contact in &scratch.contacts {
+            let before = contact.relative(&state.velocity);
+            let after = contact.relative(&scratch.predicted);
+            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
+            works.contact_work += contact.history.normal_force * normal + contact.history.shear_force * shear;
+            if contact.history.state == ContactState::Slip {
+                let (stored, _) = contact.shear_after(after[1] * dt);
+                let old = contact.history.shear_stored;
+                works.friction -=
+                    contact.history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
+            }
+        }
+        for row in &scratch.rows {
+            let support = &slope.supports[row.support as usize];
+            let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
+            let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
+            *work += row.force * velocity * kick_dt;
+        }
+        for row in &scratch.bolts {
+            let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&scratch.predicted);
+            works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick_dt);
+        }
+        let extra = self.acceleration(dt) - slope.gravity;
+        for i in 0..state.velocity.len() {
+            let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
+            works.external_work += force.dot(&(state.velocity[i] + scratch.predicted[i])) * (0.5 * kick_dt);
+        }
+        works
+    }
+}
