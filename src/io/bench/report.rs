@@ -35,8 +35,8 @@ pub fn write_report(report: &BenchReport, origin: &Origin, directory: &Path) -> 
 /// The results as a page.
 pub fn markdown(report: &BenchReport, origin: &Origin) -> String {
     let mut text = String::from("# What standard models cost\n\n");
-    let _ = write!(text, "{}. `{}`. enmm {}", origin.label, origin.command, report.version);
-    let _ = writeln!(text, ", {} threads for the models.\n\n{INTRODUCTION}\n", report.threads);
+    let _ = writeln!(text, "{}; enmm {}, threads for the models: {}.\n", origin.label, report.version, report.threads);
+    let _ = writeln!(text, "    {}\n\n{INTRODUCTION}\n", origin.command);
     push_machine(&mut text, &report.machine);
     push_table(&mut text, "Steps", &STEP_HEAD, report.models.iter().map(step_row));
     push_table(&mut text, "Stages (ms per step)", &STAGE_HEAD, report.models.iter().map(stage_row));
@@ -233,7 +233,7 @@ mod tests {
         let continuum = Measured { model: "continuum_10000".to_owned(), ..Measured::default() };
         let report = BenchReport { version: "1".to_owned(), models: vec![found, continuum], ..BenchReport::default() };
         let text = markdown(&report, &Origin { label: "today".to_owned(), command: "enmm bench".to_owned() });
-        assert!(text.contains("| slope_500x4 | 503 |") && text.contains("today. `enmm bench`."), "{text}");
+        assert!(text.contains("| slope_500x4 | 503 |") && text.contains("today; enmm 1,") && text.contains("\n    enmm bench\n"), "{text}");
         assert!(text.contains("## Slopes beside others") && text.contains("## Elements beside others"), "{text}");
         let wide = |line: &&str| line.chars().count() > 120 && !line.starts_with('|');
         assert_eq!(text.lines().find(wide), None);
