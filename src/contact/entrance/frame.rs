@@ -30,9 +30,14 @@ pub(super) struct Over {
 }
 
 impl Over {
-    /// Square of the distance from the edge (m²).
-    pub fn distance_squared(&self) -> f64 {
-        self.beyond * self.beyond + self.gap * self.gap
+    /// Distance from the edge (m).
+    pub fn distance(&self) -> f64 {
+        if self.beyond > 0.0 { self.beyond.hypot(self.gap) } else { self.gap.abs() }
+    }
+
+    /// Whether the distance from the edge is less than `distance` (m).
+    pub fn is_nearer_than(&self, distance: f64) -> bool {
+        self.beyond.max(self.gap.abs()) < distance && self.distance() < distance
     }
 }
 

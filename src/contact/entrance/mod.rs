@@ -205,9 +205,12 @@ impl Narrow<'_> {
     fn nearest(&self, p: Point, edges: &[Candidate]) -> (u32, Over) {
         let over = |c: &Candidate| (c.edge, self.frames[c.edge as usize].over(p));
         let mut nearest = over(&edges[0]);
-        for other in edges[1..].iter().map(over) {
-            if other.1.distance_squared() < nearest.1.distance_squared() {
-                nearest = other;
+        if edges.len() > 1 {
+            let mut distance = nearest.1.distance();
+            for other in edges[1..].iter().map(over) {
+                if other.1.is_nearer_than(distance) {
+                    (nearest, distance) = (other, other.1.distance());
+                }
             }
         }
         nearest
