@@ -35,7 +35,8 @@ fn slope(spacing: Option<f64>, mesh: f64) -> String {
 fn built(text: &str) -> Simulation {
     let clock = Instant::now();
     let mut tell = |stage: BuildStage| println!("{:8.3} s  {}", clock.elapsed().as_secs_f64(), stage.name());
-    let simulation = Simulation::build(parse_case(text, "large.toml", Path::new(".")).unwrap().case, &mut tell).unwrap();
+    let simulation =
+        Simulation::build(parse_case(text, "large.toml", Path::new(".")).unwrap().case, &mut tell).unwrap();
     println!("{:8.3} s  built", clock.elapsed().as_secs_f64());
     simulation
 }

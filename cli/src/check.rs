@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use enmm::io::{CaseError, Observer};
 use enmm::io::check::Check;
+use enmm::io::{CaseError, Observer};
 use enmm::model::Simulation;
 
 use crate::progress::Screen;

@@ -55,9 +55,8 @@ struct MeshEdges(Vec<[u32; 3]>);
 
 impl MeshEdges {
     fn new(covers: &Covers) -> Self {
-        let mut edges: Vec<[u32; 3]> = (0..covers.element_count() as u32)
-            .flat_map(|e| cover_pairs(covers, e).map(|[i, j]| [i, j, e]))
-            .collect();
+        let mut edges: Vec<[u32; 3]> =
+            (0..covers.element_count() as u32).flat_map(|e| cover_pairs(covers, e).map(|[i, j]| [i, j, e])).collect();
         edges.sort_unstable();
         Self(edges)
     }

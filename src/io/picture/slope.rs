@@ -94,9 +94,8 @@ pub fn draw_filled(
 /// be seen without smoothing.
 fn holds_pixel(mut corners: impl Iterator<Item = Pixel>) -> bool {
     let Some(first) = corners.next() else { return false };
-    let (low, high) = corners.fold((first, first), |(low, high), [x, y]| {
-        ([low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)])
-    });
+    let (low, high) = corners
+        .fold((first, first), |(low, high), [x, y]| ([low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]));
     (0..2).all(|axis| (high[axis] + ROUNDING - 0.5).floor() >= (low[axis] - ROUNDING - 0.5).ceil())
 }
 
