@@ -106,6 +106,13 @@ impl Simulation {
         self.take_up();
     }
 
+    /// Gives back the memory of the buffers, which the next step then fills anew: outputs need some of their own.
+    pub fn drop_buffers(&mut self) {
+        let Scratch { serial, seconds, .. } = self.scratch;
+        self.scratch = Scratch { serial, seconds, ..Scratch::default() };
+        self.take_up();
+    }
+
     /// Makes regime and buffers those of the state.
     fn take_up(&mut self) {
         self.regime = self.regime_of(self.built.state.stage as usize);
@@ -214,12 +221,12 @@ impl Simulation {
 
     /// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
     pub fn look_ahead(&self) -> (State, Scratch) {
-        step::look_ahead(self.slope(), self.regime, self.state())
+        step::look_ahead(self.slope(), self.regime, self.state(), self.scratch.serial)
     }
 
     /// Shows [`Simulation::contacts`] one by one: all of them together can be larger than the model.
     pub fn each_contact(&self, mut see: impl FnMut(&VertexEdge)) {
-        step::each_contact(self.slope(), self.regime, self.state(), &mut see);
+        step::each_contact(self.slope(), self.regime, self.state(), self.scratch.serial, &mut see);
     }
 
     /// Whether the stage has covered its duration, or is static and at rest by this report.

@@ -103,9 +103,10 @@ pub fn outlook(slope: &Slope, regime: Regime, mut state: State, serial: bool) ->
     }
 }
 
-/// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
-pub fn look_ahead(slope: &Slope, regime: Regime, state: &State) -> (State, Scratch) {
-    let (mut state, mut scratch) = (state.clone(), Scratch::default());
+/// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
+/// it keeps to the calling thread.
+pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
+    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
     prepare(slope, &state, &mut scratch);
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
@@ -119,8 +120,14 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State) -> (State, Scrat
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
-pub fn each_contact(slope: &Slope, regime: Regime, state: &State, see: &mut dyn FnMut(&VertexEdge)) {
-    let (mut state, mut scratch) = (state.clone(), Scratch::default());
+pub fn each_contact(
+    slope: &Slope,
+    regime: Regime,
+    state: &State,
+    serial: bool,
+    see: &mut dyn FnMut(&VertexEdge),
+) {
+    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
     prepare(slope, &state, &mut scratch);
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);

@@ -336,6 +336,7 @@ impl<'a> Driver<'a> {
 
     fn push_frame(&mut self) -> Result<(), RunError> {
         let Some(frames) = &mut self.frames else { return Ok(()) };
+        self.simulation.drop_buffers();
         frames.push(&self.simulation.snapshot()).map_err(RunError::Output)
     }
 
@@ -368,6 +369,7 @@ impl<'a> Driver<'a> {
 
     /// Writes what a run leaves at its end, the checkpoint first and the summary last.
     fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
+        self.simulation.drop_buffers();
         self.save()?;
         let directory = &self.options.directory;
         write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
