@@ -24,6 +24,8 @@ usage: cargo xtask TASK
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
+  bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench
+                   such as --models all
   ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
                    times two builds of the program in turn and prints the ratios of each part
   pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["bench", ref options @ ..] => tasks::write_benchmark(&house, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&house)).map(|()| ExitCode::SUCCESS)
         }
