@@ -135,7 +135,7 @@ fn model_text(found: &Measured) -> String {
             share(found.share_of_operations)
         ),
         format!(
-            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}, {heaps} B an element",
+            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}, {heaps} B each",
             found.searches,
             found.ms_per_search.unwrap_or(0.0),
             found.frame_ms,
