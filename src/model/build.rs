@@ -12,7 +12,7 @@ mod stage;
 use std::collections::BTreeMap;
 
 use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, Covers};
+use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
     ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
@@ -35,6 +35,8 @@ pub struct Built {
     pub monitors: Vec<(usize, Point)>,
     /// What the noder did.
     pub noding: NodingReport,
+    /// Pieces of block boundaries inside single elements, both sides of a joint counted.
+    pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
     pub traces: Vec<(Vec<Point>, u32)>,
     /// What the user should know.
@@ -52,17 +54,25 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings(&noding);
     tell(BuildStage::Covers);
-    let covers = cover::cut(mesh, arrangement);
+    let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
-    let (slope, bolt_warnings) = slope(case, &joints, covers, tolerance, tell)?;
+    let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
     quiet::check_columns(&slope)?;
-    let places = Places { covers: &slope.covers, tolerance };
+    let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &slope, &places)?;
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding, traces: joints.traces, warnings })
+    Ok(Built {
+        slope,
+        state,
+        monitors,
+        noding,
+        boundary_pieces: outlines.pieces.len(),
+        traces: joints.traces,
+        warnings,
+    })
 }
 
 /// The fixed part of the model, and what its bolts have to tell.
@@ -70,12 +80,13 @@ fn slope(
     case: &Case,
     joints: &geometry::Joints,
     covers: Covers,
+    outlines: &Outlines,
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Slope, Vec<String>), Invalid> {
     tell(BuildStage::Masses);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, tolerance };
+    let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
@@ -85,7 +96,7 @@ fn slope(
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
     let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, &BoundaryOptions::default());
+    let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;

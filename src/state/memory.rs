@@ -42,7 +42,6 @@ impl Slope {
             ("elements", elements(&self.covers) + self.element_rock.bytes()),
             ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
             ("covers", covers(&self.covers)),
-            ("loops of blocks", self.covers.outlines.bytes()),
             ("boundary", boundary(&self.boundary)),
             ("masses", metric(&self.metric)),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
