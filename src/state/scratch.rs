@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{BlockPush, BoltRow, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{BlockPush, BoltRow, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
@@ -33,6 +33,8 @@ pub struct Scratch {
     pub columns: Vec<Vec<Vector>>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
+    /// Order and buffers of the open–close iteration.
+    pub open_close: OpenClose,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport};
-use crate::geometry::{Point, Vector};
+use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport};
+use crate::geometry::Point;
+use crate::state::Scratch;
 
 use super::{Regime, Step};
 
@@ -37,6 +38,7 @@ impl Step<'_> {
                 fixed: &scratch.metric.fixed,
             };
             scratch.search.search(&view, &mut self.state.near);
+            scratch.open_close.forget_order();
             self.state.counters.searches += 1;
         }
         scratch.seconds.search += clock.elapsed().as_secs_f64();
@@ -124,14 +126,12 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        scratch.increment.fill(Vector::zeros());
-        scratch.push.fill(contact::BlockPush::default());
+        let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
-        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
-        let iteration =
-            OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
-        let (contacts, rows, bolts) = (&mut scratch.contacts, &mut scratch.rows, &mut scratch.bolts);
-        let swept = contact::open_close(iteration, contacts, &slope.supports, rows, bolts);
+        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
+        open_close.arrange(&slope.boundary, &self.state.near.candidates, metric, &slope.covers.block_covers, contacts);
+        let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
+        open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
     }
