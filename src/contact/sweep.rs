@@ -8,6 +8,8 @@ mod support;
 
 pub use body::BlockPush;
 
+use rayon::prelude::*;
+
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
@@ -143,11 +145,20 @@ impl OpenClose {
     /// Rows of all that is judged; nothing has moved.
     fn load(&mut self, metric: &Metric, options: &SweepOptions, contacts: &[VertexEdge], others: &Others) {
         let view = SweepView { metric, roots: &self.roots };
-        self.rows.clear();
-        self.rows.extend(self.sequence.iter().map(|&k| Row::new(&contacts[k as usize], k, &view, options)));
-        self.watch.clear();
-        self.watch.extend(self.rows.iter().map(Row::watch));
-        self.list.resize(self.rows.len(), 0);
+        let count = self.sequence.len();
+        self.rows.resize(count, Row::default());
+        self.watch.resize(count, Watch::default());
+        self.list.resize(count, 0);
+        let fill = |((row, watch), &k): ((&mut Row, &mut Watch), &u32)| {
+            *row = Row::new(&contacts[k as usize], k, &view, options);
+            *watch = row.watch();
+        };
+        if options.serial || count < part::GRAIN {
+            self.rows.iter_mut().zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+        } else {
+            let rows = self.rows.par_iter_mut().with_min_len(part::GRAIN / 4);
+            rows.zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+        }
         self.own.clear();
         self.own.resize(self.roots.len(), Vector::zeros());
         self.push.clear();
@@ -155,7 +166,7 @@ impl OpenClose {
         self.moved.clear();
         self.moved.resize(metric.total.len(), 0);
         self.bolts.clear();
-        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Body::new(&b.pair, k, metric, &self.roots))));
+        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Body::new(&b.pair, k, &view))));
         self.bearings.load(others.rows, options.kick, &mut self.own);
     }
 

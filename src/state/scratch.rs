@@ -27,6 +27,8 @@ pub struct Scratch {
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
+    /// Velocities (m/s) of those contacts before and after the forces of this step, each normal and shear.
+    pub sliding: Vec<[[f64; 2]; 2]>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).

@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport};
+use rayon::prelude::*;
+
+use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport, VertexEdge};
 use crate::geometry::Point;
 use crate::state::Scratch;
 
@@ -14,6 +16,9 @@ const SKIN: f64 = 0.1;
 pub(super) const CUTOFF: f64 = 0.25;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
+
+/// Contacts below which a loop over them is not split between threads.
+const CONTACTS: usize = 2048;
 
 impl Step<'_> {
     /// Current places of boundary points, and near pairs when nodes have moved.
@@ -90,15 +95,21 @@ impl Step<'_> {
             Regime::Dynamic { damping } => (true, damping),
             Regime::Static { .. } => (false, 0.0),
         };
-        for contact in &mut scratch.contacts {
-            contact.approach = contact.relative(&scratch.predicted);
+        let Scratch { contacts, predicted, metric, serial, .. } = scratch;
+        let approach = |contact: &mut VertexEdge| {
+            contact.approach = contact.relative(predicted);
             let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
             if physical != [false; 2] {
                 let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
-                let inverse: f64 = contact.pair.blocks.map(|b| scratch.metric.inverse_total[b as usize]).iter().sum();
+                let inverse: f64 = contact.pair.blocks.map(|b| metric.inverse_total[b as usize]).iter().sum();
                 let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
                 contact.centre(physical, dt, kick, last, bouncing);
             }
+        };
+        if *serial {
+            contacts.iter_mut().for_each(approach);
+        } else {
+            contacts.par_iter_mut().with_min_len(CONTACTS).for_each(approach);
         }
         self.load_supports(dt);
         self.load_bolts();
@@ -134,5 +145,20 @@ impl Step<'_> {
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
+    }
+
+    /// Velocities (m/s) normal and shear of all contacts before and after the forces of this sub-step.
+    pub(super) fn measure_contacts(&mut self) {
+        let Scratch { contacts, predicted, sliding, serial, .. } = &mut *self.scratch;
+        let velocity = &self.state.velocity;
+        let measure = |(both, contact): (&mut [[f64; 2]; 2], &VertexEdge)| {
+            *both = [contact.relative(velocity), contact.relative(predicted)];
+        };
+        sliding.resize(contacts.len(), Default::default());
+        if *serial {
+            sliding.iter_mut().zip(contacts.iter()).for_each(measure);
+        } else {
+            sliding.par_iter_mut().with_min_len(CONTACTS).zip(&*contacts).for_each(measure);
+        }
     }
 }

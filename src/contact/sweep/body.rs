@@ -2,7 +2,8 @@
 
 use crate::contact::Pair;
 use crate::geometry::{NONE, Vector};
-use crate::mechanics::Metric;
+
+use super::SweepView;
 
 /// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time (Eq. 17).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -75,14 +76,17 @@ pub struct Body {
 }
 
 impl Body {
-    /// Body `k` of a pair; `roots` are 1/√m of the covers along each axis.
-    pub fn new(pair: &Pair, k: usize, metric: &Metric, roots: &[Vector]) -> Self {
+    /// Body `k` of a pair.
+    #[inline(always)]
+    pub fn new(pair: &Pair, k: usize, view: &SweepView) -> Self {
+        let SweepView { metric, roots } = view;
+        let weighted = |j: usize| roots[pair.covers[k][j] as usize] * pair.weights[k][j];
         let block = pair.blocks[k] as usize;
         let inverse = metric.inverse_total[block];
         Self {
             covers: pair.covers[k],
             block: if metric.is_free(block) { block as u32 } else { NONE },
-            weights: std::array::from_fn(|j| roots[pair.covers[k][j] as usize] * pair.weights[k][j]),
+            weights: [weighted(0), weighted(1), weighted(2)],
             lever: Vector::new(-pair.arms[k].y, pair.arms[k].x),
             share: (1.0 + metric.square[block] * inverse - pair.z[k]) * inverse,
             part: pair.z[k] * inverse,
@@ -98,7 +102,8 @@ impl Body {
     /// Where its covers are in a run of blocks.
     #[inline(always)]
     pub fn places(&self, ground: &Ground) -> [usize; 3] {
-        let [a, b, c] = self.covers.map(|cover| (cover - ground.first_cover) as usize);
+        let place = |j: usize| (self.covers[j] - ground.first_cover) as usize;
+        let (a, b, c) = (place(0), place(1), place(2));
         let count = ground.own.len();
         assert!((a < count) & (b < count) & (c < count), "a body lies outside its run of blocks");
         [a, b, c]
@@ -107,10 +112,8 @@ impl Body {
     /// Velocity (m/s) that all impulses so far give it.
     #[inline(always)]
     pub fn velocity(&self, places: &[usize; 3], ground: &Ground) -> Vector {
-        let mut velocity = Vector::zeros();
-        for (&place, weight) in places.iter().zip(&self.weights) {
-            velocity += weight.component_mul(&ground.own[place]);
-        }
+        let own = |j: usize| self.weights[j].component_mul(&ground.own[places[j]]);
+        let mut velocity = own(0) + own(1) + own(2);
         if self.block != NONE {
             let push = &ground.push[(self.block - ground.first_block) as usize];
             velocity += push.impulse * self.share - push.weighted + self.lever * (self.spin * push.moment);
@@ -121,9 +124,9 @@ impl Body {
     /// Takes an impulse (N·s/m).
     #[inline(always)]
     pub fn push(&self, impulse: Vector, places: &[usize; 3], ground: &mut Ground) {
-        for (&place, weight) in places.iter().zip(&self.weights) {
-            ground.own[place] += weight.component_mul(&impulse);
-        }
+        ground.own[places[0]] += self.weights[0].component_mul(&impulse);
+        ground.own[places[1]] += self.weights[1].component_mul(&impulse);
+        ground.own[places[2]] += self.weights[2].component_mul(&impulse);
         if self.block != NONE {
             let push = &mut ground.push[(self.block - ground.first_block) as usize];
             push.impulse += impulse;

@@ -6,7 +6,7 @@ use super::body::Ground;
 use super::row::{Row, Watch, larger};
 
 /// Rows below which both halves of a part stay in one thread.
-const GRAIN: usize = 4096;
+pub const GRAIN: usize = 4096;
 
 /// Change of a force, over what counts as settled, from which its bodies have moved.
 const MOVES: f64 = 0.3;
@@ -107,29 +107,47 @@ impl Part<'_> {
 
     /// Does the work on the rows from `from` on, which belong to no half.
     fn own(&mut self, from: usize, pass: &Pass) -> Swept {
-        let rows = from..self.rows.len();
-        let mut ground = self.ground.all();
-        let Work::Sweep { all, floor, turn } = pass.work else {
-            self.rows[rows].iter().for_each(|row| row.warm(pass.kick, &mut ground));
-            return Swept::default();
-        };
-        let mut count = 0;
-        for k in rows {
-            self.list[count] = k as u32;
-            count += usize::from(all || self.watch[k].is_due(&ground));
+        match pass.work {
+            Work::Warm => {
+                let ground = &mut self.ground;
+                self.rows[from..].iter().for_each(|row| row.warm(pass.kick, ground));
+                Swept::default()
+            }
+            Work::Sweep { all, floor, turn } => {
+                let due = self.list_due(from, all);
+                let change = self.judge(due, pass, floor, turn + self.first_row);
+                Swept { change, judged: due as u64 }
+            }
         }
+    }
+
+    /// Lists the rows from `from` on that are judged in a sweep; returns their number.
+    fn list_due(&mut self, from: usize, all: bool) -> usize {
+        let ground = self.ground.all();
+        let mut count = 0;
+        for (k, watch) in self.watch.iter().enumerate().skip(from) {
+            self.list[count] = k as u32;
+            count += usize::from(all || watch.is_due(&ground));
+        }
+        count
+    }
+
+    /// Judges the rows listed, the first row having its turn at `first`; returns the largest change of a force over
+    /// its size.
+    fn judge(&mut self, due: usize, pass: &Pass, floor: f64, first: u32) -> f64 {
+        let mut ground = self.ground.all();
+        let moves = MOVES * pass.tolerance;
         let mut change = 0.0;
-        for &k in &self.list[..count] {
+        for &k in &self.list[..due] {
             let (row, watch) = (&mut self.rows[k as usize], &mut self.watch[k as usize]);
-            let turn = turn + self.first_row + k;
             let [step, force] = row.judge(pass.kick, pass.contacts, &mut ground);
             let share = step / larger(force, floor);
             change = larger(share, change);
-            (watch.judged, watch.force) = (turn, force);
-            if share > MOVES * pass.tolerance {
-                ground.mark(watch.blocks, turn);
+            (watch.judged, watch.force) = (first + k, force);
+            if share > moves {
+                ground.mark(watch.blocks, first + k);
             }
         }
-        Swept { change, judged: count as u64 }
+        change
     }
 }

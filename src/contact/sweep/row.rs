@@ -60,12 +60,15 @@ impl Row {
     pub fn new(contact: &VertexEdge, index: u32, view: &SweepView, options: &SweepOptions) -> Self {
         let curved = contact.closure_max.is_finite() || contact.limits.rough.is_some();
         let tension = contact.limits.tension;
-        let answer =
-            if contact.closure_max.is_finite() { closing(contact, options) } else { springs(contact, options)[0] };
+        let closes = contact.closure_max.is_finite();
+        let pressed = -contact.stiffness[0] * contact.gap;
         Self {
-            bodies: [0, 1].map(|k| Body::new(&contact.pair, k, view.metric, view.roots)),
+            bodies: [Body::new(&contact.pair, 0, view), Body::new(&contact.pair, 1, view)],
             normal: contact.normal,
-            answers: [answer, springs(contact, options)[1]],
+            answers: [
+                if closes { closing(contact, options) } else { spring(contact, options, 0, pressed) },
+                spring(contact, options, 1, contact.history.shear_stored),
+            ],
             force: [contact.history.normal_force, contact.history.shear_force],
             asked: [0.0; 2],
             friction: contact.limits.friction,
@@ -110,7 +113,7 @@ impl Row {
     /// Judges open, slip or lock; returns the change of its force and the force (N/m).
     #[inline(always)]
     pub fn judge(&mut self, kick: f64, contacts: &[VertexEdge], ground: &mut Ground) -> [f64; 2] {
-        let places = [0, 1].map(|k| self.bodies[k].places(ground));
+        let places = [self.bodies[0].places(ground), self.bodies[1].places(ground)];
         let velocity = self.bodies[0].velocity(&places[0], ground) - self.bodies[1].velocity(&places[1], ground);
         let [mut normal, shear] = self.ask([velocity.dot(&self.normal), self.normal.perp(&velocity)]);
         let mut limit = larger(normal * self.friction + self.cohesion, 0.0);
@@ -118,9 +121,9 @@ impl Row {
             (normal, limit) = self.follow(normal, &contacts[self.contact as usize]);
         }
         self.asked = [normal, shear];
-        let bears = u64::from(normal > self.open).wrapping_neg();
-        let bounded = -larger(-larger(shear, -limit), -limit);
-        let force = [normal, bounded].map(|force| f64::from_bits(force.to_bits() & bears));
+        let bears = normal > self.open;
+        let (normal, limit) = (if bears { normal } else { 0.0 }, if bears { limit } else { 0.0 });
+        let force = [normal, smaller(larger(shear, -limit), limit)];
         let step = [force[0] - self.force[0], force[1] - self.force[1]];
         if step != [0.0; 2] {
             let impulse = self.turned(step) * kick;
@@ -153,15 +156,13 @@ impl Row {
     }
 }
 
-/// Linear springs normal and shear.
-fn springs(contact: &VertexEdge, options: &SweepOptions) -> [Answer; 2] {
-    let stored = [-contact.stiffness[0] * contact.gap, contact.history.shear_stored];
-    [0, 1].map(|k| {
-        let a = contact.stiffness[k] * contact.forward[k] * options.dt;
-        let aw = a * contact.compliance[k] * options.kick;
-        let asked = stored[k] - contact.stiffness[k] * contact.lag[k] - a * contact.approach[k];
-        Answer { rest: asked / (1.0 + aw), rate: a / (1.0 + aw), kept: aw / (1.0 + aw) }
-    })
+/// The linear spring along axis `k` that bears `stored` (N/m) at the step's start.
+fn spring(contact: &VertexEdge, options: &SweepOptions, k: usize, stored: f64) -> Answer {
+    let a = contact.stiffness[k] * contact.forward[k] * options.dt;
+    let aw = a * contact.compliance[k] * options.kick;
+    let asked = stored - contact.stiffness[k] * contact.lag[k] - a * contact.approach[k];
+    let share = 1.0 / (1.0 + aw);
+    Answer { rest: asked * share, rate: a * share, kept: aw * share }
 }
 
 /// A curved normal spring.
@@ -169,6 +170,12 @@ fn closing(contact: &VertexEdge, options: &SweepOptions) -> Answer {
     let reach = contact.forward[0] * options.dt;
     let rest = -contact.gap - contact.lag[0] - reach * contact.approach[0];
     Answer { rest, rate: reach, kept: reach * contact.compliance[0] * options.kick }
+}
+
+/// The smaller of two numbers.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// The larger of two numbers.
