@@ -6,9 +6,9 @@ use enmm::model::Simulation;
 
 /// Dip of base and bedding, and friction (rad).
 const DIP: f64 = std::f64::consts::FRAC_PI_6;
+const FRICTION: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// Spacing of the joints of 500 blocks (m).
 const SPACING: f64 = 3.7;
-const FRICTION: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 fn build(model: Model) -> Simulation {
     model.build().unwrap_or_else(|e| panic!("{model}: {e}"))
