@@ -166,7 +166,7 @@ impl Windows {
         }
         self.wall.push(before.1);
         let spent = processor_seconds().zip(processor).map(|(after, before)| after - before);
-        if let Some(spent) = spent.filter(|_| rayon::current_num_threads() == 1) {
+        if let Some(spent) = spent.filter(|&spent| spent > 0.0 && rayon::current_num_threads() == 1) {
             self.processor = self.processor.min(spent + PROCESSOR_TICK);
         }
         Ok(())
