@@ -1,6 +1,6 @@
 //! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
 
-use crate::cover::{self, BoundaryPiece, Covers, Weights};
+use crate::cover::{self, BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector};
 
 /// What the end of a side is.
@@ -97,12 +97,12 @@ struct Station {
 
 impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    pub fn new(covers: &Covers, options: &BoundaryOptions) -> Self {
+    pub fn new(covers: &Covers, outlines: &Outlines, options: &BoundaryOptions) -> Self {
         let mut boundary = Self::default();
-        for k in 0..covers.outlines.len() {
-            let mut stations = stations(covers.outlines.of_loop(k), options);
+        for k in 0..outlines.len() {
+            let mut stations = stations(outlines.of_loop(k), options);
             place_nodes(&mut stations, covers.mesh.size);
-            boundary.push_loop(covers, covers.outlines.loop_block[k], &stations);
+            boundary.push_loop(covers, outlines.loop_block[k], &stations);
         }
         boundary
     }

@@ -18,5 +18,5 @@ pub use law::{Closure, JointLaw, Limits, RoughLimit, Roughness};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use support::{Resistance, Support, SupportRow};
-pub use sweep::{BlockPush, OpenClose, SweepOptions, SweepReport, open_close};
+pub use sweep::{BlockPush, OpenClose, Others, SweepOptions, SweepReport};
 pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{Admitted, BlockPush, BoltRow, Frames, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
@@ -31,12 +31,16 @@ pub struct Scratch {
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
+    /// Velocities (m/s) of those contacts before and after the forces of this step, each normal and shear.
+    pub sliding: Vec<[[f64; 2]; 2]>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).
     pub columns: Vec<Vec<Vector>>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
+    /// Order and buffers of the open–close iteration.
+    pub open_close: OpenClose,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.

@@ -18,6 +18,8 @@ pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
 const RUN: usize = 4096;
+/// Runs that are judged before their contacts are made.
+const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
 /// Most sides that a node is judged over.
@@ -105,6 +107,14 @@ pub struct Admitted {
     picks: Vec<(u32, Pick)>,
 }
 
+impl Admitted {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
+        of_runs + size_of_val(self.picks.as_slice())
+    }
+}
+
 /// Judges every candidate and fills the contacts that take part in this step, ordered by node and side.
 pub fn entrance_edges(
     narrow: &Narrow,
@@ -112,22 +122,15 @@ pub fn entrance_edges(
     admitted: &mut Admitted,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    let Admitted { runs, picks } = admitted;
-    picks.clear();
-    if narrow.serial || candidates.len() <= RUN {
-        narrow.judge(candidates, picks);
-        contacts.clear();
-        contacts.extend(picks.iter().map(|(node, pick)| narrow.contact(*node as usize, pick)));
-        return;
+    contacts.clear();
+    // In pieces: what is admitted of all candidates together would be as large as the contacts.
+    let runs = if narrow.serial { 1 } else { RUNS };
+    let mut rest = candidates;
+    while !rest.is_empty() {
+        let (piece, others) = rest.split_at(first_of_run(rest, runs));
+        narrow.enter(piece, admitted, contacts);
+        rest = others;
     }
-    runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
-    runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-        run.clear();
-        narrow.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
-    });
-    runs.iter().for_each(|run| picks.extend_from_slice(run));
-    let picks = picks.par_iter().with_min_len(GRAIN);
-    picks.map(|(node, pick)| narrow.contact(*node as usize, pick)).collect_into_vec(contacts);
 }
 
 /// Where run `k` begins: at a multiple of its length, moved on to the next node.
@@ -140,6 +143,25 @@ fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
 }
 
 impl Narrow<'_> {
+    /// Judges some candidates and appends their contacts.
+    fn enter(&self, candidates: &[Candidate], admitted: &mut Admitted, contacts: &mut Vec<VertexEdge>) {
+        let Admitted { runs, picks } = admitted;
+        picks.clear();
+        if self.serial || candidates.len() <= RUN {
+            self.judge(candidates, picks);
+            contacts.extend(picks.iter().map(|(node, pick)| self.contact(*node as usize, pick)));
+            return;
+        }
+        runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
+        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
+            run.clear();
+            self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
+        });
+        runs.iter().for_each(|run| picks.extend_from_slice(run));
+        let picks = picks.par_iter().with_min_len(GRAIN);
+        contacts.par_extend(picks.map(|(node, pick)| self.contact(*node as usize, pick)));
+    }
+
     /// Appends the picks that the vertex rule admits of some candidates, with their nodes.
     fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<(u32, Pick)>) {
         let Some(first) = candidates.first() else { return };
