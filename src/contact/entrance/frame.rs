@@ -93,6 +93,11 @@ impl NodeFrame {
 }
 
 impl Frames {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
+    }
+
     /// Frames of all edges and nodes, where `place` are the current places of the boundary points.
     pub fn update(&mut self, boundary: &Boundary, place: &[Point], serial: bool) {
         let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
