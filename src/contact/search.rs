@@ -100,12 +100,12 @@ const RUN: usize = 1024;
 /// Most cells of a grid per edge; where blocks have flown apart cells are larger.
 const CELLS_PER_EDGE: f64 = 4.0;
 
-/// An edge in the grid, with the box round all that is within the cutoff.
+/// An edge in the grid, with all that most nodes ask of it.
 #[derive(Debug, Clone, Copy)]
-struct Boxed {
-    low: Point,
-    high: Point,
+struct GridEdge {
+    ends: [Point; 2],
     edge: u32,
+    block: u32,
 }
 
 /// Edges in the order of the cells that hold their middles, and buffers of a search. Cells go row by row, so that
@@ -121,7 +121,7 @@ pub struct SearchGrid {
     reach: f64,
     cell_of_edge: Vec<u32>,
     cell_start: Vec<u32>,
-    edges: Vec<Boxed>,
+    edges: Vec<GridEdge>,
     runs: Vec<Vec<Candidate>>,
     old: Vec<Candidate>,
     behind: Vec<[u32; 2]>,
@@ -148,8 +148,10 @@ pub struct SearchView<'a> {
 impl SearchGrid {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let buckets = size_of_val(self.bucket_start.as_slice()) + size_of_val(self.bucket_edges.as_slice());
-        buckets + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice())
+        let cells = size_of_val(self.cell_start.as_slice()) + size_of_val(self.cell_of_edge.as_slice());
+        let runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
+        let found = runs + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice());
+        cells + size_of_val(self.edges.as_slice()) + found
     }
 
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
@@ -202,7 +204,6 @@ impl SearchGrid {
     /// Sorts the edges that count by cell and, within one, by index.
     fn sort_edges(&mut self, view: &SearchView) {
         let boundary = view.boundary;
-        let margin = Vector::new(view.cutoff, view.cutoff);
         self.cell_start.clear();
         self.cell_start.resize(self.columns * self.rows + 2, 0);
         self.cell_of_edge.clear();
@@ -223,11 +224,11 @@ impl SearchGrid {
             self.cell_start[k] += self.cell_start[k - 1];
         }
         let total = self.cell_start.last().map_or(0, |&n| n as usize);
-        self.edges.resize(total, Boxed { low: Point::zeros(), high: Point::zeros(), edge: 0 });
+        self.edges.resize(total, GridEdge { ends: [Point::zeros(); 2], edge: NONE, block: NONE });
         for (e, &cell) in self.cell_of_edge.iter().enumerate().filter(|(_, cell)| **cell != NONE) {
             let (a, b) = ends(view, e);
             let at = &mut self.cell_start[cell as usize + 1];
-            self.edges[*at as usize] = Boxed { low: a.inf(&b) - margin, high: a.sup(&b) + margin, edge: e as u32 };
+            self.edges[*at as usize] = GridEdge { ends: [a, b], edge: e as u32, block: boundary.block[e] };
             *at += 1;
         }
     }
@@ -245,18 +246,22 @@ impl SearchGrid {
         for node in nodes {
             let point = boundary.node_point[node] as usize;
             let p = view.place[point];
-            if view.removed[boundary.block[point] as usize] {
+            let block = boundary.block[point];
+            if view.removed[block as usize] {
                 continue;
             }
             let first = found.len();
             let ([left, bottom], [right, top]) = (self.cell(p - reach), self.cell(p + reach));
             for row in bottom..=top {
                 let run = |column: usize| self.cell_start[row * self.columns + column] as usize;
-                let boxes = &self.edges[run(left)..run(right + 1)];
-                for &Boxed { edge, .. } in boxes.iter().filter(|b| b.holds(p)) {
-                    let (a, b) = ends(view, edge as usize);
-                    if may_meet(boundary, node, edge as usize, view.fixed) && segment::distance(p, a, b) < view.cutoff {
-                        found.push(Candidate { node: node as u32, side: boundary.side[edge as usize], edge });
+                for at in &self.edges[run(left)..run(right + 1)] {
+                    if at.is_near(p, view.cutoff)
+                        && (at.block != block || boundary.partial[at.edge as usize])
+                        && segment::distance(p, at.ends[0], at.ends[1]) < view.cutoff
+                        && may_meet(boundary, node, at.edge as usize, view.fixed)
+                    {
+                        let side = boundary.side[at.edge as usize];
+                        found.push(Candidate { node: node as u32, side, edge: at.edge });
                     }
                 }
             }
@@ -265,9 +270,12 @@ impl SearchGrid {
     }
 }
 
-impl Boxed {
-    fn holds(&self, p: Point) -> bool {
-        (p.x >= self.low.x) & (p.x <= self.high.x) & (p.y >= self.low.y) & (p.y <= self.high.y)
+impl GridEdge {
+    /// Whether a point is within `distance` (m) of the box round the edge.
+    fn is_near(&self, p: Point, distance: f64) -> bool {
+        let [a, b] = [self.ends[0] - p, self.ends[1] - p];
+        let [x, y] = [(a.x, b.x), (a.y, b.y)].map(|(a, b)| a.min(b).max(-a.max(b)) <= distance);
+        x & y
     }
 }
 

@@ -84,7 +84,7 @@ impl Scratch {
             ("fields on covers", sum(&fields)),
             ("masses", metric(&self.metric)),
             ("blocks", sum(&[&self.motion, &self.push, &self.touching])),
-            ("places", sum(&[&self.place, &self.frames])),
+            ("places", self.place.bytes() + self.frames.bytes()),
             ("judged pairs", self.admitted.bytes()),
             ("search", self.search.bytes()),
             ("contacts", self.contacts.bytes()),
@@ -109,11 +109,11 @@ fn covers(covers: &Covers) -> usize {
 
 fn boundary(boundary: &Boundary) -> usize {
     let Boundary { covers, weights, reference, next, block, side, node_before, trace, partial, .. } = boundary;
-    let Boundary { node_point, node_previous, node_next, .. } = boundary;
-    let Boundary { side_first, side_last, side_corner, side_previous, side_next, .. } = boundary;
+    let Boundary { node_point, node_convex, node_edge_before, node_previous, node_next, .. } = boundary;
+    let Boundary { side_first, side_last, side_corner, side_previous, side_next, side_ends, .. } = boundary;
     sum(&[covers, weights, reference, next, block, side, node_before, trace, partial])
-        + sum(&[node_point, node_previous, node_next])
-        + sum(&[side_first, side_last, side_corner, side_previous, side_next])
+        + sum(&[node_point, node_convex, node_edge_before, node_previous, node_next])
+        + sum(&[side_first, side_last, side_corner, side_previous, side_next, side_ends])
 }
 
 fn metric(metric: &Metric) -> usize {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::contact::Boundary;
 use crate::geometry::{Point, Vector};
 
-use super::right_of;
+use super::{is_convex, right_of};
 
 /// Edges or nodes that a thread takes at least.
 const GRAIN: usize = 2048;
@@ -30,6 +30,8 @@ pub(super) struct NodeFrame {
     pub to: [Vector; 2],
     /// How far those are (m).
     pub distance: [f64; 2],
+    /// Whether its rock is a corner of less than half a turn.
+    pub is_convex: bool,
 }
 
 /// Where a point is over an edge.
@@ -85,11 +87,17 @@ impl EdgeFrame {
 impl NodeFrame {
     fn new(place: Point, neighbours: [Point; 2]) -> Self {
         let to = neighbours.map(|q| q - place);
-        Self { place, to, distance: to.map(|d| d.norm()) }
+        let distance = to.map(|d| d.norm());
+        Self { place, to, distance, is_convex: is_convex(to, distance) }
     }
 }
 
 impl Frames {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
+    }
+
     /// Frames of all edges and nodes, where `place` are the current places of the boundary points.
     pub fn update(&mut self, boundary: &Boundary, place: &[Point], serial: bool) {
         let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);

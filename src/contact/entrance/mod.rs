@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
-use frame::{EdgeFrame, NodeFrame, Over};
+use frame::{EdgeFrame, Over};
 
 use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
 
@@ -265,11 +265,11 @@ fn right_of(along: Vector) -> Vector {
     Vector::new(along.y, -along.x)
 }
 
-/// Whether the rock between the directions to the previous and the next node is a corner of less than half a turn.
-fn is_convex(node: &NodeFrame) -> bool {
-    let [previous, next] = node.to;
+/// Whether the rock between the ways to the previous and the next node, of these lengths (m), is a corner of less than
+/// half a turn.
+fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2]) -> bool {
     let (cross, dot) = (next.perp(&previous), next.dot(&previous));
-    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * node.distance[0] * node.distance[1])
+    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * distance[0] * distance[1])
 }
 
 /// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge.

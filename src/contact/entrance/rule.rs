@@ -4,7 +4,7 @@ use crate::contact::{ContactState, Corner, SideEnd};
 use crate::cover;
 use crate::geometry::Point;
 
-use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, is_convex, right_of};
+use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
 
 /// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
 const LEDGE: f64 = 5e-4;
@@ -87,7 +87,7 @@ impl Narrow<'_> {
     pub(super) fn enters(&self, node: usize, pick: &Pick) -> bool {
         let (normal, frame) = (right_of(pick.tangent), &self.frames.nodes[node]);
         let outside = |k: usize| frame.to[k].dot(&normal) >= -ENTRANCE_SINE * frame.distance[k];
-        outside(0) && outside(1) && (is_convex(frame) || faces(frame.to[1] - frame.to[0], normal))
+        outside(0) & outside(1) && (frame.is_convex || faces(frame.to[1] - frame.to[0], normal))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
