@@ -148,8 +148,9 @@ pub struct SearchView<'a> {
 impl SearchGrid {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let buckets = size_of_val(self.bucket_start.as_slice()) + size_of_val(self.bucket_edges.as_slice());
-        buckets + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice())
+        let cells = size_of_val(self.cell_of_edge.as_slice()) + size_of_val(self.cell_start.as_slice());
+        let runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
+        cells + size_of_val(self.edges.as_slice()) + runs + size_of_val(self.old.as_slice())
     }
 
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
