@@ -56,7 +56,9 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
+    tell(BuildStage::Masses);
     let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
+    tell(BuildStage::Start);
     quiet::check_columns(&slope)?;
     let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
@@ -84,20 +86,16 @@ fn slope(
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Slope, Vec<String>), Invalid> {
-    tell(BuildStage::Masses);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
     let laws = joint_laws(case, stiffness);
-    let (mut fixities, mut supports) = fixities(case, &places, stiffness)?;
-    let fixed_supports = supports.len() as u32;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
-    let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
+    let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
-    tell(BuildStage::Start);
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
@@ -120,9 +118,9 @@ fn slope(
         supports,
         fixed_supports,
         base_motions: quiet::base_motions(case),
-        quiets,
-        columns,
-        free_field,
+        quiets: quiets.quiets,
+        columns: quiets.columns,
+        free_field: quiets.free_field,
         bolts,
         loads,
         ports,
@@ -139,6 +137,14 @@ fn slope(
         covers,
     };
     Ok((slope, bolt_warnings))
+}
+
+/// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
+fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
+    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness)?;
+    let of_case = supports.len() as u32;
+    let quiets = ground.quiets(&mut fixities, &mut supports)?;
+    Ok((fixities, supports, of_case, quiets))
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.
