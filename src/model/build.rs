@@ -14,7 +14,7 @@ use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance,
 use crate::cover::{self, Covers};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
-    ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
+    ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
@@ -83,10 +83,12 @@ fn slope(
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
+    let pre_stress = pre_stresses(case, &covers);
     let slope = Slope {
+        patches: Patches::new(&covers, &element_rock, &pre_stress),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
-        pre_stress: pre_stresses(case, &covers),
+        pre_stress,
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,

@@ -12,7 +12,7 @@ pub use events::{Event, EventKind, Events};
 pub use implicit::{Implicit, ImplicitScratch, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
-pub use scratch::{Scratch, Seconds};
+pub use scratch::{PatchSums, Scratch, Seconds};
 pub use slope::{
     BaseMotion, Fixity, FreeFieldPoint, MotionKind, Port, PortKind, QuietBoundary, Slope, TimedRecord, Water,
 };

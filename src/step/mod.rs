@@ -19,6 +19,7 @@ pub use prepare::{begin_stage, prepare};
 pub use report::{StepReport, block_motion, energies, momentum};
 
 use crate::contact::{SweepReport, VertexEdge};
+use crate::geometry::Vector;
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
 
@@ -135,6 +136,8 @@ struct Step<'a> {
     time: f64,
     report: bool,
     damping: Damping,
+    /// Whether all speeds were found finite and below the limit.
+    is_sound: bool,
     /// Whether the matrix of an implicit step was not positive definite however short the sub-step.
     singular: bool,
 }
@@ -142,7 +145,7 @@ struct Step<'a> {
 impl<'a> Step<'a> {
     fn new(slope: &'a Slope, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
         let time = state.stage_start + state.stage_step as f64 * slope.dt + state.part;
-        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0), singular: false }
+        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0), is_sound: false, singular: false }
     }
 }
 
@@ -161,6 +164,7 @@ impl Step<'_> {
         let swept = self.open_close(dt);
         if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
             self.state.counters.halved += 1;
+            self.scratch.increment.fill(Vector::zeros());
             let first = self.interval(0.5 * dt, halvings + 1);
             self.report = false;
             self.interval(0.5 * dt, halvings + 1);

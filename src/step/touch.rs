@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport};
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 
 use super::{Regime, Step};
 
@@ -124,7 +124,6 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        scratch.increment.fill(Vector::zeros());
         scratch.push.fill(contact::BlockPush::default());
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
