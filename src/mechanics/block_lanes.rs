@@ -329,8 +329,8 @@ pub struct End<'a> {
     pub before: &'a [Vector],
     /// Velocities: predicted ones, final ones afterwards (m/s).
     pub velocity: &'a mut [Vector],
-    /// Increments by contacts and supports (m/s); zero afterwards.
-    pub increment: &'a mut [Vector],
+    /// Increments by contacts and supports (m/s).
+    pub increment: &'a [Vector],
     /// Displacements (m): before, after the step afterwards.
     pub displacement: &'a mut [Vector],
 }
@@ -372,7 +372,6 @@ impl End<'_> {
             if wants.is_touched {
                 let increment = lanes.load_some_pairs(&self.increment[range.clone()], still);
                 v = [v[0] + increment[0], v[1] + increment[1]];
-                lanes.store_some_pairs([zero, zero], &mut self.increment[range.clone()]);
             }
             if wants.is_pushed || wants.is_damped {
                 let chunk = self.chunk(lanes, range.clone(), from, u);

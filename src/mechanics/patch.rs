@@ -60,8 +60,8 @@ pub struct Patches {
     groups: Vec<Group>,
     /// In-situ stress xx, yy, xy (Pa) of each group's lanes; empty when there is none.
     pre_stress: Vec<[[f64; LANES]; 3]>,
+    /// Elements of each group's lanes.
     elements: Vec<[u32; LANES]>,
-    longest: usize,
 }
 
 impl Patches {
@@ -98,6 +98,16 @@ impl Patches {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
+    }
+
+    /// Memory (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.list)
+            + size_of_val(&*self.halo)
+            + size_of_val(&*self.batches)
+            + size_of_val(&*self.groups)
+            + size_of_val(&*self.pre_stress)
+            + size_of_val(&*self.elements)
     }
 
     /// A patch.
@@ -216,7 +226,6 @@ impl Cutter<'_> {
         for k in patch.halo.clone() {
             self.slot_of[self.patches.halo[k] as usize] = NO_ELEMENT;
         }
-        self.patches.longest = self.patches.longest.max(patch.covers.len());
         self.patches.list.push(patch);
     }
 

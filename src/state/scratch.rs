@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{BlockPush, BoltRow, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Metric, YieldSurface};
@@ -28,17 +28,25 @@ pub struct Scratch {
     pub sums: Vec<PatchSums>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
+    /// Boundary edges and nodes at those places.
+    pub frames: Frames,
+    /// What the vertex rule admits in this step.
+    pub admitted: Admitted,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
+    /// Velocities (m/s) of those contacts before and after the forces of this step, each normal and shear.
+    pub sliding: Vec<[[f64; 2]; 2]>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).
     pub columns: Vec<Vec<Vector>>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
-    /// Velocity increments of covers by contact impulses (m/s); zero between steps.
+    /// Order and buffers of the open–close iteration.
+    pub open_close: OpenClose,
+    /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.
     pub push: Vec<BlockPush>,

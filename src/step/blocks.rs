@@ -376,6 +376,8 @@ pub(super) struct Finish<'a> {
     pub motion: &'a [BlockMotion],
     pub start: &'a [BlockStart],
     pub push: &'a [BlockPush],
+    /// Velocity increments of covers by contacts and supports (m/s).
+    pub increment: &'a [Vector],
     pub damping: Damping,
     /// Time (s) by which places move.
     pub dt: f64,
@@ -387,7 +389,6 @@ pub(super) struct Finish<'a> {
 /// Output slices of the end of a step.
 pub(super) struct Finished<'o> {
     pub velocity: &'o mut [Vector],
-    pub increment: &'o mut [Vector],
     pub displacement: &'o mut [Vector],
     pub sums: &'o mut [PatchSums],
 }
@@ -395,16 +396,10 @@ pub(super) struct Finished<'o> {
 impl Cut for Finished<'_> {
     fn cut(self, covers: usize, _: usize, patches: usize) -> (Self, Self) {
         let (velocity, velocity_rest) = self.velocity.split_at_mut(covers);
-        let (increment, increment_rest) = self.increment.split_at_mut(covers);
         let (displacement, displacement_rest) = self.displacement.split_at_mut(covers);
         let (sums, sums_rest) = self.sums.split_at_mut(patches);
-        let rest = Finished {
-            velocity: velocity_rest,
-            increment: increment_rest,
-            displacement: displacement_rest,
-            sums: sums_rest,
-        };
-        (Finished { velocity, increment, displacement, sums }, rest)
+        let rest = Finished { velocity: velocity_rest, displacement: displacement_rest, sums: sums_rest };
+        (Finished { velocity, displacement, sums }, rest)
     }
 }
 
@@ -414,7 +409,7 @@ impl Work for Finish<'_> {
     #[inline(always)]
     fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &mut [Table; 2]) {
         let patch = self.slope.patches.get(k);
-        let Finished { velocity, increment, displacement, sums: [sums] } = out else { return };
+        let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
@@ -427,9 +422,9 @@ impl Work for Finish<'_> {
                 mass: &self.metric.mass[covers.clone()],
                 inertial: &self.metric.inertial[covers.clone()],
                 row_sum: &self.metric.row_sum[covers.clone()],
-                before: &self.before[covers],
+                before: &self.before[covers.clone()],
+                increment: &self.increment[covers],
                 velocity: &mut velocity[local.clone()],
-                increment: &mut increment[local.clone()],
                 displacement: &mut displacement[local],
             };
             let (works, [fastest, squares]) = self.block(lanes, block, &mut end);
@@ -478,8 +473,8 @@ impl Finish<'_> {
     /// Ends the step of all blocks.
     pub fn run(&self, out: Finished) -> Totals {
         let patches = &self.slope.patches;
-        let Finished { velocity, increment, displacement, sums } = out;
-        let out = Finished { velocity, increment, displacement, sums: &mut *sums };
+        let Finished { velocity, displacement, sums } = out;
+        let out = Finished { velocity, displacement, sums: &mut *sums };
         Run { work: self, patches, range: 0..patches.len(), out }.share(self.grain);
         let mut totals = Totals::default();
         for sums in &*sums {

@@ -18,6 +18,7 @@ impl Step<'_> {
     pub(super) fn commit(&mut self, dt: f64) -> StepReport {
         let clock = Instant::now();
         let totals = self.finish(dt);
+        self.measure_contacts();
         let works = self.works(dt, &totals);
         let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
@@ -54,13 +55,14 @@ impl Step<'_> {
             motion,
             start,
             push,
+            increment,
             damping: self.damping,
             dt: if self.report { 0.0 } else { dt },
             is_loaded,
             grain: blocks::grain(*serial),
         };
         let displacement = &mut state.displacement;
-        let totals = finish.run(Finished { velocity: predicted, increment, displacement, sums });
+        let totals = finish.run(Finished { velocity: predicted, displacement, sums });
         self.is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(slope).powi(2);
         totals
     }
@@ -145,9 +147,9 @@ impl Step<'_> {
         let (state, scratch) = (&mut *self.state, &*self.scratch);
         let fade = (-dt / OFFSET_FADE).exp();
         state.contacts.clear();
-        for contact in &scratch.contacts {
+        for (contact, [_, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
             let mut history = contact.history;
-            let (stored, slipped) = contact.shear_after(contact.relative(&scratch.predicted)[1] * dt);
+            let (stored, slipped) = contact.shear_after(after[1] * dt);
             let law = &state.laws[contact.law as usize];
             history.shear_stored = stored;
             history.rest += law.dilate(history.slip, history.slip + slipped);

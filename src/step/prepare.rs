@@ -10,12 +10,7 @@ use super::{Regime, applied, implicit, quiet};
 /// and a restored state.
 pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     let covers = slope.covers.cover_count();
-    for field in [
-        &mut scratch.load_force,
-        &mut scratch.predicted,
-        &mut scratch.damped,
-        &mut scratch.increment,
-    ] {
+    for field in [&mut scratch.load_force, &mut scratch.predicted, &mut scratch.damped, &mut scratch.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
@@ -28,6 +23,7 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
+    scratch.open_close.prepare(&scratch.metric, &slope.supports, &scratch.rows);
     implicit::prepare(slope, &scratch.metric, &mut scratch.implicit);
 }
 

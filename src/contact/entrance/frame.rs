@@ -1,0 +1,120 @@
+//! Edges and nodes at their current places, once a step for all that judge them.
+
+use rayon::prelude::*;
+
+use crate::contact::Boundary;
+use crate::geometry::{Point, Vector};
+
+use super::right_of;
+
+/// Edges or nodes that a thread takes at least.
+const GRAIN: usize = 2048;
+
+/// An edge at its current place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeFrame {
+    /// Start (m).
+    pub start: Point,
+    /// Unit tangent.
+    pub tangent: Vector,
+    /// Length (m).
+    pub length: f64,
+}
+
+/// A node at its current place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodeFrame {
+    /// Place (m).
+    pub place: Point,
+    /// To the node before it and to the node after it on its loop (m).
+    pub to: [Vector; 2],
+    /// How far those are (m).
+    pub distance: [f64; 2],
+}
+
+/// Where a point is over an edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Over {
+    /// Distance along the edge from its start (m).
+    pub along: f64,
+    /// Gap along the outward normal (m).
+    pub gap: f64,
+    /// Distance along the edge beyond its nearer end (m); 0 within.
+    pub beyond: f64,
+}
+
+/// All edges and nodes at their current places.
+#[derive(Debug, Clone, Default)]
+pub struct Frames {
+    pub(super) edges: Vec<EdgeFrame>,
+    pub(super) nodes: Vec<NodeFrame>,
+}
+
+impl Frames {
+    /// Memory (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
+    }
+}
+
+impl Over {
+    /// Distance from the edge (m).
+    pub fn distance(&self) -> f64 {
+        if self.beyond > 0.0 { self.beyond.hypot(self.gap) } else { self.gap.abs() }
+    }
+
+    /// Whether the distance from the edge is less than `distance` (m).
+    pub fn is_nearer_than(&self, distance: f64) -> bool {
+        self.beyond.max(self.gap.abs()) < distance && self.distance() < distance
+    }
+}
+
+impl EdgeFrame {
+    fn new(a: Point, b: Point) -> Self {
+        let length = (b - a).norm();
+        Self { start: a, tangent: (b - a) / length, length }
+    }
+
+    /// Outward unit normal.
+    pub fn normal(&self) -> Vector {
+        right_of(self.tangent)
+    }
+
+    /// Where a point is over the edge.
+    pub fn over(&self, p: Point) -> Over {
+        let from = p - self.start;
+        let along = from.dot(&self.tangent);
+        let beyond = (-along).max(along - self.length).max(0.0);
+        Over { along, gap: from.dot(&self.normal()), beyond }
+    }
+}
+
+impl NodeFrame {
+    fn new(place: Point, neighbours: [Point; 2]) -> Self {
+        let to = neighbours.map(|q| q - place);
+        Self { place, to, distance: to.map(|d| d.norm()) }
+    }
+}
+
+impl Frames {
+    /// Frames of all edges and nodes, where `place` are the current places of the boundary points.
+    pub fn update(&mut self, boundary: &Boundary, place: &[Point], serial: bool) {
+        let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
+        let at = |node: u32| place[boundary.node_point[node as usize] as usize];
+        let node = |((point, previous), next): ((&u32, &u32), &u32)| {
+            NodeFrame::new(place[*point as usize], [at(*previous), at(*next)])
+        };
+        let Boundary { node_point, node_previous, node_next, .. } = boundary;
+        if serial {
+            self.edges.clear();
+            self.edges.extend(place.iter().zip(&boundary.next).map(edge));
+            self.nodes.clear();
+            self.nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
+        } else {
+            let edges = place.par_iter().zip(&boundary.next).with_min_len(GRAIN);
+            edges.map(edge).collect_into_vec(&mut self.edges);
+            let nodes = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
+            nodes.map(node).collect_into_vec(&mut self.nodes);
+        }
+    }
+}
