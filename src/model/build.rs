@@ -18,7 +18,7 @@ use crate::mechanics::{
     ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Port, Slope, State, Water};
 
 use place::Places;
 
@@ -90,7 +90,6 @@ fn slope(
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
-    let laws = joint_laws(case, stiffness);
     let (mut fixities, mut supports) = fixities(case, &places, stiffness)?;
     let fixed_supports = supports.len() as u32;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
@@ -98,24 +97,18 @@ fn slope(
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
-    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
-    let loads = loads(case, &places, &faces)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
-    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
-    let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
-    let pre_stress = pre_stresses(case, &covers);
+    let (loads, ports, water) = from_outside(case, &places, &boundary)?;
     let slope = Slope {
-        patches: Patches::new(&covers, &element_rock, &pre_stress),
+        patches: Patches::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
-        pre_stress,
+        pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
-        rocks,
-        element_rock,
         metric,
-        laws,
+        laws: joint_laws(case, stiffness),
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         fixities,
@@ -131,16 +124,33 @@ fn slope(
         water,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
-        dt: internal_step(case, critical),
-        critical_dt: critical,
+        dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
+        critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,
         failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
+        rocks,
+        element_rock,
         covers,
     };
     Ok((slope, bolt_warnings))
+}
+
+/// Loads, ports and water.
+fn from_outside(
+    case: &Case,
+    places: &Places,
+    boundary: &Boundary,
+) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
+    let faces = ports::Faces { boundary, tolerance: places.tolerance };
+    Ok((loads(case, places, &faces)?, ports::ports(case, places, &faces)?, ports::water(case, &faces)?))
+}
+
+/// Shortest stable step (s) of all rocks.
+fn shortest_critical_dt(covers: &Covers, rocks: &[Elasticity]) -> f64 {
+    rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min)
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.
