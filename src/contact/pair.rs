@@ -22,8 +22,8 @@ pub struct Pair {
 impl Pair {
     /// A cover field at the first point relative to the second.
     pub fn difference(&self, field: &[Vector]) -> Vector {
-        let at = |k: usize| cover::sample(&self.covers[k], &self.weights[k], field);
-        at(0) - at(1)
+        cover::sample(&self.covers[0], &self.weights[0], field)
+            - cover::sample(&self.covers[1], &self.weights[1], field)
     }
 
     /// Sets z; returns the inverse effective mass (m/kg) of both bodies along each axis (Eq. 4).

@@ -1,28 +1,27 @@
 //! The open–close iteration: Gauss–Seidel sweeps over contacts and supports (Eqs. 14–17).
 
-use crate::cover;
+mod body;
+mod order;
+mod part;
+mod row;
+mod support;
+
+pub use body::BlockPush;
+
+use rayon::prelude::*;
+
 use crate::geometry::Vector;
 use crate::mechanics::Metric;
 
-use super::{BoltRow, ContactState, Pair, Support, SupportRow, VertexEdge};
+use self::body::{Body, Ground};
+use self::order::SweepOrder;
+use self::part::{Part, Pass, Work};
+use self::row::{Row, Watch};
+use self::support::Bearings;
+use super::{BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
 
 /// Share of the largest force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
-/// Most sweeps over the supports within one sweep over the contacts.
-const SUPPORT_SWEEPS_MAX: u32 = 10;
-/// Change of a support's force, relative to the largest, at which the supports have settled.
-const SUPPORT_TOLERANCE: f64 = 1e-4;
-
-/// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time (Eq. 17).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BlockPush {
-    /// P = Σ impulses (N·s/m).
-    pub impulse: Vector,
-    /// Z = Σ z·impulse (N·s/m).
-    pub weighted: Vector,
-    /// L = Σ arm × impulse (N·m·s/m).
-    pub moment: f64,
-}
 
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,119 +36,206 @@ pub struct SweepOptions {
     pub tolerance: f64,
     /// Most sweeps.
     pub sweeps_max: u32,
+    /// Whether the sweeps keep to the calling thread; the bits are the same.
+    pub serial: bool,
 }
 
 /// What the iteration did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SweepReport {
-    /// Sweeps done.
+    /// Sweeps done, those over what still moved included.
     pub sweeps: u32,
-    /// Largest change of a force in the last sweep over the largest force.
+    /// Contacts judged, summed over the sweeps.
+    pub judged: u64,
+    /// Largest change of a force in the last sweep, which is one over all contacts, over the largest force.
     pub unsettled: f64,
 }
 
-/// State of the iteration: velocity increments of covers and impulse sums of blocks.
-pub struct OpenClose<'a> {
+/// What the rows of a step are made from.
+struct SweepView<'a> {
     /// Masses.
-    pub metric: &'a Metric,
-    /// Numerical choices.
-    pub options: SweepOptions,
-    /// Velocity increments p/m of the covers by their own impulses (m/s).
-    pub increment: &'a mut [Vector],
+    metric: &'a Metric,
+    /// 1/√m of the covers along each axis, 0 where held.
+    roots: &'a [Vector],
+}
+
+/// What is judged in a step besides contacts.
+pub struct Others<'a> {
+    /// Supports of this step.
+    pub rows: &'a mut [SupportRow],
+    /// Bolts of this step.
+    pub bolts: &'a mut [BoltRow],
+}
+
+/// Buffers of the iteration.
+#[derive(Debug, Clone, Default)]
+pub struct OpenClose {
+    order: SweepOrder,
+    /// Contacts in the order in which they are judged, and the number of them up to the end of each part of the order.
+    sequence: Vec<u32>,
+    ends: Vec<u32>,
+    rows: Vec<Row>,
+    watch: Vec<Watch>,
+    /// Turns of the rows that are judged in a sweep, part by part.
+    list: Vec<u32>,
+    bearings: Bearings,
+    bolts: Vec<[Body; 2]>,
+    /// √m times the velocity increments of the covers by their own impulses.
+    own: Vec<Vector>,
     /// Impulse sums of the blocks.
-    pub push: &'a mut [BlockPush],
+    push: Vec<BlockPush>,
+    /// Turn in which each block moved last.
+    moved: Vec<u32>,
+    /// First block and first cover of each run of blocks.
+    cuts: Vec<[u32; 2]>,
+    /// 1/√m of the covers along each axis.
+    roots: Vec<Vector>,
 }
 
-/// The force (N/m) against which changes are measured: the larger of both, since a cohesive joint may bear shear alone.
-fn force_of(contact: &VertexEdge) -> f64 {
-    contact.history.normal_force.abs().max(contact.history.shear_force.abs())
-}
-
-/// Sweeps until forces settle, warm-started from the last step's forces.
-pub fn open_close(
-    mut iteration: OpenClose,
-    contacts: &mut [VertexEdge],
-    supports: &[Support],
-    rows: &mut [SupportRow],
-    bolts: &mut [BoltRow],
-) -> SweepReport {
-    iteration.warm_start(contacts, supports, rows);
-    bolts.iter().for_each(|bolt| iteration.push(&bolt.pair, bolt.direction * (-bolt.force * iteration.options.kick)));
-    let mut report = SweepReport::default();
-    while report.sweeps < iteration.options.sweeps_max && !(contacts.is_empty() && rows.is_empty() && bolts.is_empty())
-    {
-        let largest = contacts.iter().map(force_of).fold(f64::MIN_POSITIVE, f64::max);
-        let change = iteration.sweep_contacts(contacts, LIGHT * largest);
-        let support_change = iteration.sweep_supports(supports, rows);
-        let bolt_change = iteration.sweep_bolts(bolts, LIGHT * largest);
-        report.sweeps += 1;
-        report.unsettled = change.max(support_change).max(bolt_change);
-        if report.unsettled <= iteration.options.tolerance {
-            break;
-        }
-    }
-    report
-}
-
-impl OpenClose<'_> {
-    fn warm_start(&mut self, contacts: &mut [VertexEdge], supports: &[Support], rows: &mut [SupportRow]) {
-        for contact in contacts {
-            let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            self.push(&contact.pair, force * self.options.kick);
-        }
-        for row in rows {
-            supports[row.support as usize].push(row.force * self.options.kick, self.metric, self.increment);
-        }
+impl OpenClose {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.watch.as_slice());
+        let turns = [&self.sequence, &self.ends, &self.list, &self.moved].map(|list| size_of_val(list.as_slice()));
+        let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
+        let push = size_of_val(self.push.as_slice());
+        rows + turns.iter().sum::<usize>() + own + push + self.order.bytes() + self.bearings.bytes()
     }
 
-    /// One sweep in order; returns the largest change of a force over its own size, or over a floor for light contacts.
-    fn sweep_contacts(&mut self, contacts: &mut [VertexEdge], floor: f64) -> f64 {
-        let mut change = 0.0f64;
-        for contact in contacts {
-            change = change.max(self.judge(contact) / force_of(contact).max(floor));
-        }
-        change
+    /// Forgets the order, and takes the masses of a stage.
+    pub fn prepare(&mut self, metric: &Metric, supports: &[Support], rows: &[SupportRow]) {
+        self.order.clear();
+        self.roots.clear();
+        self.roots.extend(metric.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
+        self.bearings.prepare(supports, rows, &self.roots);
     }
 
-    /// Sweeps the supports to and fro until they settle; returns the first sweep's change over the largest force.
-    /// Springs and dashpots settle by themselves: waves are small beside weights.
-    fn sweep_supports(&mut self, supports: &[Support], rows: &mut [SupportRow]) -> f64 {
-        let mut first = None;
-        for _ in 0..SUPPORT_SWEEPS_MAX {
-            let (mut change, mut largest) = ([0.0f64; 2], [f64::MIN_POSITIVE; 2]);
-            for row in rows.iter_mut() {
-                let support = &supports[row.support as usize];
-                let kind = usize::from(support.is_dashpot());
-                change[kind] = change[kind].max(self.bear(support, row));
+    /// Makes the next step order the near pairs anew.
+    pub fn forget_order(&mut self) {
+        self.order.clear();
+    }
+
+    /// Orders the contacts of a step, and the near pairs when they are new.
+    pub fn arrange(
+        &mut self,
+        boundary: &Boundary,
+        candidates: &[Candidate],
+        metric: &Metric,
+        block_covers: &[u32],
+        contacts: &[VertexEdge],
+    ) {
+        if self.order.is_empty() {
+            self.order.order(boundary, candidates, metric);
+            self.cuts.clear();
+            self.cuts.extend(self.order.leaf_block().iter().map(|&block| [block, block_covers[block as usize]]));
+        }
+        self.order.arrange(contacts, &mut self.sequence, &mut self.ends);
+    }
+
+    /// Sweeps until forces settle, warm-started from the last step's forces, over contacts that have been arranged.
+    pub fn run(
+        &mut self,
+        metric: &Metric,
+        options: &SweepOptions,
+        contacts: &mut [VertexEdge],
+        others: &mut Others,
+    ) -> SweepReport {
+        self.load(metric, options, contacts, others);
+        self.part(contacts, options, Work::Warm);
+        for (bolt, bodies) in others.bolts.iter().zip(&self.bolts) {
+            let mut ground = whole(&mut self.own, &mut self.push, &mut self.moved);
+            push_bolt(bodies, bolt.direction * (-bolt.force * options.kick), &mut ground);
+        }
+        let report = self.sweeps(options, contacts, others);
+        self.finish(contacts, others);
+        report
+    }
+
+    /// Rows of all that is judged; nothing has moved.
+    fn load(&mut self, metric: &Metric, options: &SweepOptions, contacts: &[VertexEdge], others: &Others) {
+        let view = SweepView { metric, roots: &self.roots };
+        let count = self.sequence.len();
+        self.rows.resize(count, Row::default());
+        self.watch.resize(count, Watch::default());
+        self.list.resize(count, 0);
+        let fill = |((row, watch), &k): ((&mut Row, &mut Watch), &u32)| {
+            *row = Row::new(&contacts[k as usize], k, &view, options);
+            *watch = row.watch();
+        };
+        if options.serial || count < part::GRAIN {
+            self.rows.iter_mut().zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+        } else {
+            let rows = self.rows.par_iter_mut().with_min_len(part::GRAIN / 4);
+            rows.zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+        }
+        self.own.clear();
+        self.own.resize(self.roots.len(), Vector::zeros());
+        self.push.clear();
+        self.push.resize(metric.total.len(), BlockPush::default());
+        self.moved.clear();
+        self.moved.resize(metric.total.len(), 0);
+        self.bolts.clear();
+        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Body::new(&b.pair, k, &view))));
+        self.bearings.load(others.rows, options.kick, &mut self.own);
+    }
+
+    /// One pass over the rows, part by part.
+    fn part(&mut self, contacts: &[VertexEdge], options: &SweepOptions, work: Work) -> part::Swept {
+        let pass = Pass { contacts, kick: options.kick, tolerance: options.tolerance, serial: options.serial, work };
+        Part {
+            rows: &mut self.rows,
+            watch: &mut self.watch,
+            list: &mut self.list,
+            first_row: 0,
+            ends: &self.ends,
+            cuts: &self.cuts,
+            ground: whole(&mut self.own, &mut self.push, &mut self.moved),
+        }
+        .run(&pass)
+    }
+
+    /// Sweeps over all contacts until they settle; between two such sweeps only those are judged that have something to
+    /// answer, until none has.
+    fn sweeps(&mut self, options: &SweepOptions, contacts: &[VertexEdge], others: &mut Others) -> SweepReport {
+        let mut report = SweepReport::default();
+        let mut all = true;
+        let any = !(self.rows.is_empty() && self.bearings.is_empty() && self.bolts.is_empty());
+        while any && report.sweeps < options.sweeps_max {
+            all |= report.sweeps + 1 == options.sweeps_max;
+            let largest = self.watch.iter().map(|w| w.force).fold(f64::MIN_POSITIVE, row::larger);
+            let turn = report.sweeps * (self.rows.len() as u32 + 1) + 1;
+            let swept = self.part(contacts, options, Work::Sweep { all, floor: LIGHT * largest, turn });
+            let support_change = self.bearings.sweep(&mut self.own);
+            let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + self.rows.len() as u32);
+            let change = swept.change.max(support_change).max(bolt_change);
+            report.sweeps += 1;
+            report.judged += swept.judged;
+            if all {
+                report.unsettled = change;
             }
-            for row in rows.iter_mut().rev() {
-                let support = &supports[row.support as usize];
-                let kind = usize::from(support.is_dashpot());
-                change[kind] = change[kind].max(self.bear(support, row));
-                largest[kind] = largest[kind].max(row.force.abs());
-            }
-            first.get_or_insert(change[0].max(change[1]) / largest[0].max(largest[1]));
-            if (0..2).all(|kind| change[kind] <= SUPPORT_TOLERANCE * largest[kind]) {
+            if all && change <= options.tolerance {
                 break;
             }
+            all = !all && change <= options.tolerance;
         }
-        first.unwrap_or(0.0)
+        report
     }
 
     /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack
     /// ones.
-    fn sweep_bolts(&mut self, bolts: &mut [BoltRow], floor: f64) -> f64 {
+    fn sweep_bolts(&mut self, options: &SweepOptions, bolts: &mut [BoltRow], floor: f64, turn: u32) -> f64 {
+        let SweepOptions { dt, kick, theta, .. } = *options;
         let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
         let floor = floor.max(LIGHT * largest);
         let mut change = 0.0f64;
-        for bolt in bolts {
-            let relative = self.increment_at(&bolt.pair, 0) - self.increment_at(&bolt.pair, 1);
-            let rate = bolt.approach + relative.dot(&bolt.direction);
-            let SweepOptions { dt, kick, theta, .. } = self.options;
-            let force = bolt.answer(rate, dt, kick, theta);
+        let mut ground = whole(&mut self.own, &mut self.push, &mut self.moved);
+        for (bolt, bodies) in bolts.iter_mut().zip(&self.bolts) {
+            let [a, b] = [0, 1].map(|k| bodies[k].velocity(&bodies[k].places(&ground), &ground));
+            let force = bolt.answer(bolt.approach + (a - b).dot(&bolt.direction), dt, kick, theta);
             let step = force - bolt.force;
             if step != 0.0 {
-                self.push(&bolt.pair, bolt.direction * (-step * kick));
+                push_bolt(bodies, bolt.direction * (-step * kick), &mut ground);
+                ground.mark([0, 1].map(|k| bodies[k].block()), turn);
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
             }
@@ -157,83 +243,33 @@ impl OpenClose<'_> {
         change
     }
 
-    /// Updates the force of one support; returns its change (N/m).
-    fn bear(&mut self, support: &Support, row: &mut SupportRow) -> f64 {
-        let kick = self.options.kick;
-        let velocity = row.approach + support.sample(self.increment);
-        let a = row.viscosity;
-        let force =
-            (row.target - a * velocity + a * kick * row.compliance * row.force) / (1.0 + a * kick * row.compliance);
-        let change = force - row.force;
-        support.push(change * kick, self.metric, self.increment);
-        row.force = force;
-        change.abs()
-    }
-
-    /// Judges one contact open, slip or lock; returns the change of its force (N/m).
-    fn judge(&mut self, contact: &mut VertexEdge) -> f64 {
-        let SweepOptions { dt, kick, .. } = self.options;
-        let relative = self.increment_at(&contact.pair, 0) - self.increment_at(&contact.pair, 1);
-        let tangent = contact.tangent();
-        let normal_velocity = contact.approach[0] + relative.dot(&contact.normal);
-        let shear_velocity = contact.approach[1] + relative.dot(&tangent);
-        let (old_normal, old_shear) = (contact.history.normal_force, contact.history.shear_force);
-        let [a, b] = [0, 1].map(|k| contact.stiffness[k] * contact.forward[k] * dt);
-        let gap = contact.gap + contact.lag[0];
-        let stored = contact.history.shear_stored - contact.stiffness[1] * contact.lag[1];
-        let [wa, wb] = [0, 1].map(|k| contact.compliance[k] * kick);
-        let normal = if contact.closure_max.is_infinite() {
-            (-contact.stiffness[0] * gap - a * normal_velocity + a * wa * old_normal) / (1.0 + a * wa)
-        } else {
-            let reach = contact.forward[0] * dt;
-            contact.closure().solve(-gap - reach * (normal_velocity - wa * old_normal), reach * wa)
-        };
-        let shear = (stored - b * shear_velocity + b * wb * old_shear) / (1.0 + b * wb);
-        contact.decide(normal, shear);
-        let step = [contact.history.normal_force - old_normal, contact.history.shear_force - old_shear];
-        if step != [0.0; 2] {
-            self.push(&contact.pair, (contact.normal * step[0] + tangent * step[1]) * kick);
+    /// Forces and states of all that was judged.
+    fn finish(&self, contacts: &mut [VertexEdge], others: &mut Others) {
+        for row in &self.rows {
+            let [normal, shear] = row.asked();
+            contacts[row.contact() as usize].decide(normal, shear);
         }
-        step[0].abs().max(step[1].abs())
+        self.bearings.finish(others.rows);
     }
 
-    /// Velocity (m/s) that all impulses so far give to body `k` of a pair at its point (Eq. 17).
-    fn increment_at(&self, pair: &Pair, k: usize) -> Vector {
-        let block = pair.blocks[k] as usize;
-        let (metric, push) = (self.metric, &self.push[block]);
-        let own = cover::sample(&pair.covers[k], &pair.weights[k], self.increment);
-        let share = metric.inverse_total[block];
-        let common = (push.impulse * (1.0 + metric.square[block] * share - pair.z[k]) - push.weighted) * share;
-        let spin = metric.spin[block] * push.moment;
-        own + common + Vector::new(-pair.arms[k].y, pair.arms[k].x) * spin
-    }
-
-    /// Adds an impulse (N·s/m) on the first point and its reaction on the second.
-    fn push(&mut self, pair: &Pair, impulse: Vector) {
-        for (k, impulse) in [impulse, -impulse].into_iter().enumerate() {
-            for (&i, w) in pair.covers[k].iter().zip(pair.weights[k]) {
-                self.increment[i as usize] += self.metric.inverse[i as usize].component_mul(&impulse) * w;
-            }
-            let push = &mut self.push[pair.blocks[k] as usize];
-            push.impulse += impulse;
-            push.weighted += impulse * pair.z[k];
-            push.moment += pair.arms[k].perp(&impulse);
+    /// Writes the velocity increments (m/s) of the covers by their own impulses, and the impulse sums of the blocks.
+    pub fn impulses(&self, metric: &Metric, increment: &mut [Vector], push: &mut [BlockPush]) {
+        for ((increment, own), root) in increment.iter_mut().zip(&self.own).zip(&self.roots) {
+            *increment = own.component_mul(root);
+        }
+        for ((push, sums), total) in push.iter_mut().zip(&self.push).zip(&metric.total) {
+            *push = BlockPush { weighted: sums.weighted * *total, ..*sums };
         }
     }
 }
 
-impl VertexEdge {
-    /// Clamps the forces that the springs ask for to what the joint can carry.
-    pub fn decide(&mut self, normal: f64, shear: f64) {
-        let history = &mut self.history;
-        self.torn = normal < -self.limits.tension;
-        if self.torn || (normal <= 0.0 && self.limits.tension == 0.0) {
-            (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
-            return;
-        }
-        let limit = self.limits.shear(normal);
-        history.normal_force = normal;
-        history.shear_force = shear.clamp(-limit, limit);
-        history.state = if shear.abs() >= limit { ContactState::Slip } else { ContactState::Lock };
+fn push_bolt(bodies: &[Body; 2], impulse: Vector, ground: &mut Ground) {
+    for (body, impulse) in bodies.iter().zip([impulse, -impulse]) {
+        body.push(impulse, &body.places(ground), ground);
     }
+}
+
+/// All blocks.
+fn whole<'a>(own: &'a mut [Vector], push: &'a mut [BlockPush], moved: &'a mut [u32]) -> Ground<'a> {
+    Ground { own, first_cover: 0, push, moved, first_block: 0 }
 }

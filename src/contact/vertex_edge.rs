@@ -140,4 +140,18 @@ impl VertexEdge {
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
+
+    /// Clamps the forces that the springs ask for to what the joint can carry.
+    pub fn decide(&mut self, normal: f64, shear: f64) {
+        let history = &mut self.history;
+        self.torn = normal < -self.limits.tension;
+        if self.torn || (normal <= 0.0 && self.limits.tension == 0.0) {
+            (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
+            return;
+        }
+        let limit = self.limits.shear(normal);
+        history.normal_force = normal;
+        history.shear_force = shear.clamp(-limit, limit);
+        history.state = if shear.abs() >= limit { ContactState::Slip } else { ContactState::Lock };
+    }
 }

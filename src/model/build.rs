@@ -12,7 +12,7 @@ mod stage;
 use std::collections::BTreeMap;
 
 use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, Covers};
+use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
     ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
@@ -35,6 +35,8 @@ pub struct Built {
     pub monitors: Vec<(usize, Point)>,
     /// What the noder did.
     pub noding: NodingReport,
+    /// Pieces of block boundaries inside single elements, both sides of a joint counted.
+    pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
     pub traces: Vec<(Vec<Point>, u32)>,
     /// What the user should know.
@@ -52,17 +54,27 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings(&noding);
     tell(BuildStage::Covers);
-    let covers = cover::cut(mesh, arrangement);
+    let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
-    let (slope, bolt_warnings) = slope(case, &joints, covers, tolerance, tell)?;
+    tell(BuildStage::Masses);
+    let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
+    tell(BuildStage::Start);
     quiet::check_columns(&slope)?;
-    let places = Places { covers: &slope.covers, tolerance };
+    let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &slope, &places)?;
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding, traces: joints.traces, warnings })
+    Ok(Built {
+        slope,
+        state,
+        monitors,
+        noding,
+        boundary_pieces: outlines.pieces.len(),
+        traces: joints.traces,
+        warnings,
+    })
 }
 
 /// The fixed part of the model, and what its bolts have to tell.
@@ -70,23 +82,20 @@ fn slope(
     case: &Case,
     joints: &geometry::Joints,
     covers: Covers,
+    outlines: &Outlines,
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Slope, Vec<String>), Invalid> {
-    tell(BuildStage::Masses);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, tolerance };
+    let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
     let laws = joint_laws(case, stiffness);
-    let (mut fixities, mut supports) = fixities(case, &places, stiffness)?;
-    let fixed_supports = supports.len() as u32;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
-    let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
+    let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, &BoundaryOptions::default());
-    tell(BuildStage::Start);
+    let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
@@ -109,9 +118,9 @@ fn slope(
         supports,
         fixed_supports,
         base_motions: quiet::base_motions(case),
-        quiets,
-        columns,
-        free_field,
+        quiets: quiets.quiets,
+        columns: quiets.columns,
+        free_field: quiets.free_field,
         bolts,
         loads,
         ports,
@@ -128,6 +137,14 @@ fn slope(
         covers,
     };
     Ok((slope, bolt_warnings))
+}
+
+/// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
+fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
+    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness)?;
+    let of_case = supports.len() as u32;
+    let quiets = ground.quiets(&mut fixities, &mut supports)?;
+    Ok((fixities, supports, of_case, quiets))
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.

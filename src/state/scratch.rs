@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{Admitted, BlockPush, BoltRow, EdgeFrame, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
@@ -23,20 +23,24 @@ pub struct Scratch {
     pub motion: Vec<BlockMotion>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
-    /// Boundary edges at those places.
-    pub frames: Vec<EdgeFrame>,
+    /// Boundary edges and nodes at those places.
+    pub frames: Frames,
     /// What the vertex rule admits in this step.
     pub admitted: Admitted,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
+    /// Velocities (m/s) of those contacts before and after the forces of this step, each normal and shear.
+    pub sliding: Vec<[[f64; 2]; 2]>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).
     pub columns: Vec<Vec<Vector>>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
+    /// Order and buffers of the open–close iteration.
+    pub open_close: OpenClose,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.

@@ -16,6 +16,7 @@ impl Step<'_> {
     pub(super) fn commit(&mut self, dt: f64) -> StepReport {
         let clock = Instant::now();
         self.finish_velocities();
+        self.measure_contacts();
         let works = self.works(dt);
         let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
@@ -118,9 +119,9 @@ impl Step<'_> {
         let (state, scratch) = (&mut *self.state, &*self.scratch);
         let fade = (-dt / OFFSET_FADE).exp();
         state.contacts.clear();
-        for contact in &scratch.contacts {
+        for (contact, [_, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
             let mut history = contact.history;
-            let (stored, slipped) = contact.shear_after(contact.relative(&scratch.predicted)[1] * dt);
+            let (stored, slipped) = contact.shear_after(after[1] * dt);
             let law = &state.laws[contact.law as usize];
             history.shear_stored = stored;
             history.rest += law.dilate(history.slip, history.slip + slipped);

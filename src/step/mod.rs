@@ -222,7 +222,7 @@ impl Step<'_> {
         counters.sweeps += u64::from(swept.sweeps);
         counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
         counters.unsettled += u64::from(swept.unsettled > self.slope.tolerance);
-        counters.judged += u64::from(swept.sweeps) * self.scratch.contacts.len() as u64;
+        counters.judged += swept.judged;
         counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
         counters.dt_max = counters.dt_max.max(dt);
     }

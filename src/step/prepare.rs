@@ -27,6 +27,7 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
+    scratch.open_close.prepare(&scratch.metric, &slope.supports, &scratch.rows);
     implicit::prepare(slope, &scratch.metric, &mut scratch.implicit);
 }
 

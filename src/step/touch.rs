@@ -2,8 +2,11 @@
 
 use std::time::Instant;
 
-use crate::contact::{self, BoltView, Narrow, OpenClose, SearchView, SweepOptions, SweepReport};
-use crate::geometry::{Point, Vector};
+use rayon::prelude::*;
+
+use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport, VertexEdge};
+use crate::geometry::Point;
+use crate::state::Scratch;
 
 use super::{Regime, Step};
 
@@ -11,8 +14,13 @@ use super::{Regime, Step};
 const SKIN: f64 = 0.1;
 /// Distance, relative to the mesh size, within which pairs are kept.
 pub(super) const CUTOFF: f64 = 0.25;
+/// Size of a cell of the search, relative to the mesh size.
+const CELL: f64 = 0.5;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
+
+/// Contacts below which a loop over them is not split between threads.
+const CONTACTS: usize = 2048;
 
 impl Step<'_> {
     /// Current places of boundary points, and near pairs when nodes have moved.
@@ -26,18 +34,20 @@ impl Step<'_> {
         scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
         }));
-        contact::edge_frames(boundary, &scratch.place, scratch.serial, &mut scratch.frames);
+        scratch.frames.update(boundary, &scratch.place, scratch.serial);
         let size = slope.covers.mesh.size;
         if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {
                 boundary,
                 place: &scratch.place,
-                cell: size,
+                cell: CELL * size,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
                 fixed: &scratch.metric.fixed,
+                serial: scratch.serial,
             };
             scratch.search.search(&view, &mut self.state.near);
+            scratch.open_close.forget_order();
             self.state.counters.searches += 1;
         }
         scratch.seconds.search += clock.elapsed().as_secs_f64();
@@ -91,15 +101,21 @@ impl Step<'_> {
             Regime::Dynamic { damping } => (true, damping),
             Regime::Static { .. } => (false, 0.0),
         };
-        for contact in &mut scratch.contacts {
-            contact.approach = contact.relative(&scratch.predicted);
+        let Scratch { contacts, predicted, metric, serial, .. } = scratch;
+        let approach = |contact: &mut VertexEdge| {
+            contact.approach = contact.relative(predicted);
             let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
             if physical != [false; 2] {
                 let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
-                let inverse: f64 = contact.pair.blocks.map(|b| scratch.metric.inverse_total[b as usize]).iter().sum();
+                let inverse: f64 = contact.pair.blocks.map(|b| metric.inverse_total[b as usize]).iter().sum();
                 let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
                 contact.centre(physical, dt, kick, last, bouncing);
             }
+        };
+        if *serial {
+            contacts.iter_mut().for_each(approach);
+        } else {
+            contacts.par_iter_mut().with_min_len(CONTACTS).for_each(approach);
         }
         self.load_supports(dt);
         self.load_bolts();
@@ -127,15 +143,28 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        scratch.increment.fill(Vector::zeros());
-        scratch.push.fill(contact::BlockPush::default());
+        let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
-        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max };
-        let iteration =
-            OpenClose { metric: &scratch.metric, options, increment: &mut scratch.increment, push: &mut scratch.push };
-        let (contacts, rows, bolts) = (&mut scratch.contacts, &mut scratch.rows, &mut scratch.bolts);
-        let swept = contact::open_close(iteration, contacts, &slope.supports, rows, bolts);
+        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
+        open_close.arrange(&slope.boundary, &self.state.near.candidates, metric, &slope.covers.block_covers, contacts);
+        let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
+        open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
+    }
+
+    /// Velocities (m/s) normal and shear of all contacts before and after the forces of this sub-step.
+    pub(super) fn measure_contacts(&mut self) {
+        let Scratch { contacts, predicted, sliding, serial, .. } = &mut *self.scratch;
+        let velocity = &self.state.velocity;
+        let measure = |(both, contact): (&mut [[f64; 2]; 2], &VertexEdge)| {
+            *both = [contact.relative(velocity), contact.relative(predicted)];
+        };
+        sliding.resize(contacts.len(), Default::default());
+        if *serial {
+            sliding.iter_mut().zip(contacts.iter()).for_each(measure);
+        } else {
+            sliding.par_iter_mut().with_min_len(CONTACTS).zip(&*contacts).for_each(measure);
+        }
     }
 }

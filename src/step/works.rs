@@ -14,9 +14,7 @@ impl Step<'_> {
             blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt, grain: usize::MAX };
         let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
-        for contact in &scratch.contacts {
-            let before = contact.relative(&state.velocity);
-            let after = contact.relative(&scratch.predicted);
+        for (contact, [before, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
             let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
             works.contact_work += contact.history.normal_force * normal + contact.history.shear_force * shear;
             if contact.history.state == ContactState::Slip {

@@ -80,6 +80,14 @@ pub fn verification(house: &House, program: &str) -> Result<(), String> {
     house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program]))
 }
 
+/// Tells what a step costs through every export.
+///
+/// # Errors
+/// When the program does not build or run.
+pub fn overhead(house: &House) -> Result<(), String> {
+    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
+}
+
 /// Writes the schema of the case file as the command line tells it.
 ///
 /// # Errors

@@ -1,0 +1,185 @@
+//! A contact as the iteration judges it (Eqs. 14, 15, 17).
+
+use crate::contact::VertexEdge;
+use crate::geometry::{NONE, Vector};
+
+use super::body::{Body, Ground};
+use super::{SweepOptions, SweepView};
+
+/// What the spring along one axis answers: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all
+/// impulses so far. For a curved spring it is the closure (m) that the force then follows from.
+#[derive(Debug, Clone, Copy, Default)]
+struct Answer {
+    rest: f64,
+    rate: f64,
+    kept: f64,
+}
+
+/// A contact in the iteration.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Row {
+    bodies: [Body; 2],
+    normal: Vector,
+    answers: [Answer; 2],
+    /// Forces normal and shear (N/m).
+    force: [f64; 2],
+    /// What the springs asked for last (N/m).
+    asked: [f64; 2],
+    friction: f64,
+    cohesion: f64,
+    /// Normal force (N/m) at or below which it is open.
+    open: f64,
+    /// Index of the contact.
+    contact: u32,
+    /// Whether spring or strength follow a curve.
+    curved: bool,
+}
+
+/// What decides whether a row is judged in a sweep.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Watch {
+    /// The free blocks of both bodies, one of them twice when the other is held; none when both are.
+    pub blocks: [u32; 2],
+    /// Turn in which it was judged last.
+    pub judged: u32,
+    /// The larger of its forces (N/m), since a cohesive joint may bear shear alone.
+    pub force: f64,
+}
+
+impl Watch {
+    /// Whether a body has moved since the row was judged; rows without a free block always have to be.
+    #[inline(always)]
+    pub fn is_due(&self, ground: &Ground) -> bool {
+        let moved = |block: u32| ground.moved[(block - ground.first_block) as usize];
+        self.blocks[0] == NONE || moved(self.blocks[0]).max(moved(self.blocks[1])) > self.judged
+    }
+}
+
+impl Row {
+    /// The row of a contact with its forces of the last step.
+    pub fn new(contact: &VertexEdge, index: u32, view: &SweepView, options: &SweepOptions) -> Self {
+        let curved = contact.closure_max.is_finite() || contact.limits.rough.is_some();
+        let tension = contact.limits.tension;
+        let closes = contact.closure_max.is_finite();
+        let pressed = -contact.stiffness[0] * contact.gap;
+        Self {
+            bodies: [Body::new(&contact.pair, 0, view), Body::new(&contact.pair, 1, view)],
+            normal: contact.normal,
+            answers: [
+                if closes { closing(contact, options) } else { spring(contact, options, 0, pressed) },
+                spring(contact, options, 1, contact.history.shear_stored),
+            ],
+            force: [contact.history.normal_force, contact.history.shear_force],
+            asked: [0.0; 2],
+            friction: contact.limits.friction,
+            cohesion: contact.limits.cohesion,
+            open: if tension > 0.0 { (-tension).next_down() } else { 0.0 },
+            contact: index,
+            curved,
+        }
+    }
+
+    /// Index of the contact.
+    pub fn contact(&self) -> u32 {
+        self.contact
+    }
+
+    /// What decides whether it is judged.
+    pub fn watch(&self) -> Watch {
+        let [a, b] = [0, 1].map(|k| self.bodies[k].block());
+        let blocks = [if a == NONE { b } else { a }, if b == NONE { a } else { b }];
+        Watch { blocks, judged: 0, force: self.largest() }
+    }
+
+    /// What the springs asked for last (N/m).
+    pub fn asked(&self) -> [f64; 2] {
+        self.asked
+    }
+
+    fn largest(&self) -> f64 {
+        larger(self.force[0].abs(), self.force[1].abs())
+    }
+
+    /// Pushes with the forces so far.
+    pub fn warm(&self, kick: f64, ground: &mut Ground) {
+        if self.force != [0.0; 2] {
+            let impulse = self.turned(self.force) * kick;
+            for (body, impulse) in self.bodies.iter().zip([impulse, -impulse]) {
+                body.push(impulse, &body.places(ground), ground);
+            }
+        }
+    }
+
+    /// Judges open, slip or lock; returns the change of its force and the force (N/m).
+    #[inline(always)]
+    pub fn judge(&mut self, kick: f64, contacts: &[VertexEdge], ground: &mut Ground) -> [f64; 2] {
+        let places = [self.bodies[0].places(ground), self.bodies[1].places(ground)];
+        let velocity = self.bodies[0].velocity(&places[0], ground) - self.bodies[1].velocity(&places[1], ground);
+        let [mut normal, shear] = self.ask([velocity.dot(&self.normal), self.normal.perp(&velocity)]);
+        let mut limit = larger(normal * self.friction + self.cohesion, 0.0);
+        if self.curved {
+            (normal, limit) = self.follow(normal, &contacts[self.contact as usize]);
+        }
+        self.asked = [normal, shear];
+        let bears = normal > self.open;
+        let (normal, limit) = (if bears { normal } else { 0.0 }, if bears { limit } else { 0.0 });
+        let force = [normal, smaller(larger(shear, -limit), limit)];
+        let step = [force[0] - self.force[0], force[1] - self.force[1]];
+        if step != [0.0; 2] {
+            let impulse = self.turned(step) * kick;
+            self.bodies[0].push(impulse, &places[0], ground);
+            self.bodies[1].push(-impulse, &places[1], ground);
+            self.force = force;
+        }
+        [larger(step[0].abs(), step[1].abs()), self.largest()]
+    }
+
+    /// What the springs ask for at a velocity normal and shear (m/s) by all impulses so far.
+    #[inline(always)]
+    fn ask(&self, velocity: [f64; 2]) -> [f64; 2] {
+        let answer = |k: usize, Answer { rest, rate, kept }: Answer| rest - rate * velocity[k] + kept * self.force[k];
+        [answer(0, self.answers[0]), answer(1, self.answers[1])]
+    }
+
+    /// A vector from its components normal and shear.
+    #[inline(always)]
+    fn turned(&self, along: [f64; 2]) -> Vector {
+        self.normal * along[0] + Vector::new(-self.normal.y, self.normal.x) * along[1]
+    }
+
+    /// Normal force and shear limit (N/m) of a joint whose spring or strength follows a curve.
+    #[cold]
+    fn follow(&self, asked: f64, contact: &VertexEdge) -> (f64, f64) {
+        let linear = contact.closure_max.is_infinite();
+        let normal = if linear { asked } else { contact.closure().solve(asked, self.answers[0].kept) };
+        (normal, contact.limits.shear(normal))
+    }
+}
+
+/// The linear spring along axis `k` that bears `stored` (N/m) at the step's start.
+fn spring(contact: &VertexEdge, options: &SweepOptions, k: usize, stored: f64) -> Answer {
+    let a = contact.stiffness[k] * contact.forward[k] * options.dt;
+    let aw = a * contact.compliance[k] * options.kick;
+    let asked = stored - contact.stiffness[k] * contact.lag[k] - a * contact.approach[k];
+    let share = 1.0 / (1.0 + aw);
+    Answer { rest: asked * share, rate: a * share, kept: aw * share }
+}
+
+/// A curved normal spring.
+fn closing(contact: &VertexEdge, options: &SweepOptions) -> Answer {
+    let reach = contact.forward[0] * options.dt;
+    let rest = -contact.gap - contact.lag[0] - reach * contact.approach[0];
+    Answer { rest, rate: reach, kept: reach * contact.compliance[0] * options.kick }
+}
+
+/// The smaller of two numbers.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
