@@ -52,13 +52,6 @@ pub struct Frames {
     pub(super) nodes: Vec<NodeFrame>,
 }
 
-impl Frames {
-    /// Bytes of the frames.
-    pub fn bytes(&self) -> usize {
-        size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
-    }
-}
-
 impl Over {
     /// Distance from the edge (m).
     pub fn distance(&self) -> f64 {
