@@ -81,7 +81,7 @@ fn blocks_slide_down_the_base() {
     let softer = 1.0 + 2.0 * slope.covers.mesh.size / SPACING;
     let settled = weight * 100.0 * 100.0 / rock.confined_modulus() * softer;
     assert!((0.9 * way..way + settled).contains(&mean), "moved {mean} m, rigid body {way} m, settled {settled} m");
-    assert!(sliding > free.len() * 8 / 10, "{sliding} of {}", free.len());
+    assert!(sliding > free.len() * 7 / 10, "{sliding} of {}", free.len());
     let worst = simulation.state().counters.penetration_max / slope.covers.mesh.size;
     assert!(worst < 0.01, "overlap {worst} of the mesh size");
 }
