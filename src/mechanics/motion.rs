@@ -117,7 +117,7 @@ pub fn kinetic_energy(kick: &Kick) -> f64 {
     let (metric, block) = (kick.metric, kick.block);
     let sums = kick.sums(kick.velocity, kick.centre());
     let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
-    0.5 * metric.total[block] * sums.velocity.norm_squared()
+    0.5 * metric.rigid_mass(block) * sums.velocity.norm_squared()
         + 0.5 * kick.product(kick.velocity, kick.velocity, &sums, &sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
@@ -136,7 +136,7 @@ pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
     let [old, new] = [kick.velocity, after].map(|field| kick.sums(field, centre));
     let turning = |with: &Sums| old.moment * with.moment / old.polar;
     let share = metric.polar[block] / metric.polar_lumped[block];
-    let rigid = |with: &Sums| metric.total[block] * old.velocity.dot(&with.velocity) + share * turning(with);
+    let rigid = |with: &Sums| metric.rigid_mass(block) * old.velocity.dot(&with.velocity) + share * turning(with);
     let deforming = |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - turning(with);
     let both = deforming(kick.velocity, &old) + deforming(after, &new) + whole * (rigid(&old) + rigid(&new));
     0.5 * (1.0 - factor) * both
@@ -208,7 +208,7 @@ fn push_free(kick: &Kick, centre: Point, spin: f64, force: &[Vector], predicted:
         let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];
         mean += own * (metric.inertial[i] * share);
     }
-    let common = total * share - mean + kick.acceleration;
+    let common = (total * share + kick.acceleration) * metric.lightness - mean;
     let spin = spin * torque;
     for (k, i) in kick.covers.clone().enumerate() {
         let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];

@@ -121,6 +121,7 @@ fn slope(
         dt: internal_step(case, critical),
         critical_dt: critical,
         theta: case.solver.contact_theta,
+        mass_scaling: case.solver.mass_scaling,
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,

@@ -108,7 +108,7 @@ impl Pass<'_> {
     fn kick<'a>(&'a self, metric: &'a mechanics::Metric, block: usize) -> Kick<'a> {
         Kick {
             acceleration: self.acceleration,
-            damping: self.block_damping(block),
+            damping: self.block_damping(metric, block),
             dt: self.dt,
             ..resting(self.slope, metric, &self.state.displacement, &self.state.velocity, block)
         }
@@ -144,13 +144,17 @@ impl Pass<'_> {
         }
     }
 
-    /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion, or the common one.
-    fn block_damping(&self, block: usize) -> Damping {
+    /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of
+    /// a block that is lighter by the root of that faster.
+    fn block_damping(&self, metric: &mechanics::Metric, block: usize) -> Damping {
         match self.damping {
             Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
                 Damping::Deformation((-(ratio_dt * self.slope.block_frequency[block]).min(DECAY_MAX)).exp())
             }
             Damping::Deformation(_) => Damping::Deformation(1.0),
+            Damping::Mass(factor) if metric.lightness > 1.0 && metric.is_free(block) => {
+                Damping::Mass(factor.powf(metric.lightness.sqrt()).max((-DECAY_MAX).exp()))
+            }
             mass => mass,
         }
     }
