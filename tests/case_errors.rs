@@ -210,6 +210,11 @@ fn solver_value_out_of_range_says_value_and_limit() {
             "solver.contact_theta: is 0.5, must be at least 1 and at most 1e6; 4 is the default",
         ),
         (
+            "mass_scaling = 1.0",
+            "mass_scaling = 0.5",
+            "solver.mass_scaling: is 0.5, must be at least 1 and at most 100; 1 is the default",
+        ),
+        (
             "sweeps_max = 12",
             "sweeps_max = 0",
             "solver.sweeps_max: is 0, must be at least 1 and at most 1000; 100 is the default",

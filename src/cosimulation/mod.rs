@@ -244,8 +244,8 @@ impl Cosimulation {
         self.standing.interpolation
     }
 
-    /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it. Small
-    /// models keep to the caller's thread: handing a step over would cost more than it saves.
+    /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it.
+    /// Small models keep to the caller's thread: handing a step over would cost more than it saves.
     ///
     /// # Errors
     /// No thread at all, more than 1024, or threads that the system refuses.

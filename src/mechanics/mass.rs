@@ -23,7 +23,7 @@ pub struct Metric {
     pub total: Vec<f64>,
     /// 1/M of a free block, 0 of a held one.
     pub inverse_total: Vec<f64>,
-    /// S = Σμ²/m of a free block.
+    /// S = Σμ²/m of a free block, and (s − 1)·M more of one that is s times lighter.
     pub square: Vec<f64>,
     /// Polar inertia about the centroid in the metric (kg·m²/m): exact when free, lumped when held.
     pub polar: Vec<f64>,
@@ -31,6 +31,8 @@ pub struct Metric {
     pub polar_lumped: Vec<f64>,
     /// C = 1/J − 1/J_D of a free block, 0 of a held one.
     pub spin: Vec<f64>,
+    /// How many times lighter free blocks are as rigid bodies than their rock; their weights are not.
+    pub lightness: f64,
     /// Whether no cover of the block can move.
     pub fixed: Vec<bool>,
 }
@@ -48,6 +50,7 @@ impl Metric {
                 metric.row_sum[cover as usize] += mass * weights[k];
             }
         }
+        metric.lightness = 1.0;
         metric.inertial.clone_from(&metric.row_sum);
         metric.inverse = metric.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
         for block in 0..covers.block_count() {
@@ -100,6 +103,20 @@ impl Metric {
                 self.inverse[cover][axis] = 0.0;
             }
         }
+    }
+
+    /// Makes free blocks so many times lighter as rigid bodies; what deforms keeps its mass, which limits the step.
+    pub fn lighten(&mut self, lightness: f64) {
+        self.lightness = lightness;
+        for block in (0..self.total.len()).filter(|&b| self.inverse_total[b] > 0.0) {
+            self.square[block] += (lightness - 1.0) * self.total[block];
+            self.polar[block] /= lightness;
+        }
+    }
+
+    /// Mass (kg/m) with which a block answers a force through its centroid.
+    pub fn rigid_mass(&self, block: usize) -> f64 {
+        if self.is_free(block) { self.total[block] / self.lightness } else { self.total[block] }
     }
 
     /// Marks the blocks that cannot move at all.

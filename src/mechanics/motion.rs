@@ -99,7 +99,7 @@ pub fn kinetic_energy(covers: &BlockCovers) -> f64 {
     let (metric, block) = (covers.metric, covers.block);
     let sums = covers.sums(covers.velocity, covers.centre());
     let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
-    0.5 * metric.total[block] * sums.velocity.norm_squared()
+    0.5 * metric.rigid_mass(block) * sums.velocity.norm_squared()
         + 0.5 * covers.product(covers.velocity, covers.velocity, &sums, &sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
@@ -198,7 +198,7 @@ impl BlockStart {
             let share = metric.inverse_total[block];
             let torque = sums.torque - self.centre.perp(&sums.force);
             let mean = (sums.weighted - sums.force * (metric.square[block] * share)) * share;
-            let pushed = sums.force * share - mean + step.acceleration;
+            let pushed = sums.force * share - mean + step.acceleration * metric.lightness;
             let spin = self.motion(metric, block).spin * torque;
             let by_force = Common::about(pushed * step.dt, spin * step.dt, self.centre);
             common.velocity += by_force.velocity;
@@ -222,7 +222,7 @@ impl BlockStart {
         let own = self.from.velocity + self.velocity;
         let both = self.from.velocity * 2.0 + sums.inertial / total;
         let share = metric.polar[block] / metric.polar_lumped[block];
-        let rigid = total * own.dot(&both) + share * turning;
+        let rigid = metric.rigid_mass(block) * own.dot(&both) + share * turning;
         0.5 * (1.0 - factor) * (deforming + whole * rigid)
     }
 }

@@ -127,6 +127,7 @@ fn slope(
         dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
         critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
+        mass_scaling: case.solver.mass_scaling,
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,

@@ -680,6 +680,9 @@ pub struct Solver {
     pub sweeps_max: u32,
     /// Penetration, relative to the mesh size, at which the run stops as failed.
     pub penetration_limit: f64,
+    /// Static stages: how many times lighter than their rock free blocks are as rigid bodies, so that they settle in
+    /// fewer steps; weights, and so the state of rest, stay those of the rock, but joints may slip by another path.
+    pub mass_scaling: f64,
     /// Implicit: Newmark's rule.
     pub newmark: Newmark,
     /// Implicit: internal step (s); default: 20 times the explicit one. It is an integer fraction of the communication
@@ -708,6 +711,7 @@ impl Default for Solver {
             contact_tolerance: 1e-2,
             sweeps_max: 100,
             penetration_limit: 0.2,
+            mass_scaling: 1.0,
             newmark: Newmark::Constant,
             implicit_step: None,
             iterations_max: 8,

@@ -177,6 +177,8 @@ pub struct Slope {
     pub critical_dt: f64,
     /// θ of the contact springs.
     pub theta: f64,
+    /// How many times lighter free blocks are as rigid bodies in explicit static stages.
+    pub mass_scaling: f64,
     /// Relative change of force at which the open–close iteration has settled.
     pub tolerance: f64,
     /// Most sweeps of the open–close iteration.

@@ -114,7 +114,7 @@ impl Pass<'_> {
     fn step(&self, block: usize) -> KickStep {
         KickStep {
             acceleration: self.acceleration,
-            damping: block_damping(self.slope, self.damping, block),
+            damping: block_damping(self.slope, self.metric, self.damping, block),
             dt: self.dt,
         }
     }
@@ -459,7 +459,7 @@ impl Finish<'_> {
     }
 
     fn block_damping(&self, block: usize) -> Damping {
-        block_damping(self.slope, self.damping, block)
+        block_damping(self.slope, self.metric, self.damping, block)
     }
 
     fn damping_work(&self, block: usize, works: &WorkSums) -> f64 {
@@ -514,13 +514,17 @@ fn is_damping(damping: Damping) -> bool {
     factor < 1.0
 }
 
-/// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion, or the common one.
-pub(super) fn block_damping(slope: &Slope, damping: Damping, block: usize) -> Damping {
+/// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
+/// lighter by the root of that faster.
+pub(super) fn block_damping(slope: &Slope, metric: &Metric, damping: Damping, block: usize) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
             Damping::Deformation((-(ratio_dt * slope.block_frequency[block]).min(DECAY_MAX)).exp())
         }
         Damping::Deformation(_) => Damping::Deformation(1.0),
+        Damping::Mass(factor) if metric.lightness > 1.0 && metric.is_free(block) => {
+            Damping::Mass(factor.powf(metric.lightness.sqrt()).max((-DECAY_MAX).exp()))
+        }
         mass => mass,
     }
 }

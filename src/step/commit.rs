@@ -84,7 +84,7 @@ impl Step<'_> {
             if metric.fixed[block] {
                 out.fill(Vector::zeros());
             } else {
-                mechanics::damp(&covers, blocks::block_damping(slope, self.damping, block), out);
+                mechanics::damp(&covers, blocks::block_damping(slope, metric, self.damping, block), out);
             }
         }
     }

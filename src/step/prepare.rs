@@ -55,6 +55,10 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
         compliance: support.compliance(metric),
         force: state.support_force[k],
     }));
+    let is_static = !state.stage_displacement.is_empty();
+    if is_static && slope.implicit.is_none() && slope.mass_scaling > 1.0 {
+        metric.lighten(slope.mass_scaling);
+    }
     metric.mark_fixed(&slope.covers);
 }
 

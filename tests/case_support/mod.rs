@@ -229,6 +229,7 @@ dt_safety = 0.8
 contact_stiffness = 0.5
 shear_ratio = 0.5
 contact_theta = 4.0
+mass_scaling = 1.0
 contact_tolerance = 0.01
 sweeps_max = 12
 penetration_limit = 0.5

@@ -37,7 +37,7 @@ impl<'a> Comparison<'a> {
     ///
     /// # Errors
     /// When it is something else.
-    pub fn read(words: &[&'a str]) -> Result<Self, String> {
+    pub fn read(words: &'a [&'a str]) -> Result<Self, String> {
         let [old, new, rest @ ..] = words else { return Err("ab needs two programs: OLD NEW".to_owned()) };
         let mut read = Self { old: old.as_ref(), new: new.as_ref(), models: MODELS, rounds: ROUNDS, threads: "1" };
         for pair in rest.chunks(2) {

@@ -1,7 +1,7 @@
 //! Tells what one internal step costs through the façade, the C ABI and both FMUs above the engine's own step, what
 //! getters, setters and saved states cost, how often each allocates, and what threads do to a small model.
 //!
-//! All of it is linked into one program, whose hosts take turns. Times are the least of many turns: the processor time of
+//! All of it is linked into one program, whose hosts take turns. Times are the least of many turns: processor time of
 //! the calling thread, and of threads wall time.
 
 // The C ABI's own files: its library has no face to Rust.
@@ -39,10 +39,8 @@ const TURNS: u32 = 200;
 const WARM: u32 = 100;
 
 fn main() {
-    say(
-        "| model | through | step [ns] | above the engine | step and read 3 | set and step | save | allocations: step / \
-         read / set / save | bytes of a save over the state's |",
-    );
+    say("| model | through | step [ns] | above the engine | step and read 3 | set and step | save \
+         | allocations: step / read / set / save | bytes of a save over the state's |");
     say("|---|---|---:|---:|---:|---:|---:|---:|---:|");
     for model in model::models() {
         exports(&model);

@@ -319,6 +319,7 @@ fn solver(key: &Key, solver: &Solver) -> Check {
     number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
     number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
     whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "100 is the default")?;
+    number(key, "mass_scaling", solver.mass_scaling, Range::from(1.0).to(100.0), "", "1 is the default")?;
     number(key, "penetration_limit", solver.penetration_limit, share, "", "0.2 is the default")?;
     let hint = "leave it out for 20 explicit steps";
     optional(key, "implicit_step", solver.implicit_step, time, "s", hint)?;
