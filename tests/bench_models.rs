@@ -1,16 +1,106 @@
-//! Claim: the standard models of `enmm bench` run, and its shares account for the whole step.
+//! Claim: `enmm bench` times models of the counts that their names say, which slide without overlap, and its report
+//! accounts for the whole step.
 
-use enmm::io::bench::bench;
+use enmm::io::bench::{BenchOptions, Model, bench, slope_case};
+use enmm::model::Simulation;
+
+/// Dip of base and bedding, and friction (rad).
+const DIP: f64 = std::f64::consts::FRAC_PI_6;
+const FRICTION: f64 = 20.0 * std::f64::consts::PI / 180.0;
+
+fn build(model: Model) -> Simulation {
+    model.build().unwrap_or_else(|e| panic!("{model}: {e}"))
+}
+
+fn advance(simulation: &mut Simulation, steps: u64) {
+    for _ in 0..steps {
+        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// Free blocks and their elements.
+fn counts(simulation: &Simulation) -> [f64; 2] {
+    let covers = &simulation.slope().covers;
+    let free = (0..covers.block_count()).filter(|&b| !simulation.scratch().metric.fixed[b]);
+    let elements: usize = free.clone().map(|b| covers.elements_of(b).len()).sum();
+    [free.count() as f64, elements as f64]
+}
 
 #[test]
-fn standard_models_run_and_shares_sum_to_one() {
-    let found = bench(0.05).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(found.len(), 2);
-    for model in &found {
-        let shares = model.shares;
-        let sum = shares.elements + shares.search + shares.entrance + shares.sweep + shares.commit + shares.rest;
-        assert!((sum - 1.0).abs() < 1e-12 && shares.rest >= 0.0, "{model:?}");
-        assert!((5_000..20_000).contains(&model.elements) && model.steps_per_second > 0.0, "{model:?}");
+fn counts_are_those_of_the_name() {
+    for (blocks, each) in [(500, 4), (500, 16), (2_000, 4), (2_000, 16), (548, 8)] {
+        let simulation = build(Model::Slope(blocks, each));
+        let [found, elements] = counts(&simulation);
+        let wanted = [blocks as f64, (blocks * each) as f64];
+        assert!((found / wanted[0] - 1.0).abs() < 0.1, "{found} blocks for {blocks}");
+        assert!((elements / wanted[1] - 1.0).abs() < 0.1, "{elements} elements for {}", wanted[1]);
+        let covers = &simulation.slope().covers;
+        assert_eq!(covers.block_count() as f64, found + 1.0, "the slab is one block");
+        assert!(covers.element_count() as f64 - elements < 0.4 * elements, "the slab is small");
     }
-    assert!(found[0].contacts_per_second.is_none() && found[1].contacts > 1000, "{found:?}");
+    let simulation = build(Model::Continuum(10_000));
+    let elements = simulation.slope().covers.element_count() as f64;
+    assert!((elements / 1e4 - 1.0).abs() < 0.02, "{elements}");
+    assert_eq!(simulation.slope().covers.block_count(), 1);
+}
+
+#[test]
+fn the_same_name_is_the_same_model() {
+    assert_eq!(slope_case(500, 4), slope_case(500, 4));
+    let [a, b] = [0, 1].map(|_| {
+        let mut simulation = build(Model::Slope(500, 4));
+        advance(&mut simulation, 50);
+        simulation.state().clone()
+    });
+    assert!(a == b, "the state after 50 steps");
+}
+
+/// A rigid body on the base moves by ½a·t², a = g(sin 30° − cos 30° tan 20°); the mean over blocks lags a little while
+/// gravity is taken up, and overlap stays far below the mesh size.
+#[test]
+fn blocks_slide_down_the_base() {
+    let mut simulation = build(Model::Slope(500, 4));
+    let steps = simulation.steps_in(0.5);
+    advance(&mut simulation, steps);
+    let slope = simulation.slope();
+    let time = simulation.time();
+    let gravity = slope.gravity.norm();
+    let way = 0.5 * gravity * (DIP.sin() - DIP.cos() * FRICTION.tan()) * time * time;
+    let free: Vec<usize> = (0..slope.covers.block_count()).filter(|&b| !simulation.scratch().metric.fixed[b]).collect();
+    let moved = |&b: &usize| {
+        let motion = simulation.motion_of(b);
+        -motion.displacement.x * DIP.cos() - motion.displacement.y * DIP.sin()
+    };
+    let mean = free.iter().map(moved).sum::<f64>() / free.len() as f64;
+    let sliding = free.iter().filter(|b| moved(b) > 0.3 * way).count();
+    assert!((mean / way - 1.0).abs() < 0.3, "moved {mean} m, rigid body {way} m");
+    assert!(sliding > free.len() * 8 / 10, "{sliding} of {}", free.len());
+    let worst = simulation.state().counters.penetration_max / slope.covers.mesh.size;
+    assert!(worst < 0.01, "overlap {worst} of the mesh size");
+}
+
+#[test]
+fn report_accounts_for_the_whole_step() {
+    let models = vec![Model::Continuum(2_000), Model::Slope(200, 4)];
+    let options = BenchOptions { models, seconds: 0.05, threads: Some(1), limits: true };
+    let mut begun = Vec::new();
+    let report = bench(&options, &mut |name| begun.push(name.to_owned())).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(begun, ["limits of the machine", "continuum_2000", "slope_200x4"]);
+    assert_eq!((report.threads, report.models.len()), (1, 2));
+    assert_eq!(report.machine.bandwidth.len(), 4);
+    assert!(report.machine.bandwidth.iter().all(|level| level.one > 1e8 && level.all > 1e8), "{:?}", report.machine);
+    for model in &report.models {
+        let sum: f64 = model.stages.named().iter().map(|(_, ms)| ms).sum();
+        assert!((sum / model.ms_per_step - 1.0).abs() < 1e-9 && model.ms_per_step > 0.0, "{model:?}");
+        assert!(model.windows >= 2 && model.spread >= 1.0 && model.build_seconds > 0.0, "{model:?}");
+        assert!(model.state_bytes > 32 * model.covers && model.frame_ms > 0.0, "{model:?}");
+        assert!(model.share_of_bandwidth.is_some_and(|share| share > 0.0 && share < 2.0), "{model:?}");
+    }
+    let [continuum, slope] = &report.models[..] else { panic!("two models") };
+    assert!(continuum.contact_sweeps_per_second.is_none() && continuum.contacts == 0);
+    assert!(slope.contact_sweeps_per_second.is_some_and(|rate| rate > 1e4) && slope.contacts > 200, "{slope:?}");
+    let json = serde_json::to_value(&report).unwrap_or_else(|e| panic!("{e}"));
+    for place in ["/version", "/machine/cores", "/models/1/stages/sweep", "/models/1/ms_per_step"] {
+        assert!(json.pointer(place).is_some_and(|value| !value.is_null()), "{place}");
+    }
 }

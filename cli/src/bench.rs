@@ -1,47 +1,148 @@
-//! `enmm bench`: throughput on standard models.
+//! `enmm bench`: what standard models cost.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm::io::bench::{Throughput, bench};
+use enmm::io::bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
 
-use crate::{FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, fail, print_line};
 
-/// Wall time (s) for each model.
-const SECONDS: f64 = 3.0;
-
-/// Times the standard models and prints what they reach.
-pub fn run(json: bool) -> ExitCode {
-    let found = match bench(SECONDS) {
-        Ok(found) => found,
-        Err(error) => return fail(&error, FAILED),
-    };
-    if json {
-        print_line(&format!("{:#}", serde_json::json!({ "models": found })));
-    } else {
-        found.iter().for_each(|throughput| print_line(&table(throughput)));
-    }
-    ExitCode::SUCCESS
+/// What to time.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Models by name, separated by commas: continuum_N, fractured_resting, fractured_failing, slope_NxM (N blocks of M
+    /// elements); or `all`. Default: those that take less than a minute together.
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    models: Vec<String>,
+    /// Wall time for the steps of each model (s).
+    #[arg(long, default_value_t = 2.0)]
+    seconds: f64,
+    /// Threads; default: all.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Leave out the limits of the machine.
+    #[arg(long)]
+    no_limits: bool,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Directory for tables (Markdown and JSON) and plots.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// What tells these results from others, such as commit and date.
+    #[arg(long, default_value = "Measured", value_name = "TEXT")]
+    label: String,
 }
 
-fn table(found: &Throughput) -> String {
-    let Throughput { model, threads, blocks, elements, contacts, shares, .. } = found;
-    let contacts_rate =
-        found.contacts_per_second.map_or_else(|| "–".to_owned(), |rate| format!("{:.2} M/s", rate / 1e6));
-    let parts = [
-        ("elements", shares.elements),
-        ("search", shares.search),
-        ("entrance", shares.entrance),
-        ("sweep", shares.sweep),
-        ("commit", shares.commit),
-        ("rest", shares.rest),
-    ];
-    let parts: Vec<String> = parts.iter().map(|(name, share)| format!("{name} {:.1} %", 100.0 * share)).collect();
+/// Times models and prints what they cost.
+pub fn run(arguments: &Arguments) -> ExitCode {
+    let models = match models(&arguments.models) {
+        Ok(models) => models,
+        Err(name) => {
+            let message = format!("there is no model {name:?}: try {}, or all", names(&STANDARD));
+            return fail(&message, BAD_INPUT);
+        }
+    };
+    let options = BenchOptions {
+        models,
+        seconds: arguments.seconds,
+        threads: arguments.threads.map(usize::from),
+        limits: !arguments.no_limits,
+    };
+    let mut begin = |name: &str| {
+        if !arguments.json {
+            eprintln!("{name} …");
+        }
+    };
+    let report = match bench(&options, &mut begin) {
+        Ok(report) => report,
+        Err(error) => return fail(&error, FAILED),
+    };
+    let written = arguments.output.as_ref().map_or(Ok(()), |folder| write(&report, &arguments.label, folder));
+    print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
+    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+fn write(report: &BenchReport, label: &str, folder: &Path) -> std::io::Result<()> {
+    let command: Vec<String> = std::env::args().skip(1).collect();
+    let origin = Origin { label: label.to_owned(), command: format!("enmm {}", command.join(" ")) };
+    write_report(report, &origin, folder)
+}
+
+fn models(names: &[String]) -> Result<Vec<Model>, &str> {
+    if names.is_empty() {
+        return Ok(STANDARD.to_vec());
+    }
+    if names == ["all"] {
+        return Ok(STANDARD.into_iter().chain(LARGE).collect());
+    }
+    names.iter().map(|name| Model::parse(name).ok_or(name.as_str())).collect()
+}
+
+fn names(models: &[Model]) -> String {
+    models.iter().map(Model::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn text(report: &BenchReport) -> String {
+    let machine = &report.machine;
+    let processor = machine.processor.as_deref().unwrap_or("unknown processor");
+    let mut lines = vec![format!(
+        "enmm {}, {processor}, {} cores, {}; {} threads",
+        report.version,
+        machine.cores,
+        machine.caches.join(", "),
+        report.threads
+    )];
+    for level in &machine.bandwidth {
+        lines.push(format!(
+            "  {:<5} {:7.1} GB/s one thread, {:7.1} all",
+            level.level,
+            level.one / 1e9,
+            level.all / 1e9
+        ));
+    }
+    if let Some([one, all]) = machine.multiply_add {
+        lines.push(format!("  FMA   {:7.1} GFLOP/s one thread, {:5.1} all", one / 1e9, all / 1e9));
+    }
+    lines.extend(report.models.iter().map(model_text));
+    lines.join("\n")
+}
+
+fn model_text(found: &Measured) -> String {
+    let Measured { model, blocks, elements, contacts, clock, .. } = found;
+    let share = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let stages = found.stages.named();
+    let parts = stages.map(|(name, ms)| format!("{name} {ms:.3} ({:.0} %)", 100.0 * ms / found.ms_per_step));
+    let sweeps = found.contact_sweeps_per_second.map_or_else(String::new, |rate| {
+        format!(", {:.2} sweeps at {:.1} M contacts/s", found.sweeps_mean, rate / 1e6)
+    });
+    let memory = found.memory_peak.map_or_else(String::new, |peak| {
+        format!(", peak {:.0} MB = {:.0} B an element", peak as f64 / 1e6, peak as f64 / *elements as f64)
+    });
     [
-        format!("{model}: {blocks} blocks, {elements} elements, {contacts} contacts, {threads} threads"),
-        format!("  steps             {:.1} /s ({:.2} sweeps each)", found.steps_per_second, found.sweeps_mean),
-        format!("  element updates   {:.2} M/s", found.element_updates_per_second / 1e6),
-        format!("  contacts judged   {contacts_rate}"),
-        format!("  shares            {}", parts.join(", ")),
+        format!("{model}: {blocks} blocks, {elements} elements ({} held), {contacts} contacts", found.held_elements),
+        format!(
+            "  {:.3} ms a step of {clock} time (wall {:.3}, spread {:.2}), {:.3} s a simulated second{sweeps}",
+            found.ms_per_step, found.wall_ms_per_step, found.spread, found.seconds_per_simulated_second
+        ),
+        format!("  ms: {}", parts.join(", ")),
+        format!(
+            "  elements {:.1} M/s, step {:.2} M/s; {:.0} B and {:.0} operations each: {} of bandwidth, {} of FMA",
+            found.elements_per_second / 1e6,
+            found.step_elements_per_second / 1e6,
+            found.bytes_per_element,
+            found.operations_per_element,
+            share(found.share_of_bandwidth),
+            share(found.share_of_operations)
+        ),
+        format!(
+            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}",
+            found.searches,
+            found.ms_per_search.unwrap_or(0.0),
+            found.frame_ms,
+            found.checkpoint_ms,
+            found.build_seconds
+        ),
     ]
     .join("\n")
 }

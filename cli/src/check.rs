@@ -3,15 +3,19 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use enmm::io::CaseError;
 use enmm::io::check::Check;
+use enmm::io::{CaseError, Observer};
 use enmm::model::Simulation;
 
+use crate::progress::Screen;
 use crate::{BAD_INPUT, fail, print_line};
 
 /// Builds the model of a case and prints what it is.
 pub fn check(path: &Path, json: bool) -> ExitCode {
-    match look(path) {
+    let mut screen = Screen::new(json);
+    let looked = look(path, &mut screen);
+    screen.close();
+    match looked {
         Ok(found) if json => print_line(&json_line(&found)),
         Ok(found) => print_line(&table(&found)),
         Err(error) => {
@@ -24,14 +28,22 @@ pub fn check(path: &Path, json: bool) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn look(path: &Path) -> Result<Check, CaseError> {
+fn look(path: &Path, screen: &mut Screen) -> Result<Check, CaseError> {
     let loaded = enmm::io::load_case(path)?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
-    let simulation = Simulation::new(loaded.case.clone()).map_err(invalid)?;
-    let found = enmm::io::check(&simulation, &loaded.warnings);
-    let mut rehearsal = simulation;
-    while rehearsal.next_stage().map_err(invalid)? {}
-    Ok(found)
+    let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
+    let mut simulation = build.map_err(invalid)?;
+    simulation.rehearse().map_err(invalid)?;
+    Ok(enmm::io::check(&simulation, &loaded.warnings))
+}
+
+/// Memory while the model runs, and what of it is the model, its state (held twice) and the buffers of a step.
+fn memory(found: &Check) -> String {
+    let megabytes = |bytes: f64| format!("{:.1}", bytes / 1e6);
+    let of = |heap: &str| found.memory.iter().filter(|part| part.heap == heap).map(|part| part.bytes as f64).sum();
+    let [model, state, buffers] = ["model", "state", "buffers"].map(of).map(megabytes);
+    let all = megabytes(found.memory_bytes as f64);
+    format!("{all}: model {model}, state 2 × {state}, buffers {buffers}")
 }
 
 fn json_line(found: &Check) -> String {
@@ -62,7 +74,7 @@ fn table(found: &Check) -> String {
         ("tiny blocks", found.tiny_blocks.to_string()),
         ("merged vertices", found.merged_vertices.to_string()),
         ("ignored joints", found.ignored_joints.to_string()),
-        ("memory (MB)", format!("{:.1}", found.memory_bytes as f64 / 1e6)),
+        ("memory (MB)", memory(found)),
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<21} {value}")).collect();
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));

@@ -47,12 +47,8 @@ enum Command {
     Verify(verify::Arguments),
     /// Finds the factor of safety of a case by dividing its strength until it fails.
     Fos(fos::Arguments),
-    /// Times standard models: element updates and contacts per second, share of each part of the step.
-    Bench {
-        /// Print one JSON object.
-        #[arg(long)]
-        json: bool,
-    },
+    /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
+    Bench(bench::Arguments),
     /// Prints the JSON Schema of the case file.
     Schema,
 }
@@ -64,7 +60,7 @@ fn main() -> ExitCode {
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
-        Command::Bench { json } => bench::run(json),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),
     }
 }

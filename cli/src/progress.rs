@@ -4,6 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use enmm::io::{Observer, RunProgress};
+use enmm::model::BuildStage;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between plain lines.
@@ -13,7 +14,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// Steps of the bar.
 const BAR: u64 = 1000;
 
-/// Shows how a run goes.
+/// Shows how a build and a run go.
 pub struct Screen {
     bar: Option<ProgressBar>,
     quiet: bool,
@@ -51,8 +52,24 @@ impl Screen {
 }
 
 impl Observer for Screen {
+    fn build(&mut self, stage: BuildStage) {
+        let line = format!("building the model: {}", stage.name());
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((BAR as f64 * stage.share()) as u64);
+                bar.set_message(line);
+                bar.tick();
+            }
+            // A small model is built before anyone would read this.
+            None if !self.quiet && self.start.elapsed() >= LINES => drop(writeln!(std::io::stderr(), "{line}")),
+            None => {}
+        }
+    }
+
     fn step(&mut self, progress: &RunProgress) {
-        self.start_time.get_or_insert(progress.time);
+        if self.start_time.is_none() {
+            (self.start, self.start_time) = (Instant::now(), Some(progress.time));
+        }
         if self.quiet {
             return;
         }

@@ -52,6 +52,8 @@ pub struct Boundary {
     pub partial: Vec<bool>,
     /// Boundary point of each node.
     pub node_point: Vec<u32>,
+    /// Edge that ends at each node: the last point before it on its loop.
+    pub node_edge_before: Vec<u32>,
     /// Node before each node on its loop.
     pub node_previous: Vec<u32>,
     /// Node after each node on its loop.
@@ -116,17 +118,17 @@ impl Boundary {
     /// Joint trace of a node: that of the edge after it, or else of the edge before it.
     pub fn node_trace(&self, node: usize) -> u32 {
         let point = self.node_point[node] as usize;
-        if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.point_before(node)] }
+        if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.node_edge_before[node] as usize] }
     }
 
     /// Edges before and after a node on its loop.
     pub fn edges_of_node(&self, node: usize) -> [u32; 2] {
-        [self.point_before(node) as u32, self.node_point[node]]
+        [self.node_edge_before[node], self.node_point[node]]
     }
 
     /// Whether the node lies on a partial cut.
     pub fn node_partial(&self, node: usize) -> bool {
-        self.partial[self.node_point[node] as usize] || self.partial[self.point_before(node)]
+        self.edges_of_node(node).iter().any(|&edge| self.partial[edge as usize])
     }
 
     /// The edge round the corner that a point beyond the start or the end of edge `edge` faces, if the side ends there.
@@ -143,16 +145,7 @@ impl Boundary {
 
     /// Side that ends at or passes through a node.
     pub fn side_of_node_before(&self, node: usize) -> u32 {
-        self.side[self.point_before(node)]
-    }
-
-    /// The last point before a node on its loop.
-    fn point_before(&self, node: usize) -> usize {
-        let mut k = self.node_point[self.node_previous[node] as usize] as usize;
-        while self.next[k] != self.node_point[node] {
-            k = self.after(k);
-        }
-        k
+        self.side[self.node_edge_before[node] as usize]
     }
 
     fn push_loop(&mut self, covers: &Covers, block: u32, stations: &[Station]) {
@@ -167,6 +160,7 @@ impl Boundary {
             }
             if station.node {
                 self.node_point.push(index);
+                self.node_edge_before.push(if k == 0 { last } else { first + k - 1 } as u32);
             }
             let element = covers.host[station.piece.element as usize] as usize;
             self.covers.push(covers.element_covers[element]);

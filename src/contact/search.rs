@@ -53,6 +53,12 @@ impl Near {
             && (self.found_at.is_empty() || self.found_at.len() == nodes)
     }
 
+    /// Bytes of the lists.
+    pub fn bytes(&self) -> usize {
+        let pairs = size_of_val(self.candidates.as_slice()) + size_of_val(self.behind.as_slice());
+        pairs + size_of_val(self.found_at.as_slice())
+    }
+
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.candidates.clone_from(&other.candidates);
@@ -110,6 +116,12 @@ pub struct SearchView<'a> {
 }
 
 impl SearchGrid {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        let buckets = size_of_val(self.bucket_start.as_slice()) + size_of_val(self.bucket_edges.as_slice());
+        buckets + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice())
+    }
+
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
     pub fn search(&mut self, view: &SearchView, found: &mut Near) {
         let &SearchView { boundary, place, cell, cutoff, removed, fixed } = view;

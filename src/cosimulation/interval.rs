@@ -220,9 +220,4 @@ impl Cosimulation {
             drive.arrive();
         }
     }
-
-    fn roll_back(&mut self) {
-        let backup = self.backup.clone();
-        self.take(backup);
-    }
 }

@@ -187,7 +187,7 @@ impl Cosimulation {
                 Ok(())
             }
             Err(error) => {
-                self.take(before);
+                self.return_to(&before);
                 Err(error)
             }
         }

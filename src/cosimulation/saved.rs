@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::io::checkpoint::{self, CheckpointError};
+use crate::model::Simulation;
 use crate::state::State;
 
 use super::{Cosimulation, CosimulationError, Standing};
@@ -25,11 +26,23 @@ impl Saved {
     /// Takes another state of the same model, into the memory of the old one.
     pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, standing: Standing) {
         self.state.copy_from(state);
-        match (&mut self.grid, grid) {
-            (Some(own), Some(grid)) => own.copy_from(grid),
-            (own, grid) => *own = grid.cloned().map(Box::new),
-        }
+        overwrite(&mut self.grid, grid);
         self.standing = standing;
+    }
+
+    /// Copies the state into a model, into the memory of its own, and returns where it stood.
+    fn give(&self, simulation: &mut Simulation, grid: &mut Option<Box<State>>) -> Standing {
+        simulation.return_to(&self.state);
+        overwrite(grid, self.grid.as_deref());
+        self.standing
+    }
+}
+
+/// Takes over a state of the same model, into the memory of the old one where there was one.
+fn overwrite(own: &mut Option<Box<State>>, new: Option<&State>) {
+    match (own.as_mut(), new) {
+        (Some(own), Some(new)) => own.copy_from(new),
+        (_, new) => *own = new.cloned().map(Box::new),
     }
 }
 
@@ -50,7 +63,7 @@ impl Cosimulation {
             let damage = "its state does not fit the model";
             return Err(CheckpointError::Damaged(damage.to_owned()).into());
         }
-        self.take(saved.clone());
+        self.return_to(saved);
         Ok(())
     }
 
@@ -71,11 +84,16 @@ impl Cosimulation {
             && std::iter::once(state).chain(grid.as_deref()).all(|state| on_grid(state) && self.simulation.fits(state))
     }
 
-    pub(super) fn take(&mut self, saved: Saved) {
+    /// Goes back to the state at the start of the step in progress.
+    pub(super) fn roll_back(&mut self) {
         self.serial += 1;
-        self.simulation.restore(saved.state);
-        self.grid = saved.grid;
-        self.standing = saved.standing;
+        self.standing = self.backup.give(&mut self.simulation, &mut self.grid);
+    }
+
+    /// Goes back to a saved state.
+    pub(super) fn return_to(&mut self, saved: &Saved) {
+        self.serial += 1;
+        self.standing = saved.give(&mut self.simulation, &mut self.grid);
     }
 
     /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`checkpoint`]).

@@ -5,7 +5,7 @@ use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 use super::Weights;
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
-use super::order::morton;
+use super::order::hilbert;
 use super::outlines::{Outlines, mesh_only};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
@@ -43,6 +43,8 @@ pub struct Covers {
     pub block_covers: Vec<u32>,
     /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
     pub host: Vec<u32>,
+    /// Elements in the order of their lattice triangles, row by row, for finding them by place.
+    by_triangle: Vec<u32>,
     /// Boundary loops of the blocks.
     pub outlines: Outlines,
 }
@@ -96,10 +98,28 @@ impl Covers {
 
     /// The element that holds a reference point, on its boundary included; the lowest when several do.
     pub fn element_at(&self, p: Point) -> Option<usize> {
-        let reach = self.mesh.size * 1.01;
-        (0..self.element_count())
-            .filter(|&e| (self.element_centroid[e] - p).norm() < reach)
-            .find(|&e| polygon::contains(self.polygon(e), p))
+        self.around(p, 0.0).filter(|&e| polygon::contains(self.polygon(e), p)).min()
+    }
+
+    /// Bytes of the index by place.
+    pub fn index_bytes(&self) -> usize {
+        size_of_val(self.by_triangle.as_slice())
+    }
+
+    /// Elements that come within `reach` (m) of a point, and some more.
+    fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = usize> {
+        let Triangle { i, j, .. } = self.mesh.locate(p);
+        // A lattice row is 0.866 of the mesh size high.
+        let rings = 1 + (1.2 * reach / self.mesh.size).min(1e6) as i32;
+        let before = move |row: i32, column: i32| {
+            self.by_triangle.partition_point(|&e| {
+                let triangle = &self.element_triangle[e as usize];
+                (triangle.j, triangle.i) < (row, column)
+            })
+        };
+        let rows = j.saturating_sub(rings)..=j.saturating_add(rings);
+        let (first, end) = (i.saturating_sub(2 * rings), i.saturating_add(2 * rings + 1));
+        rows.flat_map(move |row| self.by_triangle[before(row, first)..before(row, end)].iter().map(|&e| e as usize))
     }
 
     /// The element that holds a reference point, or else the nearest one within `reach` (m).
@@ -109,11 +129,9 @@ impl Covers {
             let sides = points.iter().zip(points.iter().cycle().skip(1));
             sides.map(|(a, b)| segment::distance(p, *a, *b)).fold(f64::INFINITY, f64::min)
         };
+        let nearest = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         self.element_at(p).or_else(|| {
-            let near = (0..self.element_count())
-                .filter(|&e| (self.element_centroid[e] - p).norm() < self.mesh.size * 1.01 + reach)
-                .map(|e| (distance(e), e))
-                .min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let near = self.around(p, reach).map(|e| (distance(e), e)).min_by(nearest)?;
             (near.0 <= reach).then_some(near.1)
         })
     }
@@ -134,9 +152,9 @@ impl Covers {
 }
 
 /// Cuts the covers of `mesh` by the outlines and joints that are arranged with its edges.
-pub fn cut(mesh: RegularMesh, arrangement: &Arrangement) -> Covers {
-    let raw = RawElements::collect(&mesh, arrangement);
-    let joined = Joined::new(arrangement, &raw);
+pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> Covers {
+    let raw = RawElements::collect(&mesh, &arrangement);
+    let joined = Joined::new(&arrangement, &raw);
     let blocks = order_blocks(&raw, &joined);
     let mut covers = lay_out_elements(mesh, &raw, &blocks);
     let slot_cover = lay_out_covers(&mut covers, &raw, &joined, &blocks);
@@ -147,9 +165,23 @@ pub fn cut(mesh: RegularMesh, arrangement: &Arrangement) -> Covers {
     for (new, &old) in blocks.order.iter().enumerate() {
         element_of_face[raw.face[old as usize] as usize] = new as u32;
     }
-    covers.outlines = Outlines::trace(arrangement, &element_of_face, &covers.element_block);
+    drop((raw, joined, blocks, slot_cover));
+    covers.outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
+    drop((arrangement, element_of_face));
+    covers.by_triangle = by_triangle(&covers);
     covers.host = hosts(&covers);
     covers
+}
+
+/// See [`Covers::by_triangle`].
+fn by_triangle(covers: &Covers) -> Vec<u32> {
+    let mut elements: Vec<u32> = (0..covers.element_count() as u32).collect();
+    let place = |e: u32| {
+        let triangle = &covers.element_triangle[e as usize];
+        (triangle.j, triangle.i)
+    };
+    elements.sort_unstable_by_key(|&e| (place(e), e));
+    elements
 }
 
 /// Elements in the order of the arrangement's faces.
@@ -160,7 +192,8 @@ struct RawElements {
     area: Vec<f64>,
     centroid: Vec<Point>,
     polar: Vec<f64>,
-    polygon: Vec<Vec<Point>>,
+    polygon_start: Vec<u32>,
+    polygon_points: Vec<Point>,
 }
 
 impl RawElements {
@@ -174,7 +207,8 @@ impl RawElements {
             area: Vec::with_capacity(face.len()),
             centroid: Vec::with_capacity(face.len()),
             polar: Vec::with_capacity(face.len()),
-            polygon: Vec::with_capacity(face.len()),
+            polygon_start: Vec::with_capacity(face.len() + 1),
+            polygon_points: Vec::new(),
             face: Vec::new(),
             of_face: Vec::new(),
         };
@@ -183,6 +217,7 @@ impl RawElements {
             let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
             raw.integrate(&loops);
         }
+        raw.polygon_start.push(raw.polygon_points.len() as u32);
         raw.face = face;
         raw.of_face = of_face;
         raw
@@ -199,7 +234,12 @@ impl RawElements {
         self.area.push(total.area);
         self.centroid.push(base + centroid);
         self.polar.push(total.second[0] + total.second[1] - total.area * centroid.norm_squared());
-        self.polygon.push(bridge(loops));
+        self.polygon_start.push(self.polygon_points.len() as u32);
+        self.polygon_points.extend(bridge(loops));
+    }
+
+    fn polygon(&self, k: usize) -> &[Point] {
+        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k + 1] as usize]
     }
 }
 
@@ -223,9 +263,8 @@ fn bridge(loops: &[Vec<Point>]) -> Vec<Point> {
 fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Triangle> {
     let nowhere = Triangle { i: i32::MIN, j: i32::MIN, set: 0 };
     let mut triangles = vec![nowhere; arrangement.faces.len()];
-    let half_edges = 0..arrangement.next.len() as u32;
     let mut open = Vec::new();
-    for h in half_edges.clone() {
+    for h in 0..arrangement.next.len() as u32 {
         let label = arrangement.label_of(h);
         let face = arrangement.face[h as usize];
         if label.mesh != NONE && face != 0 && triangles[face as usize] == nowhere {
@@ -233,12 +272,10 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
             open.push(face);
         }
     }
-    let mut of_face: Vec<Vec<u32>> = vec![Vec::new(); arrangement.faces.len()];
-    for h in half_edges.filter(|&h| arrangement.label_of(h).mesh == NONE) {
-        of_face[arrangement.face[h as usize] as usize].push(arrangement.face[(h ^ 1) as usize]);
-    }
     while let Some(face) = open.pop() {
-        for &neighbour in &of_face[face as usize] {
+        let sides = arrangement.face_loops(face).flat_map(|h| arrangement.cycle(h));
+        for h in sides.filter(|&h| arrangement.label_of(h).mesh == NONE) {
+            let neighbour = arrangement.face[(h ^ 1) as usize];
             if neighbour != 0 && triangles[neighbour as usize] == nowhere {
                 triangles[neighbour as usize] = triangles[face as usize];
                 open.push(neighbour);
@@ -303,7 +340,7 @@ impl Joined {
     }
 }
 
-/// Order of the elements: by block, blocks and elements along a Morton curve.
+/// Order of the elements: by block, blocks and elements along a Hilbert curve.
 struct BlockOrder {
     order: Vec<u32>,
     block: Vec<u32>,
@@ -324,23 +361,24 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
         area[root] += raw.area[e];
     }
     let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
-    roots.sort_by_key(|&r| (morton(first[r as usize] / area[r as usize], low, high), r));
+    roots.sort_by_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
     let mut block_of_root = vec![NONE; n];
     for (k, &r) in roots.iter().enumerate() {
         block_of_root[r as usize] = k as u32;
     }
     let block: Vec<u32> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
     let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_by_key(|&e| (block[e as usize], morton(raw.centroid[e as usize], low, high), e));
+    order.sort_by_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
     BlockOrder { order, block, count: roots.len(), low, high }
 }
 
 fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -> Covers {
     let take = |k: &u32| *k as usize;
-    let mut polygon_start = vec![0];
-    let mut polygon_points = Vec::new();
+    let mut polygon_start = Vec::with_capacity(blocks.order.len() + 1);
+    let mut polygon_points = Vec::with_capacity(raw.polygon_points.len());
+    polygon_start.push(0);
     for k in &blocks.order {
-        polygon_points.extend_from_slice(&raw.polygon[take(k)]);
+        polygon_points.extend_from_slice(raw.polygon(take(k)));
         polygon_start.push(polygon_points.len() as u32);
     }
     let element_block: Vec<u32> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
@@ -361,6 +399,7 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
         cover_block: Vec::new(),
         block_covers: Vec::new(),
         host: Vec::new(),
+        by_triangle: Vec::new(),
         outlines: Outlines::default(),
     }
 }
@@ -371,7 +410,7 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
     let mut roots: Vec<u32> =
         (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
     roots.sort_by_key(|&s| {
-        let place = morton(covers.mesh.node(star_of(s)), blocks.low, blocks.high);
+        let place = hilbert(covers.mesh.node(star_of(s)), blocks.low, blocks.high);
         (blocks.block[s as usize / 3], place, star_of(s), s)
     });
     let mut cover_of_root = vec![NONE; joined.slot_root.len()];

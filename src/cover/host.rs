@@ -14,7 +14,7 @@ const RINGS: usize = 3;
 /// by its weights, which are affine and thus move rigidly with the block.
 pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
     let quality = qualities(covers);
-    let neighbours = neighbours(covers);
+    let edges = MeshEdges::new(covers);
     let light = |e: usize| quality[e] < LIGHT_COVER;
     (0..covers.element_count())
         .map(|e| {
@@ -23,7 +23,7 @@ pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
                 if !light(best(&ring, &quality)) {
                     break;
                 }
-                let around: Vec<u32> = ring.iter().flat_map(|&f| &neighbours[f as usize]).copied().collect();
+                let around: Vec<u32> = ring.iter().flat_map(|&f| edges.neighbours(covers, f)).collect();
                 ring.extend(around);
                 ring.sort_unstable();
                 ring.dedup();
@@ -50,19 +50,28 @@ fn qualities(covers: &Covers) -> Vec<f64> {
     covers.element_covers.iter().map(lightest).collect()
 }
 
-/// Elements that share two covers, hence a mesh edge that no joint cuts.
-fn neighbours(covers: &Covers) -> Vec<Vec<u32>> {
-    let pairs = |e: u32| {
-        let ids = covers.element_covers[e as usize];
-        [[0, 1], [1, 2], [2, 0]].map(|[k, l]| (ids[k].min(ids[l]), ids[k].max(ids[l]), e))
-    };
-    let mut edges: Vec<(u32, u32, u32)> = (0..covers.element_count() as u32).flat_map(pairs).collect();
-    edges.sort_unstable();
-    let mut neighbours = vec![Vec::new(); covers.element_count()];
-    for shared in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        for a in shared {
-            neighbours[a.2 as usize].extend(shared.iter().filter(|b| b.2 != a.2).map(|b| b.2));
-        }
+/// Pairs of covers with the elements that have both, sorted.
+struct MeshEdges(Vec<[u32; 3]>);
+
+impl MeshEdges {
+    fn new(covers: &Covers) -> Self {
+        let mut edges: Vec<[u32; 3]> =
+            (0..covers.element_count() as u32).flat_map(|e| cover_pairs(covers, e).map(|[i, j]| [i, j, e])).collect();
+        edges.sort_unstable();
+        Self(edges)
     }
-    neighbours
+
+    /// Elements that share two covers with an element, hence a mesh edge that no joint cuts; itself as well.
+    fn neighbours(&self, covers: &Covers, element: u32) -> impl Iterator<Item = u32> {
+        cover_pairs(covers, element).into_iter().flat_map(move |pair| {
+            let first = self.0.partition_point(|edge| edge[..2] < pair[..]);
+            self.0[first..].iter().take_while(move |edge| edge[..2] == pair[..]).map(|edge| edge[2])
+        })
+    }
+}
+
+/// The pairs of an element's covers, the lower one first.
+fn cover_pairs(covers: &Covers, element: u32) -> [[u32; 2]; 3] {
+    let ids = covers.element_covers[element as usize];
+    [[0, 1], [1, 2], [2, 0]].map(|[k, l]| [ids[k].min(ids[l]), ids[k].max(ids[l])])
 }

@@ -1,23 +1,45 @@
-//! Order in space: Morton codes, so that neighbours in the plane are neighbours in memory.
+//! Order in space: places along a Hilbert curve, so that neighbours in the plane are neighbours in memory, and any run
+//! of neighbours in memory is one compact patch of the plane.
 
 use crate::geometry::Point;
 
-/// Morton code of a point in the box `low`–`high`, 20 bits an axis.
-pub fn morton(p: Point, low: Point, high: Point) -> u64 {
+/// Halvings of the box: 2⁻²⁶ of its side is far below any mesh size.
+const LEVELS: u32 = 26;
+
+/// Place of a point along the Hilbert curve that fills the square over the box `low`–`high`, from its lower left to
+/// its upper left corner.
+pub fn hilbert(p: Point, low: Point, high: Point) -> u64 {
     let extent = (high - low).max().max(f64::MIN_POSITIVE);
-    let level = |v: f64| ((v / extent).clamp(0.0, 1.0) * f64::from((1u32 << 20) - 1)) as u64;
-    spread(level(p.x - low.x)) | spread(level(p.y - low.y)) << 1
+    let level = |v: f64| ((v / extent).clamp(0.0, 1.0) * f64::from((1u32 << LEVELS) - 1)) as u32;
+    let (mut x, mut y) = (level(p.x - low.x), level(p.y - low.y));
+    let mut place = 0;
+    for bit in (0..LEVELS).rev() {
+        let (right, up) = (x >> bit & 1, y >> bit & 1);
+        place = place << 2 | u64::from((3 * up) ^ right);
+        // Of the four quarters the curve passes the first and the last, those on the left, turned.
+        if right == 0 {
+            if up == 1 {
+                (x, y) = (!x, !y);
+            }
+            (x, y) = (y, x);
+        }
+    }
+    place
 }
 
-fn spread(mut v: u64) -> u64 {
-    for (shift, mask) in [
-        (16, 0x0000_ffff_0000_ffff),
-        (8, 0x00ff_00ff_00ff_00ff),
-        (4, 0x0f0f_0f0f_0f0f_0f0f),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ] {
-        v = (v | v << shift) & mask;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a grid of cells the curve passes through every cell once, from each to one beside it.
+    #[test]
+    fn the_curve_goes_from_each_cell_to_one_beside_it() {
+        let side = 32;
+        let (low, high) = (Point::zeros(), Point::repeat(f64::from(side)));
+        let mut cells: Vec<(i32, i32)> = (0..side * side).map(|k| (k % side, k / side)).collect();
+        cells.sort_by_key(|&(i, j)| hilbert(Point::new(f64::from(i) + 0.5, f64::from(j) + 0.5), low, high));
+        let way = cells.windows(2).map(|w| (w[1].0 - w[0].0).abs() + (w[1].1 - w[0].1).abs());
+        assert!(way.into_iter().all(|step| step == 1));
+        assert_eq!(cells[0], (0, 0));
     }
-    v
 }

@@ -1,13 +1,13 @@
 //! What `enmm check` tells of a model that has been built and not run.
 
 use std::collections::BTreeMap;
-use std::mem::size_of;
 
 use serde::Serialize;
 
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 use crate::model::Simulation;
 use crate::model::build::ignored_traces;
+use crate::state::{Scratch, State};
 
 /// Share of a full cover's mass below which a cover counts as small.
 const SMALL_COVER: f64 = 1e-3;
@@ -49,8 +49,10 @@ pub struct Check {
     pub merged_vertices: usize,
     /// Joint traces that cut no rock.
     pub ignored_joints: usize,
-    /// Memory that the model needs while it runs, about (bytes).
+    /// Memory that the model needs while it runs (bytes): itself, its state twice, buffers; outputs come on top.
     pub memory_bytes: u64,
+    /// That memory by part; the state counts once.
+    pub memory: Vec<MemoryPart>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -64,6 +66,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     for (_, count) in covers.covers_by_star() {
         *stars_by_cover_count.entry(count).or_default() += 1;
     }
+    let (state, scratch) = simulation.look_ahead();
     let triangle = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
     Check {
         blocks: covers.block_count(),
@@ -75,16 +78,35 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         cover_masses: sorted(slope.metric.row_sum.clone()),
         vertices: distinct(&covers.polygon_points),
         boundary_edges: covers.outlines.pieces.len(),
-        initial_contacts: simulation.contacts().len(),
+        initial_contacts: scratch.contacts.len(),
         critical_dt: slope.critical_dt,
         small_covers_treated: small_covers(simulation, 2.0 * triangle),
         tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
         block_areas,
         merged_vertices: built.noding.merged_vertices,
         ignored_joints: ignored_traces(&built.noding).len(),
-        memory_bytes: memory(simulation),
+        memory_bytes: (slope.bytes() + 2 * state.bytes() + scratch.bytes()) as u64,
+        memory: memory(simulation, &state, &scratch),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
+}
+
+/// A part of the memory that a model needs while it runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MemoryPart {
+    /// `model`, `state` or `buffers`.
+    pub heap: &'static str,
+    /// What it holds.
+    pub part: &'static str,
+    /// Its size (bytes).
+    pub bytes: usize,
+}
+
+/// Memory of a model with this state and these buffers.
+fn memory(simulation: &Simulation, state: &State, scratch: &Scratch) -> Vec<MemoryPart> {
+    let heaps = [("model", simulation.slope().memory()), ("state", state.memory()), ("buffers", scratch.memory())];
+    let part = |heap| move |(part, bytes)| MemoryPart { heap, part, bytes };
+    heaps.into_iter().flat_map(|(heap, parts)| parts.into_iter().map(part(heap))).collect()
 }
 
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
@@ -110,20 +132,4 @@ fn small_covers(simulation: &Simulation, third: f64) -> usize {
     }
     let masses = slope.metric.row_sum.iter().zip(density);
     masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()
-}
-
-/// Bytes of the model's arrays, those of the fixed part, the state with one copy, and the buffers.
-fn memory(simulation: &Simulation) -> u64 {
-    const PER_ELEMENT: usize = 96;
-    const PER_COVER: usize = 300;
-    const PER_BLOCK: usize = 400;
-    const PER_BOUNDARY_POINT: usize = 600;
-    let slope = simulation.slope();
-    let covers = &slope.covers;
-    let bytes = covers.element_count() * PER_ELEMENT
-        + covers.polygon_points.len() * size_of::<Point>()
-        + covers.cover_count() * (PER_COVER + 4 * size_of::<Vector>())
-        + covers.block_count() * PER_BLOCK
-        + slope.boundary.len() * PER_BOUNDARY_POINT;
-    bytes as u64
 }

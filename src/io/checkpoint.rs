@@ -15,6 +15,8 @@ use super::files::write_atomic;
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
 const FORMAT: u32 = 3;
 const TEXT_MAX: usize = 256;
+/// Bytes of length and checksum.
+const SUMMARY: usize = 12;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -59,16 +61,19 @@ pub const fn engine_version() -> &'static str {
 /// # Errors
 /// When the payload cannot be serialised.
 pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> io::Result<Vec<u8>> {
-    let payload = postcard::to_stdvec(payload).map_err(io::Error::other)?;
     let mut bytes = MAGIC.to_vec();
     bytes.extend(FORMAT.to_le_bytes());
     for text in [engine_version(), case_hash] {
         bytes.extend((text.len() as u32).to_le_bytes());
         bytes.extend(text.as_bytes());
     }
-    bytes.extend((payload.len() as u64).to_le_bytes());
-    bytes.extend(crc32fast::hash(&payload).to_le_bytes());
-    bytes.extend(payload);
+    // Length and checksum are known when the payload is there, which is too large to be copied behind them.
+    let summary = bytes.len();
+    bytes.extend([0; SUMMARY]);
+    let mut bytes = postcard::to_extend(payload, bytes).map_err(io::Error::other)?;
+    let (head, payload) = bytes.split_at_mut(summary + SUMMARY);
+    head[summary..summary + 8].copy_from_slice(&(payload.len() as u64).to_le_bytes());
+    head[summary + 8..].copy_from_slice(&crc32fast::hash(payload).to_le_bytes());
     Ok(bytes)
 }
 

@@ -1,9 +1,12 @@
 //! Files that are either whole or absent. Knows nothing of what is written into them.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Bytes that are gathered before they go to a file.
+const BUFFER: usize = 1 << 18;
 
 /// Makes errors name the file they speak of: `result.map_err(at_path(path))`.
 pub fn at_path(path: &Path) -> impl FnOnce(io::Error) -> io::Error + '_ {
@@ -17,8 +20,16 @@ pub fn at_path(path: &Path) -> impl FnOnce(io::Error) -> io::Error + '_ {
 /// # Errors
 /// Whatever the file system refuses, with the path in the message; the old file is then untouched.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_atomic_by(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_atomic`], with the bytes that `write` hands over piece by piece: they are never in memory together.
+///
+/// # Errors
+/// As [`write_atomic`].
+pub fn write_atomic_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let temporary = temporary_beside(path).map_err(at_path(path))?;
-    let moved = fill(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    let moved = fill(&temporary, write).and_then(|()| fs::rename(&temporary, path));
     if moved.is_err() {
         // The error that matters is the one above; a temporary file that cannot be removed adds nothing to it.
         let _ = fs::remove_file(&temporary);
@@ -40,8 +51,8 @@ fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
     Ok(directory.join(hidden))
 }
 
-fn fill(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
-    file.write_all(bytes)?;
-    file.sync_data()
+fn fill(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut file = BufWriter::with_capacity(BUFFER, File::create(path)?);
+    write(&mut file)?;
+    file.into_inner()?.sync_data()
 }

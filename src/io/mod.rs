@@ -1,5 +1,6 @@
 //! Case files, schema, results, pictures, checkpoints.
 
+mod base64;
 pub mod bench;
 pub mod blocks;
 mod case_error;

@@ -16,6 +16,7 @@ use super::case_error::CaseError;
 use super::case_file::LoadedCase;
 use super::checkpoint::CheckpointError;
 use super::summary::Summary;
+use crate::model::BuildStage;
 
 /// How to run a case.
 #[derive(Debug, Default)]
@@ -49,6 +50,9 @@ pub struct RunProgress<'a> {
 
 /// Hears how a run goes.
 pub trait Observer: Send {
+    /// Called when a part of the build begins.
+    fn build(&mut self, _stage: BuildStage) {}
+
     /// Called before every step.
     fn step(&mut self, _progress: &RunProgress) {}
 

@@ -3,14 +3,14 @@
 //! Every array is inline base64 (`format="binary"`, uncompressed, little-endian, 64-bit header): the one encoding that
 //! VTK, ParaView and meshio all read. Displacement jumps across joints, so elements share no points.
 
-use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use resvg::usvg::roxmltree;
 
-use super::files::{at_path, write_atomic};
+use super::base64::Base64;
+use super::files::{at_path, write_atomic, write_atomic_by};
 use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::model::Snapshot;
@@ -31,29 +31,28 @@ const POLYGON: u8 = 7;
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
 pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     let elements = &snapshot.elements;
-    let mean_stress = |[xx, yy, _]: [f64; 3]| 0.5 * (xx + yy);
-    let max_shear = |[xx, yy, xy]: [f64; 3]| (0.5 * (xx - yy)).hypot(xy);
     let of_stress =
-        |name, part: &dyn Fn([f64; 3]) -> f64| Array::numbers(name, snapshot.stress.iter().map(|&s| part(s)));
+        |name, part: fn([f64; 3]) -> f64| Array::numbers(name, snapshot.stress.iter().map(move |&s| part(s)));
     let yielding = !snapshot.plastic_strain.is_empty();
     let plastic = yielding.then(|| Array::numbers("plastic_strain", snapshot.plastic_strain.iter().copied()));
     let mut grid = Grid {
         time: snapshot.time,
-        points: Array::vectors("Points", &elements.points),
+        points: Array::vectors("Points", elements.points.iter()),
         cell_type: POLYGON,
-        offsets: elements.start.iter().skip(1).map(|&end| i64::from(end)).collect(),
+        offsets: Array::ids("offsets", elements.start.get(1..).unwrap_or_default()),
+        used: elements.start.last().map_or(0, |&end| end as usize),
         point_data: vec![
-            Array::vectors("displacement", &snapshot.displacement),
-            Array::vectors("velocity", &snapshot.velocity),
+            Array::vectors("displacement", snapshot.displacement.iter()),
+            Array::vectors("velocity", snapshot.velocity.iter()),
         ],
         cell_data: vec![
-            of_stress("stress_xx", &|stress| stress[0]),
-            of_stress("stress_yy", &|stress| stress[1]),
-            of_stress("stress_xy", &|stress| stress[2]),
-            of_stress("mean_stress", &mean_stress),
-            of_stress("max_shear", &max_shear),
-            Array::ids("block", snapshot.block.iter().copied()),
-            Array::ids("rock", snapshot.rock.iter().copied()),
+            of_stress("stress_xx", |[xx, _, _]| xx),
+            of_stress("stress_yy", |[_, yy, _]| yy),
+            of_stress("stress_xy", |[_, _, xy]| xy),
+            of_stress("mean_stress", |[xx, yy, _]| 0.5 * (xx + yy)),
+            of_stress("max_shear", |[xx, yy, xy]| (0.5 * (xx - yy)).hypot(xy)),
+            Array::ids("block", &snapshot.block),
+            Array::ids("rock", &snapshot.rock),
         ],
     };
     grid.cell_data.extend(plastic);
@@ -74,14 +73,15 @@ pub fn write_joints_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
         time: snapshot.time,
         points: Array::vectors("Points", joints.iter().map(|joint| &joint.position)),
         cell_type: VERTEX,
-        offsets: (1..=joints.len() as i64).collect(),
+        offsets: Array::integers("offsets", 1..joints.len() + 1),
+        used: joints.len(),
         point_data: vec![
             of_joint("normal_stress", |joint| joint.normal_stress),
             of_joint("shear_stress", |joint| joint.shear_stress),
             of_joint("length", |joint| joint.length),
             Array::vectors("normal", joints.iter().map(|joint| &joint.normal)),
             Array::bytes("state", joints.iter().map(|joint| state_code(joint.state))),
-            Array::ids("law", joints.iter().map(|joint| joint.law)),
+            Array::integers("law", joints.iter().map(|joint| joint.law as usize)),
         ],
         cell_data: Vec::new(),
     };
@@ -194,154 +194,128 @@ fn listed_frames(text: &str) -> io::Result<Vec<Frame>> {
 }
 
 /// An unstructured grid whose cells have their own points, stored in the order of the cells.
-struct Grid {
+struct Grid<'a> {
     time: f64,
-    points: Array,
+    points: Array<'a>,
     cell_type: u8,
     /// End of each cell in the points.
-    offsets: Vec<i64>,
-    point_data: Vec<Array>,
-    cell_data: Vec<Array>,
+    offsets: Array<'a>,
+    /// Number of points that the cells use.
+    used: usize,
+    point_data: Vec<Array<'a>>,
+    cell_data: Vec<Array<'a>>,
 }
 
-impl Grid {
+impl Grid<'_> {
     fn write(&self, path: &Path) -> io::Result<()> {
         self.check().map_err(at_path(path))?;
-        write_atomic(path, self.xml().as_bytes())
+        write_atomic_by(path, |file| self.xml(file))
     }
 
     /// Whether every array has an entry per point or per cell: VTK would read past the end of a shorter one.
     fn check(&self) -> io::Result<()> {
-        let last = self.offsets.last().copied().unwrap_or(0);
-        let of_points = self.point_data.iter().map(|array| (array, self.points.len()));
-        let of_cells = self.cell_data.iter().map(|array| (array, self.offsets.len()));
-        let wrong = of_points.chain(of_cells).find(|(array, expected)| array.len() != *expected);
+        let of_points = self.point_data.iter().map(|array| (array, self.points.count));
+        let of_cells = self.cell_data.iter().map(|array| (array, self.offsets.count));
+        let wrong = of_points.chain(of_cells).find(|(array, expected)| array.count != *expected);
         let message = match wrong {
-            _ if last != self.points.len() as i64 => format!("{} points, cells use {last}", self.points.len()),
-            Some((array, expected)) => format!("{} entries of {}, expected {expected}", array.len(), array.name),
+            _ if self.used != self.points.count => format!("{} points, cells use {}", self.points.count, self.used),
+            Some((array, expected)) => format!("{} entries of {}, expected {expected}", array.count, array.name),
             None => return Ok(()),
         };
         Err(io::Error::new(ErrorKind::InvalidInput, message))
     }
 
-    fn xml(&self) -> String {
-        let mut xml = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" ");
-        xml.push_str("byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n");
-        let time = Array::numbers("TimeValue", [self.time].into_iter());
-        section(&mut xml, "FieldData", &[time]);
-        let (offsets, types) = self.cells();
-        let (points, cells) = (self.points.len(), types.len());
-        // Writing to a string cannot fail.
-        let _ = writeln!(xml, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
-        section(&mut xml, "Points", std::slice::from_ref(&self.points));
-        let connectivity = Array::integers("connectivity", 0..points as i64);
-        let offsets = Array::integers("offsets", offsets.into_iter());
-        section(&mut xml, "Cells", &[connectivity, offsets, Array::bytes("types", types.into_iter())]);
-        section(&mut xml, "PointData", &self.point_data);
-        section(&mut xml, "CellData", if self.offsets.is_empty() { &[] } else { &self.cell_data });
-        xml.push_str("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
-        xml
-    }
-
-    /// Offsets and types of the cells; an empty grid gets one cell without points, for meshio rejects a file without
-    /// cells.
-    fn cells(&self) -> (Vec<i64>, Vec<u8>) {
-        if self.offsets.is_empty() {
-            return (vec![0], vec![POLY_VERTEX]);
-        }
-        (self.offsets.clone(), vec![self.cell_type; self.offsets.len()])
+    fn xml(&self, file: &mut dyn Write) -> io::Result<()> {
+        write!(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" ")?;
+        writeln!(file, "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>")?;
+        section(file, "FieldData", &[&Array::numbers("TimeValue", std::iter::once(self.time))])?;
+        // An empty grid gets one cell without points, for meshio rejects a file without cells.
+        let (points, is_empty) = (self.points.count, self.offsets.count == 0);
+        let (cells, cell_type) = if is_empty { (1, POLY_VERTEX) } else { (self.offsets.count, self.cell_type) };
+        writeln!(file, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">")?;
+        section(file, "Points", &[&self.points])?;
+        let connectivity = Array::integers("connectivity", 0..points);
+        let no_offset = Array::integers("offsets", 0..1);
+        let types = Array::bytes("types", std::iter::repeat_n(cell_type, cells));
+        section(file, "Cells", &[&connectivity, if is_empty { &no_offset } else { &self.offsets }, &types])?;
+        section(file, "PointData", &self.point_data.iter().collect::<Vec<_>>())?;
+        let cell_data = self.cell_data.iter().filter(|_| !is_empty);
+        section(file, "CellData", &cell_data.collect::<Vec<_>>())?;
+        writeln!(file, "</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
 }
 
-fn section(xml: &mut String, name: &str, arrays: &[Array]) {
-    let _ = writeln!(xml, "<{name}>");
-    for array in arrays {
-        array.push_xml(xml);
-    }
-    let _ = writeln!(xml, "</{name}>");
+fn section(file: &mut dyn Write, name: &str, arrays: &[&Array]) -> io::Result<()> {
+    writeln!(file, "<{name}>")?;
+    arrays.iter().try_for_each(|array| array.xml(file))?;
+    writeln!(file, "</{name}>")
 }
 
-/// A named array of VTK, its values as little-endian bytes.
-struct Array {
+/// Hands the values of an array over, as little-endian bytes.
+type Values<'a> = Box<dyn Fn(&mut Base64) -> io::Result<()> + 'a>;
+
+/// A named array of VTK; its values are read when they are written, for a copy of all of them would be larger than the
+/// model.
+struct Array<'a> {
     name: &'static str,
     kind: &'static str,
-    size: usize,
     components: usize,
-    bytes: Vec<u8>,
+    /// Number of entries.
+    count: usize,
+    /// Size of an entry (bytes).
+    size: usize,
+    values: Values<'a>,
 }
 
-impl Array {
-    fn new<const N: usize>(name: &'static str, kind: &'static str, values: impl Iterator<Item = [u8; N]>) -> Self {
-        Self { name, kind, size: N, components: 1, bytes: values.flatten().collect() }
+impl<'a> Array<'a> {
+    fn new<const N: usize>(
+        name: &'static str,
+        kind: &'static str,
+        values: impl ExactSizeIterator<Item = [u8; N]> + Clone + 'a,
+    ) -> Self {
+        let count = values.len();
+        let each = move |text: &mut Base64| values.clone().try_for_each(|value| text.push(&value));
+        Self { name, kind, components: 1, count, size: N, values: Box::new(each) }
     }
 
-    fn numbers(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
+    fn numbers(name: &'static str, values: impl ExactSizeIterator<Item = f64> + Clone + 'a) -> Self {
         Self::new(name, "Float64", values.map(f64::to_le_bytes))
     }
 
-    fn integers(name: &'static str, values: impl Iterator<Item = i64>) -> Self {
-        Self::new(name, "Int64", values.map(i64::to_le_bytes))
+    /// Counts and indices.
+    fn integers(name: &'static str, values: impl ExactSizeIterator<Item = usize> + Clone + 'a) -> Self {
+        Self::new(name, "Int64", values.map(|value| (value as i64).to_le_bytes()))
     }
 
-    fn ids(name: &'static str, values: impl Iterator<Item = u32>) -> Self {
-        Self::integers(name, values.map(i64::from))
+    fn ids(name: &'static str, values: &'a [u32]) -> Self {
+        Self::integers(name, values.iter().map(|&id| id as usize))
     }
 
-    fn bytes(name: &'static str, values: impl Iterator<Item = u8>) -> Self {
+    fn bytes(name: &'static str, values: impl ExactSizeIterator<Item = u8> + Clone + 'a) -> Self {
         Self::new(name, "UInt8", values.map(|value| [value]))
     }
 
     /// Vectors of the plane; the third component is zero.
-    fn vectors<'a>(name: &'static str, values: impl IntoIterator<Item = &'a Vector>) -> Self {
-        let parts = values.into_iter().flat_map(|vector| [vector.x, vector.y, 0.0]);
-        Self { components: 3, ..Self::numbers(name, parts) }
+    fn vectors(name: &'static str, values: impl ExactSizeIterator<Item = &'a Vector> + Clone + 'a) -> Self {
+        let bytes = |vector: &Vector| {
+            let mut bytes = [0; 24];
+            bytes[..8].copy_from_slice(&vector.x.to_le_bytes());
+            bytes[8..16].copy_from_slice(&vector.y.to_le_bytes());
+            bytes
+        };
+        Self { components: 3, ..Self::new(name, "Float64", values.map(bytes)) }
     }
 
-    /// Number of entries.
-    fn len(&self) -> usize {
-        self.bytes.len() / (self.size * self.components)
-    }
-
-    fn push_xml(&self, xml: &mut String) {
-        let _ = write!(xml, "<DataArray type=\"{}\" Name=\"{}\"", self.kind, self.name);
+    fn xml(&self, file: &mut dyn Write) -> io::Result<()> {
+        write!(file, "<DataArray type=\"{}\" Name=\"{}\"", self.kind, self.name)?;
         if self.components > 1 {
-            let _ = write!(xml, " NumberOfComponents=\"{}\"", self.components);
+            write!(file, " NumberOfComponents=\"{}\"", self.components)?;
         }
-        let _ = write!(xml, " NumberOfTuples=\"{}\" format=\"binary\">", self.len());
-        let header = (self.bytes.len() as u64).to_le_bytes();
-        push_base64(xml, header.iter().chain(&self.bytes).copied());
-        xml.push_str("</DataArray>\n");
-    }
-}
-
-/// Appends bytes in base64 (RFC 4648, padded).
-fn push_base64(text: &mut String, bytes: impl Iterator<Item = u8>) {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut bytes = bytes.peekable();
-    while bytes.peek().is_some() {
-        let group = [bytes.next(), bytes.next(), bytes.next()];
-        let bits = group.iter().fold(0, |bits, byte| bits << 8 | u32::from(byte.unwrap_or(0)));
-        let digits = 1 + group.iter().flatten().count();
-        for digit in 0..4 {
-            let value = bits >> (18 - 6 * digit) & 63;
-            text.push(if digit < digits { DIGITS[value as usize] as char } else { '=' });
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn base64_matches_the_vectors_of_the_standard() {
-        for (plain, coded) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")]
-        {
-            let mut text = String::new();
-            push_base64(&mut text, plain.bytes());
-            assert_eq!(text, coded);
-        }
+        write!(file, " NumberOfTuples=\"{}\" format=\"binary\">", self.count)?;
+        let mut text = Base64::new(file);
+        text.push(&((self.count * self.size) as u64).to_le_bytes())?;
+        (self.values)(&mut text)?;
+        text.finish()?;
+        writeln!(file, "</DataArray>")
     }
 }

@@ -7,6 +7,7 @@ mod place;
 mod ports;
 mod quiet;
 mod rock;
+mod stage;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,8 @@ use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 
 use place::Places;
+
+pub use stage::BuildStage;
 
 /// A model as built: what is fixed, the state at its start, and what the build has to tell.
 #[derive(Debug, Clone)]
@@ -38,18 +41,20 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// Builds the model of a case.
+/// Builds the model of a case; `tell` hears of every part of the build as it begins.
 ///
 /// # Errors
 /// The first key of the case that does not fit the model: geometry, references to places without rock, memory.
-pub fn build(case: &Case) -> Result<Built, Invalid> {
+pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
     case.validate()?;
     implicit::know(case)?;
-    let plane = geometry::arrange_case(case)?;
-    let mut warnings = warnings(&plane.arrangement.report);
-    let covers = cover::cut(plane.mesh.clone(), &plane.arrangement);
-    let tolerance = places_tolerance(&plane.arrangement.report);
-    let (slope, bolt_warnings) = slope(case, &plane, covers, tolerance)?;
+    let geometry::Plane { mesh, mut arrangement, joints } = geometry::arrange_case(case, tell)?;
+    let noding = std::mem::take(&mut arrangement.report);
+    let mut warnings = warnings(&noding);
+    tell(BuildStage::Covers);
+    let covers = cover::cut(mesh, arrangement);
+    let tolerance = places_tolerance(&noding);
+    let (slope, bolt_warnings) = slope(case, &joints, covers, tolerance, tell)?;
     quiet::check_columns(&slope)?;
     let places = Places { covers: &slope.covers, tolerance };
     let monitors = monitors(case, &places)?;
@@ -57,16 +62,18 @@ pub fn build(case: &Case) -> Result<Built, Invalid> {
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding: plane.arrangement.report, traces: plane.traces, warnings })
+    Ok(Built { slope, state, monitors, noding, traces: joints.traces, warnings })
 }
 
 /// The fixed part of the model, and what its bolts have to tell.
 fn slope(
     case: &Case,
-    plane: &geometry::Plane,
+    joints: &geometry::Joints,
     covers: Covers,
     tolerance: f64,
+    tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Slope, Vec<String>), Invalid> {
+    tell(BuildStage::Masses);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let places = Places { covers: &covers, tolerance };
     let element_rock = rock::assign(case, &places)?;
@@ -77,7 +84,9 @@ fn slope(
     let fixed_supports = supports.len() as u32;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
     let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
+    tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, &BoundaryOptions::default());
+    tell(BuildStage::Start);
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
@@ -94,8 +103,8 @@ fn slope(
         element_rock,
         metric,
         laws,
-        trace_law: plane.traces.iter().map(|t| t.1).collect(),
-        default_law: plane.default_law,
+        trace_law: joints.traces.iter().map(|t| t.1).collect(),
+        default_law: joints.default_law,
         fixities,
         supports,
         fixed_supports,

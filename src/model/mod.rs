@@ -7,7 +7,7 @@ mod simulation;
 pub mod snapshot;
 pub mod strength_reduction;
 
-pub use build::{Built, build};
+pub use build::{BuildStage, Built, build};
 pub use case::Case;
 pub use observe::BlockState;
 pub use simulation::Simulation;

@@ -77,8 +77,7 @@ impl Simulation {
         }
         let places = places(slope, state);
         snapshot.boundaries = self.boundaries(&places);
-        let joint = |contact: &VertexEdge| joint_point(slope, &places, contact);
-        snapshot.joints = self.contacts().iter().map(joint).collect();
+        self.each_contact(|contact| snapshot.joints.push(joint_point(slope, &places, contact)));
         snapshot
     }
 

@@ -5,7 +5,7 @@ use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Inputs, Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
 
-use super::build::{Built, build, index_of};
+use super::build::{BuildStage, Built, build, index_of};
 use super::case::{Case, Invalid, Stage, StageKind};
 
 /// Unbalanced ratio at which a static stage that names none ends.
@@ -28,7 +28,15 @@ impl Simulation {
     /// # Errors
     /// The first key of the case that does not fit.
     pub fn new(case: Case) -> Result<Self, Invalid> {
-        let built = build(&case)?;
+        Self::build(case, &mut |_| ())
+    }
+
+    /// As [`Simulation::new`]; `tell` hears of every part of the build as it begins.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn build(case: Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Self, Invalid> {
+        let built = build(&case, tell)?;
         let mut simulation =
             Self { case, built, scratch: Scratch::default(), regime: Regime::Dynamic { damping: 0.0 } };
         simulation.begin_stage(0, 0.0)?;
@@ -89,8 +97,39 @@ impl Simulation {
     /// Takes a state that this model had before, as from a checkpoint.
     pub fn restore(&mut self, state: State) {
         self.built.state = state;
+        self.take_up();
+    }
+
+    /// Takes over another state of this model, as [`Simulation::restore`] does, into the memory of its own.
+    pub fn return_to(&mut self, state: &State) {
+        self.built.state.copy_from(state);
+        self.take_up();
+    }
+
+    /// Gives back the memory of the buffers, which the next step then fills anew: outputs need some of their own.
+    pub fn drop_buffers(&mut self) {
+        let Scratch { serial, seconds, .. } = self.scratch;
+        self.scratch = Scratch { serial, seconds, ..Scratch::default() };
+        self.take_up();
+    }
+
+    /// Makes regime and buffers those of the state.
+    fn take_up(&mut self) {
         self.regime = self.regime_of(self.built.state.stage as usize);
         step::prepare(&self.built.slope, &self.built.state, &mut self.scratch);
+    }
+
+    /// Begins every stage to come without taking a step, and goes back: what does not fit is told before the run.
+    ///
+    /// # Errors
+    /// A key of a stage that does not fit the model, which is then spoilt.
+    pub fn rehearse(&mut self) -> Result<(), Invalid> {
+        if self.state().stage as usize + 1 < self.case.stages.len() {
+            let now = self.state().clone();
+            while self.next_stage()? {}
+            self.restore(now);
+        }
+        Ok(())
     }
 
     /// Begins the next stage; false when the last one has ended.
@@ -126,7 +165,7 @@ impl Simulation {
     pub fn report(&self) -> StepReport {
         let mut state = self.state().clone();
         state.drive.hold_last();
-        step::outlook(self.slope(), self.regime, state, &self.scratch)
+        step::outlook(self.slope(), self.regime, state, self.scratch.serial)
     }
 
     /// Whether all indices and lengths of a state are those of this model.
@@ -177,7 +216,17 @@ impl Simulation {
 
     /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
     pub fn contacts(&self) -> Vec<VertexEdge> {
-        step::contacts(self.slope(), self.regime, self.state(), &self.scratch)
+        self.look_ahead().1.contacts
+    }
+
+    /// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
+    pub fn look_ahead(&self) -> (State, Scratch) {
+        step::look_ahead(self.slope(), self.regime, self.state(), self.scratch.serial)
+    }
+
+    /// Shows [`Simulation::contacts`] one by one: all of them together can be larger than the model.
+    pub fn each_contact(&self, mut see: impl FnMut(&VertexEdge)) {
+        step::each_contact(self.slope(), self.regime, self.state(), self.scratch.serial, &mut see);
     }
 
     /// Whether the stage has covered its duration, or is static and at rest by this report.

@@ -5,6 +5,7 @@ mod events;
 mod implicit;
 mod inputs;
 mod ledger;
+mod memory;
 mod scratch;
 mod slope;
 
@@ -12,6 +13,7 @@ pub use events::{Event, EventKind, Events};
 pub use implicit::{Implicit, ImplicitScratch, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
+pub use memory::Part;
 pub use scratch::{Scratch, Seconds};
 pub use slope::{
     BaseMotion, Fixity, FreeFieldPoint, MotionKind, Port, PortKind, QuietBoundary, Slope, TimedRecord, Water,

@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{BlockPush, BoltRow, OpenClose, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{Admitted, BlockPush, BoltRow, EdgeFrame, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, YieldSurface};
 
@@ -23,6 +23,10 @@ pub struct Scratch {
     pub motion: Vec<BlockMotion>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
+    /// Boundary edges at those places.
+    pub frames: Vec<EdgeFrame>,
+    /// What the vertex rule admits in this step.
+    pub admitted: Admitted,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.

@@ -27,6 +27,8 @@ const UNSETTLED: f64 = 0.1;
 /// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
 /// of the critical step for d > 0.62.
 const DECAY_MAX: f64 = 0.3;
+/// Near pairs that are judged together, about, when contacts are only shown.
+const PIECE: usize = 1 << 16;
 /// Most times that a step is halved.
 const HALVINGS_MAX: u32 = 4;
 
@@ -87,9 +89,11 @@ pub fn advance_part(
     Ok(outcome)
 }
 
-/// Energies and the unbalanced ratio that the next step will find at its start; nothing advances.
-pub fn outlook(slope: &Slope, regime: Regime, mut state: State, scratch: &Scratch) -> StepReport {
-    let mut scratch = scratch.clone();
+/// Energies and the unbalanced ratio that the next step will find at its start; nothing advances. With `serial` it
+/// keeps to the calling thread.
+pub fn outlook(slope: &Slope, regime: Regime, mut state: State, serial: bool) -> StepReport {
+    let mut scratch = Scratch { serial, ..Scratch::default() };
+    prepare(slope, &state, &mut scratch);
     let rest = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     step.report = true;
@@ -99,20 +103,40 @@ pub fn outlook(slope: &Slope, regime: Regime, mut state: State, scratch: &Scratc
     }
 }
 
-/// The contacts that the next step will judge, with the forces of the last one; nothing advances.
-pub fn contacts(slope: &Slope, regime: Regime, state: &State, scratch: &Scratch) -> Vec<VertexEdge> {
-    let (mut state, mut scratch) = (state.clone(), scratch.clone());
+/// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
+/// it keeps to the calling thread.
+pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
+    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
+    prepare(slope, &state, &mut scratch);
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     if slope.implicit.is_some() {
         step.implicit_contacts(dt);
-        return scratch.contacts;
+    } else {
+        step.set_out(dt);
+        step.entrance(step.reach(dt), step.state.dt_last);
     }
-    step.search();
-    step.yield_rock();
-    step.predict(dt);
-    step.entrance(step.reach(dt), step.state.dt_last);
-    scratch.contacts
+    (state, scratch)
+}
+
+/// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
+pub fn each_contact(
+    slope: &Slope,
+    regime: Regime,
+    state: &State,
+    serial: bool,
+    see: &mut dyn FnMut(&VertexEdge),
+) {
+    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
+    prepare(slope, &state, &mut scratch);
+    let dt = slope.dt - state.part;
+    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
+    if slope.implicit.is_some() {
+        step.implicit_contacts(dt);
+        return scratch.contacts.iter().for_each(see);
+    }
+    step.set_out(dt);
+    step.entrance_by_pieces(dt, see);
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
@@ -168,6 +192,28 @@ impl Step<'_> {
         }
         self.count(dt, &swept);
         self.commit(dt)
+    }
+
+    /// Near pairs, yielding and predicted velocities of a step of `dt` (s).
+    fn set_out(&mut self, dt: f64) {
+        self.search();
+        self.yield_rock();
+        self.predict(dt);
+    }
+
+    /// The contacts of a step of `dt` (s), judged piece by piece: all together they can be larger than the model. The
+    /// candidates of the state are spoilt.
+    fn entrance_by_pieces(&mut self, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
+        let all = std::mem::take(&mut self.state.near.candidates);
+        let mut rest = all.as_slice();
+        while let Some(last) = rest.get(PIECE).or(rest.last()) {
+            let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
+            self.state.near.candidates.clear();
+            self.state.near.candidates.extend_from_slice(piece);
+            self.entrance(self.reach(dt), self.state.dt_last);
+            self.scratch.contacts.iter().for_each(&mut *see);
+            rest = others;
+        }
     }
 
     fn count(&mut self, dt: f64, swept: &SweepReport) {

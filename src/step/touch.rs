@@ -32,6 +32,7 @@ impl Step<'_> {
         scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
         }));
+        contact::edge_frames(boundary, &scratch.place, scratch.serial, &mut scratch.frames);
         let size = slope.covers.mesh.size;
         if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {
@@ -63,6 +64,7 @@ impl Step<'_> {
         let narrow = Narrow {
             boundary: &slope.boundary,
             place: &scratch.place,
+            frames: &scratch.frames,
             star: &slope.covers.star_position,
             displacement: &state.displacement,
             metric: &scratch.metric,
@@ -80,9 +82,10 @@ impl Step<'_> {
             behind: &state.near.behind,
             first: state.step == 0,
             in_situ: slope.in_situ.as_ref(),
+            serial: scratch.serial,
         };
-        scratch.contacts.clear();
-        contact::entrance_edges(&narrow, &state.near.candidates, &mut scratch.contacts);
+        let candidates = &state.near.candidates;
+        contact::entrance_edges(&narrow, candidates, &mut scratch.admitted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 

@@ -1,6 +1,7 @@
 //! House keeping: `cargo xtask test` is the one command that tests everything; the others write what is committed but
 //! generated, or run what takes too long for every change.
 
+mod ab;
 mod counts;
 mod house;
 mod install;
@@ -23,6 +24,8 @@ usage: cargo xtask TASK
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
+  ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
+                   times two builds of the program in turn and prints the ratios of each part
   pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
 
 fn main() -> ExitCode {
@@ -37,6 +40,9 @@ fn main() -> ExitCode {
         ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["ab", ref words @ ..] => {
+            ab::Comparison::read(words).and_then(|found| found.run(&house)).map(|()| ExitCode::SUCCESS)
+        }
         ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&house).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.to_owned()),

@@ -21,7 +21,10 @@ impl Narrow<'_> {
         let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
         let closure_max = self.laws[law as usize].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
-        let history = pick.held.unwrap_or_else(|| self.first_sight(node, pick, length, closure, normal));
+        let history = match pick.held {
+            Some(known) => self.history[known as usize],
+            None => self.first_sight(node, pick, length, closure, normal),
+        };
         let history = ContactHistory { edge: pick.edge, ..history };
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);

@@ -1,13 +1,29 @@
 //! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
 
 mod contact;
+mod frame;
 mod length;
 mod rule;
+
+use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
+use frame::Over;
+
 use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
+
+pub use frame::{EdgeFrame, edge_frames};
+
+/// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
+const RUN: usize = 4096;
+/// Runs that are judged before their contacts are made.
+const RUNS: usize = 64;
+/// Contacts whose geometry a thread makes at least.
+const GRAIN: usize = 256;
+/// Most sides that a node is judged over.
+const SIDES_MAX: usize = 12;
 
 /// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
 const ENTRANCE_SINE: f64 = 0.17;
@@ -28,6 +44,8 @@ pub struct Narrow<'a> {
     pub boundary: &'a Boundary,
     /// Current places of the boundary points (m).
     pub place: &'a [Point],
+    /// Edges at these places.
+    pub frames: &'a [EdgeFrame],
     /// Star positions (m).
     pub star: &'a [Point],
     /// Displacements of the covers (m).
@@ -62,6 +80,8 @@ pub struct Narrow<'a> {
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by place.
     pub in_situ: Option<&'a StressField>,
+    /// Whether to keep to the calling thread.
+    pub serial: bool,
 }
 
 /// A node over an edge of one side.
@@ -73,79 +93,149 @@ struct Pick {
     along: f64,
     length: f64,
     tangent: Vector,
-    held: Option<ContactHistory>,
+    /// The contact of the last step, by its index.
+    held: Option<u32>,
     /// Whether the contact carried force in the last step.
     is_held: bool,
     admitted: bool,
 }
 
-/// Judges every candidate and appends the contacts that take part in this step, ordered by node and side.
-pub fn entrance_edges(narrow: &Narrow, candidates: &[Candidate], contacts: &mut Vec<VertexEdge>) {
-    let mut picks: [Option<Pick>; 12] = [None; 12];
-    let mut known = narrow.history;
+/// What the vertex rule admits in one step: buffers of [`entrance_edges`].
+#[derive(Debug, Clone, Default)]
+pub struct Admitted {
+    runs: Vec<Vec<(u32, Pick)>>,
+    picks: Vec<(u32, Pick)>,
+}
+
+impl Admitted {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
+        of_runs + size_of_val(self.picks.as_slice())
+    }
+}
+
+/// Judges every candidate and fills the contacts that take part in this step, ordered by node and side.
+pub fn entrance_edges(
+    narrow: &Narrow,
+    candidates: &[Candidate],
+    admitted: &mut Admitted,
+    contacts: &mut Vec<VertexEdge>,
+) {
+    contacts.clear();
+    // In pieces: what is admitted of all candidates together would be as large as the contacts.
+    let runs = if narrow.serial { 1 } else { RUNS };
     let mut rest = candidates;
-    while let Some(first) = rest.first() {
-        let (group, others) = rest.split_at(rest.partition_point(|c| c.node == first.node));
+    while !rest.is_empty() {
+        let (piece, others) = rest.split_at(first_of_run(rest, runs));
+        narrow.enter(piece, admitted, contacts);
         rest = others;
-        known = &known[known.partition_point(|h| h.node < first.node)..];
-        let mine = &known[..known.partition_point(|h| h.node == first.node)];
-        let count = narrow.pick_edges(first.node as usize, group, mine, &mut picks);
-        narrow.choose_sides(first.node as usize, &mut picks[..count]);
-        for pick in picks[..count].iter().flatten().filter(|p| p.admitted) {
-            contacts.push(narrow.contact(first.node as usize, pick));
-        }
+    }
+}
+
+/// Where run `k` begins: at a multiple of its length, moved on to the next node.
+fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
+    let start = (k * RUN).min(candidates.len());
+    match start.checked_sub(1).map(|last| candidates[last].node) {
+        Some(node) => start + candidates[start..].iter().take_while(|c| c.node == node).count(),
+        None => 0,
     }
 }
 
 impl Narrow<'_> {
-    /// The nearest edge of each side that the node is over, and whether the vertex rule admits it so far.
-    fn pick_edges(
+    /// Judges some candidates and appends their contacts.
+    fn enter(&self, candidates: &[Candidate], admitted: &mut Admitted, contacts: &mut Vec<VertexEdge>) {
+        let Admitted { runs, picks } = admitted;
+        picks.clear();
+        if self.serial || candidates.len() <= RUN {
+            self.judge(candidates, picks);
+            contacts.extend(picks.iter().map(|(node, pick)| self.contact(*node as usize, pick)));
+            return;
+        }
+        runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
+        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
+            run.clear();
+            self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
+        });
+        runs.iter().for_each(|run| picks.extend_from_slice(run));
+        let picks = picks.par_iter().with_min_len(GRAIN);
+        contacts.par_extend(picks.map(|(node, pick)| self.contact(*node as usize, pick)));
+    }
+
+    /// Appends the picks that the vertex rule admits of some candidates, with their nodes.
+    fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<(u32, Pick)>) {
+        let Some(first) = candidates.first() else { return };
+        let mut picks: [Option<Pick>; SIDES_MAX] = [None; SIDES_MAX];
+        let mut known = self.history.partition_point(|h| h.node < first.node);
+        for group in candidates.chunk_by(|a, b| a.node == b.node) {
+            let node = group[0].node;
+            let picks = self.pick_edges(node as usize, group, &mut known, &mut picks);
+            if picks.iter().flatten().any(|p| p.admitted) {
+                self.choose_sides(node as usize, picks);
+                admitted.extend(picks.iter().flatten().filter(|p| p.admitted).map(|p| (node, *p)));
+            }
+        }
+    }
+
+    /// The nearest edge of each side that the node is over, and whether the vertex rule admits it so far; `known` is
+    /// the first contact of the last step that belongs to no earlier pair of node and side.
+    fn pick_edges<'p>(
         &self,
         node: usize,
         group: &[Candidate],
-        known: &[ContactHistory],
-        picks: &mut [Option<Pick>; 12],
-    ) -> usize {
-        let (mut count, mut rest) = (0, group);
-        while let Some(first) = rest.first() {
-            let (edges, others) = rest.split_at(rest.partition_point(|c| c.side == first.side));
-            rest = others;
-            let held = known.iter().find(|h| h.side == first.side).copied();
-            if let Some(pick) = self.pick(node, edges, held)
+        known: &mut usize,
+        picks: &'p mut [Option<Pick>; SIDES_MAX],
+    ) -> &'p mut [Option<Pick>] {
+        let (mut count, p) = (0, self.node_place(node));
+        for edges in group.chunk_by(|a, b| a.side == b.side) {
+            let key = (node as u32, edges[0].side);
+            while self.history.get(*known).is_some_and(|h| (h.node, h.side) < key) {
+                *known += 1;
+            }
+            let held = self.history.get(*known).filter(|h| (h.node, h.side) == key);
+            if let Some(pick) = self.pick(node, p, edges, held.map(|_| *known as u32))
                 && count < picks.len()
             {
                 picks[count] = Some(pick);
                 count += 1;
             }
         }
-        count
+        &mut picks[..count]
     }
 
-    fn pick(&self, node: usize, edges: &[Candidate], held: Option<ContactHistory>) -> Option<Pick> {
-        let is_held = held.is_some_and(|h| h.state != ContactState::Open);
-        let p = self.node_place(node);
-        let over = |c: &Candidate| {
-            let (a, b) = self.ends(c.edge as usize);
-            let length = (b - a).norm();
-            let tangent = (b - a) / length;
-            let along = (p - a).dot(&tangent);
-            let gap = (p - a).dot(&right_of(tangent));
-            let beyond = (-along).max(along - length).max(0.0);
-            let (side, edge) = (c.side, c.edge);
-            let pick = Pick { side, edge, gap, along, length, tangent, held, is_held, admitted: false };
-            (beyond.hypot(gap), beyond, pick)
-        };
-        let (_, beyond, mut pick) = edges.iter().map(over).min_by(|x, y| x.0.total_cmp(&y.0))?;
-        if beyond > WEDGE_RATIO * pick.gap.abs() + HELD_BEYOND * self.size {
+    fn pick(&self, node: usize, p: Point, edges: &[Candidate], held: Option<u32>) -> Option<Pick> {
+        let (edge, over) = self.nearest(p, edges);
+        let Over { along, gap, beyond } = over;
+        if beyond > WEDGE_RATIO * gap.abs() + HELD_BEYOND * self.size {
             return None;
         }
-        let bonded = held.is_some_and(|h| h.intact && h.normal_force < 0.0);
-        let near = bonded || pick.gap - self.allowance(&pick) < self.reach;
+        let known = held.map(|k| &self.history[k as usize]);
+        let is_held = known.is_some_and(|h| h.state != ContactState::Open);
+        let frame = &self.frames[edge as usize];
+        let (length, tangent) = (frame.length(), frame.tangent());
+        let mut pick = Pick { side: edges[0].side, edge, gap, along, length, tangent, held, is_held, admitted: false };
+        let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
+        let near = bonded || gap - self.allowance(&pick) < self.reach;
         pick.admitted = near
             && !(held.is_none() && self.is_false_sight(node, &pick))
             && self.enters(node, &pick, p)
             && self.within(node, &pick, p, beyond);
         Some(pick)
+    }
+
+    /// The nearest of some edges, the first of equally near ones, and where the point is over it.
+    fn nearest(&self, p: Point, edges: &[Candidate]) -> (u32, Over) {
+        let over = |c: &Candidate| (c.edge, self.frames[c.edge as usize].over(p));
+        let mut nearest = over(&edges[0]);
+        if edges.len() > 1 {
+            let mut distance = nearest.1.distance();
+            for other in edges[1..].iter().map(over) {
+                if other.1.is_nearer_than(distance) {
+                    (nearest, distance) = (other, other.1.distance());
+                }
+            }
+        }
+        nearest
     }
 
     /// Whether a deep first sight cannot be a contact: within one block, or of a side with rock before it.
@@ -158,7 +248,7 @@ impl Narrow<'_> {
 
     /// Closure that the contact's springs do not see (m).
     fn allowance(&self, pick: &Pick) -> f64 {
-        pick.held.map_or(0.0, |h| h.rest - h.offset)
+        pick.held.map_or(0.0, |k| self.history[k as usize].rest - self.history[k as usize].offset)
     }
 
     fn node_place(&self, node: usize) -> Point {

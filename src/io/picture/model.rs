@@ -7,7 +7,7 @@ use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
 use super::colour::{ACCENT, BLOCKS, COVERS, Colour, GREY, INK, LINES, WHITE};
 use super::slope::{
     BELOW_FRAME, LEFT, LINE_HEIGHT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines,
-    draw_filled, draw_title, outlines, time_text,
+    draw_filled, draw_title, outlines, outlines_show, time_text,
 };
 use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
 use crate::geometry::Point;
@@ -98,7 +98,10 @@ impl Model<'_> {
         let element_area = view.area.width * view.area.height / elements;
         sheet.clipped(&view.area, |sheet| {
             self.draw_blocks(sheet, view, element_area > MESH_AREA);
-            self.draw_traces(sheet, view, if self.decor.trace_segments.len() > TRACES_MANY { 1.1 } else { 1.8 });
+            let many = self.decor.trace_segments.len() > TRACES_MANY;
+            if !many || outlines_show(self.snapshot, view) {
+                self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
+            }
             if self.decor.stars.len() <= STARS_MAX {
                 self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 2.2));
             }
@@ -126,7 +129,8 @@ impl Model<'_> {
         for (law, &colour) in LINES.iter().enumerate() {
             let mut path = Path::default();
             let of_law = self.decor.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
-            for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable)) {
+            let shows = |ends: &[Point; 2]| Bounds::of(ends).is_some_and(|bounds| bounds.overlaps(&view.world));
+            for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable) && shows(ends)) {
                 path.line(ends.iter().map(|end| view.pixel(end)));
             }
             sheet.path(&path, Style::line(colour, width));

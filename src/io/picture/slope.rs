@@ -20,6 +20,12 @@ pub const LINE_HEIGHT: f64 = 25.0;
 /// Height (px) below a frame for numbers and the title of the axis.
 pub const BELOW_FRAME: f64 = 62.0;
 
+/// Mean area (px²) of a block, about, below which outlines of blocks are left out.
+const OUTLINE_AREA: f64 = 12.0;
+
+/// How far (px) coordinates may be off when a picture is rasterised.
+const ROUNDING: f64 = 0.1;
+
 /// Draws the title and, below it, a caption.
 pub fn draw_title(sheet: &mut Svg, title: &str, caption: &str) {
     let width = WIDTH - LEFT - MARGIN;
@@ -74,11 +80,23 @@ pub fn draw_filled(
 ) {
     let mut paths = vec![Path::default(); colours.len()];
     for (k, corners) in visible(polygons, view) {
-        paths[choice(k) % colours.len()].polygon(corners.iter().map(|corner| view.pixel(corner)));
+        let pixels = || corners.iter().map(|corner| view.pixel(corner));
+        if holds_pixel(pixels()) {
+            paths[choice(k) % colours.len()].polygon(pixels());
+        }
     }
     for (path, &colour) in paths.iter().zip(colours) {
         sheet.path(path, Style::fill(colour).crisp());
     }
+}
+
+/// Whether the box of a polygon holds the centre of a pixel: one that holds none, as most of a very fine mesh, cannot
+/// be seen without smoothing.
+fn holds_pixel(mut corners: impl Iterator<Item = Pixel>) -> bool {
+    let Some(first) = corners.next() else { return false };
+    let (low, high) = corners
+        .fold((first, first), |(low, high), [x, y]| ([low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]));
+    (0..2).all(|axis| (high[axis] + ROUNDING - 0.5).floor() >= (low[axis] - ROUNDING - 0.5).ceil())
 }
 
 /// Outlines of the blocks that `chosen` accepts, as one shape.
@@ -94,8 +112,18 @@ pub fn block_outlines(
     path
 }
 
-/// Draws the outlines of all blocks as thin dark lines.
+/// Whether the blocks are large enough in a view for their outlines to be told apart.
+pub fn outlines_show(snapshot: &Snapshot, view: &View) -> bool {
+    let points = snapshot.boundaries.iter().flat_map(|boundary| &boundary.loops.points);
+    let size = Bounds::of(points).map_or(Point::zeros(), |bounds| bounds.size()) * view.scale;
+    size.x * size.y > OUTLINE_AREA * snapshot.boundaries.len() as f64
+}
+
+/// Draws the outlines of all blocks as thin dark lines, unless they would only blacken the picture.
 pub fn draw_block_outlines(sheet: &mut Svg, snapshot: &Snapshot, view: &View) {
+    if !outlines_show(snapshot, view) {
+        return;
+    }
     let width = if snapshot.boundaries.len() > 3000 { 0.5 } else { 0.9 };
     sheet.path(&block_outlines(snapshot, view, |_| true), Style::line(INK, width));
 }

@@ -50,8 +50,8 @@ struct Progress {
 
 /// A checkpoint of a run. The state comes first, so that it can be read alone.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct Saved {
-    state: State,
+struct Saved<S = State> {
+    state: S,
     progress: Progress,
 }
 
@@ -80,10 +80,8 @@ struct Driver<'a> {
 pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
     let clock = Instant::now();
     let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
-    let simulation = Simulation::new(loaded.case.clone()).map_err(invalid)?;
-    let mut rehearsal = simulation.clone();
-    while rehearsal.next_stage().map_err(invalid)? {}
-    drop(rehearsal);
+    let mut simulation = Simulation::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
+    simulation.rehearse().map_err(invalid)?;
     let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
     let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;
     loop {
@@ -136,7 +134,7 @@ impl<'a> Driver<'a> {
                 (history, frames.map_err(RunError::Directory)?, good)
             }
             Some(good) => {
-                simulation.restore(good.state.clone());
+                simulation.return_to(&good.state);
                 let until = kept_until(&simulation);
                 let history = HistoryWriter::open_for_append(&history_path, &columns, until);
                 let frames = output.frames.then(|| PvdWriter::open_for_append(directory, until)).transpose();
@@ -266,7 +264,7 @@ impl<'a> Driver<'a> {
     fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
         self.keep_good();
         self.push_frame()?;
-        let end = self.simulation.state().clone();
+        let dt_before = self.simulation.state().dt_last;
         let before = rows::monitors(&self.simulation);
         let sweeps_mean = self.sweeps_mean();
         let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
@@ -274,9 +272,9 @@ impl<'a> Driver<'a> {
         if let Ok(report) = &report {
             self.note(report);
             converged |= self.simulation.at_rest(report);
-            self.write_row(report, &before, end.dt_last, sweeps_mean)?;
+            self.write_row(report, &before, dt_before, sweeps_mean)?;
         }
-        self.simulation.restore(end);
+        self.simulation.return_to(&self.good.state);
         if !recorded {
             self.warn_of_stage(converged);
             let record = self.stage_record(Some(converged));
@@ -338,11 +336,12 @@ impl<'a> Driver<'a> {
 
     fn push_frame(&mut self) -> Result<(), RunError> {
         let Some(frames) = &mut self.frames else { return Ok(()) };
+        self.simulation.drop_buffers();
         frames.push(&self.simulation.snapshot()).map_err(RunError::Output)
     }
 
     fn keep_good(&mut self) {
-        self.good.state.clone_from(self.simulation.state());
+        self.good.state.copy_from(self.simulation.state());
         self.good.progress.clone_from(&self.progress);
     }
 
@@ -356,20 +355,21 @@ impl<'a> Driver<'a> {
         let mut progress = self.progress.clone();
         progress.wall = self.wall();
         progress.stage_wall += self.stage_clock.elapsed().as_secs_f64();
-        let saved = Saved { state: self.simulation.state().clone(), progress };
+        let saved = Saved { state: self.simulation.state(), progress };
         let path = self.options.directory.join("checkpoint.enmm");
         checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)
     }
 
     /// Falls back to the last good state and closes.
     fn fail(mut self, error: &StepError) -> Result<Summary, RunError> {
-        self.simulation.restore(self.good.state.clone());
+        self.simulation.return_to(&self.good.state);
         self.progress = self.good.progress.clone();
         self.close(RunStatus::Failed, Some(error))
     }
 
     /// Writes what a run leaves at its end, the checkpoint first and the summary last.
     fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
+        self.simulation.drop_buffers();
         self.save()?;
         let directory = &self.options.directory;
         write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;

