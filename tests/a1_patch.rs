@@ -119,7 +119,7 @@ fn the_patches_are_cut() {
         let simulation = cut_rock(seed);
         let covers = &simulation.slope().covers;
         several += covers.covers_by_star().iter().filter(|(_, n)| *n > 1).count();
-        partial += covers.outlines.pieces.iter().filter(|p| p.partial).count();
+        partial += simulation.slope().boundary.partial.iter().filter(|partial| **partial).count();
         // Shoelace area of the outline: 78.25 m²; element areas are sums of as many products, each with error ε·100.
         let area: f64 = covers.element_area.iter().sum();
         let outline = [[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], [4.0, 9.5], [-1.0, 5.0]];

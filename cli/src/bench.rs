@@ -109,21 +109,20 @@ fn text(report: &BenchReport) -> String {
 }
 
 fn model_text(found: &Measured) -> String {
-    let Measured { model, blocks, elements, contacts, clock, .. } = found;
+    let Measured { model, blocks, elements, contacts, .. } = found;
     let share = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     let stages = found.stages.named();
     let parts = stages.map(|(name, ms)| format!("{name} {ms:.3} ({:.0} %)", 100.0 * ms / found.ms_per_step));
     let sweeps = found.contact_sweeps_per_second.map_or_else(String::new, |rate| {
         format!(", {:.2} sweeps at {:.1} M contacts/s", found.sweeps_mean, rate / 1e6)
     });
-    let memory = found.memory_peak.map_or_else(String::new, |peak| {
-        format!(", peak {:.0} MB = {:.0} B an element", peak as f64 / 1e6, peak as f64 / *elements as f64)
-    });
+    let heaps = found.heap_bytes.map(|bytes| format!("{:.0}", bytes as f64 / *elements as f64)).join(" + ");
+    let memory = found.memory_peak.map_or_else(String::new, |peak| format!(", peak {:.0} MB", peak as f64 / 1e6));
     [
         format!("{model}: {blocks} blocks, {elements} elements ({} held), {contacts} contacts", found.held_elements),
         format!(
-            "  {:.3} ms a step of {clock} time (wall {:.3}, spread {:.2}), {:.3} s a simulated second{sweeps}",
-            found.ms_per_step, found.wall_ms_per_step, found.spread, found.seconds_per_simulated_second
+            "  {:.3} ms a step (median of wall time {:.3}), {:.3} s a simulated second{sweeps}",
+            found.ms_per_step, found.wall_ms_per_step, found.seconds_per_simulated_second
         ),
         format!("  ms: {}", parts.join(", ")),
         format!(
@@ -136,7 +135,7 @@ fn model_text(found: &Measured) -> String {
             share(found.share_of_operations)
         ),
         format!(
-            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}",
+            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}, {heaps} B each",
             found.searches,
             found.ms_per_search.unwrap_or(0.0),
             found.frame_ms,

@@ -1,6 +1,6 @@
 //! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
 
-use crate::cover::{self, BoundaryPiece, Covers, Weights};
+use crate::cover::{self, BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector};
 
 /// What the end of a side is.
@@ -52,6 +52,8 @@ pub struct Boundary {
     pub partial: Vec<bool>,
     /// Boundary point of each node.
     pub node_point: Vec<u32>,
+    /// Whether each node is the convex start of a side.
+    pub node_convex: Vec<bool>,
     /// Edge that ends at each node: the last point before it on its loop.
     pub node_edge_before: Vec<u32>,
     /// Node before each node on its loop.
@@ -68,6 +70,21 @@ pub struct Boundary {
     pub side_previous: Vec<u32>,
     /// Side after each side on its loop.
     pub side_next: Vec<u32>,
+    /// Both ends of each side, start and finish.
+    pub side_ends: Vec<[SideEnd; 2]>,
+}
+
+/// One end of a side.
+#[derive(Debug, Clone, Copy)]
+pub struct SideEnd {
+    /// Edge of the side at this end.
+    pub edge: u32,
+    /// Edge of the other side that meets it round the corner.
+    pub round: u32,
+    /// Boundary point that is the end.
+    pub point: u32,
+    /// What the end is.
+    pub corner: Corner,
 }
 
 /// A point of a loop while it is laid out: the piece that starts there and the turn onto it.
@@ -80,12 +97,12 @@ struct Station {
 
 impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    pub fn new(covers: &Covers, options: &BoundaryOptions) -> Self {
+    pub fn new(covers: &Covers, outlines: &Outlines, options: &BoundaryOptions) -> Self {
         let mut boundary = Self::default();
-        for k in 0..covers.outlines.len() {
-            let mut stations = stations(covers.outlines.of_loop(k), options);
+        for k in 0..outlines.len() {
+            let mut stations = stations(outlines.of_loop(k), options);
             place_nodes(&mut stations, covers.mesh.size);
-            boundary.push_loop(covers, covers.outlines.loop_block[k], &stations);
+            boundary.push_loop(covers, outlines.loop_block[k], &stations);
         }
         boundary
     }
@@ -160,6 +177,7 @@ impl Boundary {
             }
             if station.node {
                 self.node_point.push(index);
+                self.node_convex.push(station.corner && station.turn > 0.0);
                 self.node_edge_before.push(if k == 0 { last } else { first + k - 1 } as u32);
             }
             let element = covers.host[station.piece.element as usize] as usize;
@@ -178,6 +196,13 @@ impl Boundary {
         }
         ring(&mut self.node_previous, &mut self.node_next, first_node, self.node_point.len());
         ring(&mut self.side_previous, &mut self.side_next, first_side, self.side_first.len());
+        for side in first_side..self.side_first.len() {
+            let (previous, next) = (self.side_previous[side] as usize, self.side_next[side] as usize);
+            let ([first, last], round) = ([self.side_first[side], self.side_last[side]], self.side_first[next]);
+            let start =
+                SideEnd { edge: first, round: self.side_last[previous], point: first, corner: self.side_corner[side] };
+            self.side_ends.push([start, SideEnd { edge: last, round, point: round, corner: self.side_corner[next] }]);
+        }
     }
 }
 

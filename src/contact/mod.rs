@@ -12,8 +12,8 @@ mod sweep;
 mod vertex_edge;
 
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
-pub use boundary::{Boundary, BoundaryOptions, Corner};
-pub use entrance::{Admitted, EdgeFrame, Narrow, edge_frames, entrance_edges};
+pub use boundary::{Boundary, BoundaryOptions, Corner, SideEnd};
+pub use entrance::{Admitted, Frames, Narrow, entrance_edges};
 pub use law::{Closure, JointLaw, Limits, RoughLimit, Roughness};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};

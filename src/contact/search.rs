@@ -1,6 +1,10 @@
-//! Which nodes are near which edges: a bucket grid over the edges, rebuilt when nodes have moved far enough.
+//! Which nodes are near which edges: edges sorted into a grid by their middles, anew when nodes have moved far enough.
 
-use crate::geometry::{Point, Vector, segment};
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::geometry::{NONE, Point, Vector, segment};
 
 use super::Boundary;
 
@@ -77,11 +81,13 @@ impl Near {
     fn renew_behind(&mut self, old: &[Candidate], behind: &mut Vec<[u32; 2]>, gap: impl Fn(&[Candidate]) -> f64) {
         behind.clear();
         let pair = |c: &Candidate| [c.node, c.side];
+        let (mut old, mut was) = (old.iter().map(pair).peekable(), self.behind.iter().copied().peekable());
         for edges in self.candidates.chunk_by(|a, b| pair(a) == pair(b)) {
             let key = pair(&edges[0]);
-            let known = old.binary_search_by(|c| pair(c).cmp(&key)).is_ok();
-            let was_behind = self.behind.binary_search(&key).is_ok();
-            if was_behind || !known && gap(edges) < 0.0 {
+            while old.next_if(|k| *k < key).is_some() {}
+            while was.next_if(|k| *k < key).is_some() {}
+            let known = old.peek() == Some(&key);
+            if was.peek() == Some(&key) || !known && gap(edges) < 0.0 {
                 behind.push(key);
             }
         }
@@ -89,12 +95,34 @@ impl Near {
     }
 }
 
-/// Bucket grid over edges: buffers of a search.
+/// Nodes whose near edges are found as one run, and shared between threads as one.
+const RUN: usize = 1024;
+/// Most cells of a grid per edge; where blocks have flown apart cells are larger.
+const CELLS_PER_EDGE: f64 = 4.0;
+
+/// An edge in the grid, with all that most nodes ask of it.
+#[derive(Debug, Clone, Copy)]
+struct GridEdge {
+    ends: [Point; 2],
+    edge: u32,
+    block: u32,
+}
+
+/// Edges in the order of the cells that hold their middles, and buffers of a search. Cells go row by row, so that
+/// neighbours in a row are one run of edges.
 #[derive(Debug, Clone, Default)]
 pub struct SearchGrid {
-    bucket_start: Vec<u32>,
-    bucket_edges: Vec<u32>,
-    near: Vec<Candidate>,
+    origin: Point,
+    /// Cells per metre.
+    density: f64,
+    columns: usize,
+    rows: usize,
+    /// Farthest that a middle may be from a node near its edge, along either axis (m).
+    reach: f64,
+    cell_of_edge: Vec<u32>,
+    cell_start: Vec<u32>,
+    edges: Vec<GridEdge>,
+    runs: Vec<Vec<Candidate>>,
     old: Vec<Candidate>,
     behind: Vec<[u32; 2]>,
 }
@@ -113,112 +141,165 @@ pub struct SearchView<'a> {
     pub removed: &'a [bool],
     /// Blocks of which no two can meet.
     pub fixed: &'a [bool],
+    /// Whether to keep to the calling thread.
+    pub serial: bool,
 }
 
 impl SearchGrid {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let buckets = size_of_val(self.bucket_start.as_slice()) + size_of_val(self.bucket_edges.as_slice());
-        buckets + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice())
+        let cells = size_of_val(self.cell_start.as_slice()) + size_of_val(self.cell_of_edge.as_slice());
+        let runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
+        let found = runs + size_of_val(self.old.as_slice()) + size_of_val(self.behind.as_slice());
+        cells + size_of_val(self.edges.as_slice()) + found
     }
 
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
     pub fn search(&mut self, view: &SearchView, found: &mut Near) {
-        let &SearchView { boundary, place, cell, cutoff, removed, fixed } = view;
-        self.fill_buckets(boundary, place, cell, cutoff, removed);
+        self.lay(view);
+        self.sort_edges(view);
         std::mem::swap(&mut self.old, &mut found.candidates);
         found.candidates.clear();
         found.found_at.clear();
-        for node in 0..boundary.node_count() {
-            let point = boundary.node_point[node] as usize;
-            let p = place[point];
-            found.found_at.push(p);
-            let block = boundary.block[point] as usize;
-            if removed[block] {
-                continue;
-            }
-            self.near.clear();
-            let bucket = self.bucket(cell_of(p.x, cell), cell_of(p.y, cell));
-            for &edge in &self.bucket_edges[self.bucket_start[bucket] as usize..self.bucket_start[bucket + 1] as usize]
-            {
-                let e = edge as usize;
-                if may_meet(boundary, node, e, fixed)
-                    && segment::distance(p, place[e], place[boundary.after(e)]) < cutoff
-                {
-                    self.near.push(Candidate { node: node as u32, side: boundary.side[e], edge });
-                }
-            }
-            self.near.sort_unstable();
-            self.near.dedup();
-            found.candidates.extend_from_slice(&self.near);
+        found.found_at.extend(view.boundary.node_point.iter().map(|&point| view.place[point as usize]));
+        let nodes = view.boundary.node_count();
+        if view.serial || nodes <= RUN {
+            self.find(view, 0..nodes, &mut found.candidates);
+        } else {
+            let mut runs = std::mem::take(&mut self.runs);
+            runs.resize_with(nodes.div_ceil(RUN), Vec::new);
+            runs.par_iter_mut().enumerate().for_each(|(k, run)| {
+                run.clear();
+                self.find(view, k * RUN..nodes.min((k + 1) * RUN), run);
+            });
+            runs.iter().for_each(|run| found.candidates.extend_from_slice(run));
+            self.runs = runs;
         }
-        let depth = cutoff * if self.old.is_empty() { BEHIND_DEPTH_FIRST } else { BEHIND_DEPTH };
+        let depth = view.cutoff * if self.old.is_empty() { BEHIND_DEPTH_FIRST } else { BEHIND_DEPTH };
         found.renew_behind(&self.old, &mut self.behind, |edges| gap_over(view, edges) + depth);
     }
 
-    fn bucket(&self, i: i64, j: i64) -> usize {
-        let mixed = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-        (mixed >> 20) as usize & (self.bucket_start.len() - 2)
+    /// Lays the grid over the middles of all edges that count.
+    fn lay(&mut self, view: &SearchView) {
+        let (mut low, mut high, mut longest) = (Point::new(f64::MAX, f64::MAX), Point::new(f64::MIN, f64::MIN), 0.0f64);
+        let counts = |e: &usize| !view.removed[view.boundary.block[*e] as usize];
+        for (a, b) in (0..view.boundary.len()).filter(counts).map(|e| ends(view, e)) {
+            let middle = (a + b) * 0.5;
+            (low, high) = (low.inf(&middle), high.sup(&middle));
+            longest = longest.max((b - a).amax());
+        }
+        self.origin = low;
+        self.reach = 0.5 * longest + view.cutoff;
+        let span = (high - low).map(|x| x.max(0.0));
+        let count = |cell: f64| [span.x, span.y].map(|x| (x / cell).floor() + 1.0);
+        let most = CELLS_PER_EDGE * view.boundary.len() as f64 + 16.0;
+        let mut cell = view.cell;
+        while count(cell).iter().product::<f64>() > most {
+            cell *= 2.0;
+        }
+        self.density = 1.0 / cell;
+        [self.columns, self.rows] = count(cell).map(|n| n as usize);
     }
 
-    fn fill_buckets(&mut self, boundary: &Boundary, place: &[Point], cell: f64, cutoff: f64, removed: &[bool]) {
-        let buckets = (boundary.len() * 2).next_power_of_two().max(16);
-        self.bucket_start.clear();
-        self.bucket_start.resize(buckets + 1, 0);
-        let each_cell = |act: &mut dyn FnMut(i64, i64, u32)| {
-            for e in (0..boundary.len()).filter(|&e| !removed[boundary.block[e] as usize]) {
-                let (a, b) = (place[e], place[boundary.after(e)]);
-                let (low, high) = (a.inf(&b), a.sup(&b));
-                for i in cell_of(low.x - cutoff, cell)..=cell_of(high.x + cutoff, cell) {
-                    for j in cell_of(low.y - cutoff, cell)..=cell_of(high.y + cutoff, cell) {
-                        act(i, j, e as u32);
+    /// Sorts the edges that count by cell and, within one, by index.
+    fn sort_edges(&mut self, view: &SearchView) {
+        let boundary = view.boundary;
+        self.cell_start.clear();
+        self.cell_start.resize(self.columns * self.rows + 2, 0);
+        self.cell_of_edge.clear();
+        for e in 0..boundary.len() {
+            let (a, b) = ends(view, e);
+            let cell = if view.removed[boundary.block[e] as usize] {
+                NONE
+            } else {
+                let [column, row] = self.cell((a + b) * 0.5);
+                (row * self.columns + column) as u32
+            };
+            self.cell_of_edge.push(cell);
+            if cell != NONE {
+                self.cell_start[cell as usize + 2] += 1;
+            }
+        }
+        for k in 1..self.cell_start.len() {
+            self.cell_start[k] += self.cell_start[k - 1];
+        }
+        let total = self.cell_start.last().map_or(0, |&n| n as usize);
+        self.edges.resize(total, GridEdge { ends: [Point::zeros(); 2], edge: NONE, block: NONE });
+        for (e, &cell) in self.cell_of_edge.iter().enumerate().filter(|(_, cell)| **cell != NONE) {
+            let (a, b) = ends(view, e);
+            let at = &mut self.cell_start[cell as usize + 1];
+            self.edges[*at as usize] = GridEdge { ends: [a, b], edge: e as u32, block: boundary.block[e] };
+            *at += 1;
+        }
+    }
+
+    /// Column and row of the cell of a point, or of the nearest one.
+    fn cell(&self, p: Point) -> [usize; 2] {
+        let index = |x: f64, count: usize| ((x * self.density) as usize).min(count - 1);
+        [index(p.x - self.origin.x, self.columns), index(p.y - self.origin.y, self.rows)]
+    }
+
+    /// Appends the near edges of some nodes, ordered by node, side and edge.
+    fn find(&self, view: &SearchView, nodes: Range<usize>, found: &mut Vec<Candidate>) {
+        let boundary = view.boundary;
+        let reach = Vector::new(self.reach, self.reach);
+        for node in nodes {
+            let point = boundary.node_point[node] as usize;
+            let p = view.place[point];
+            let block = boundary.block[point];
+            if view.removed[block as usize] {
+                continue;
+            }
+            let first = found.len();
+            let ([left, bottom], [right, top]) = (self.cell(p - reach), self.cell(p + reach));
+            for row in bottom..=top {
+                let run = |column: usize| self.cell_start[row * self.columns + column] as usize;
+                for at in &self.edges[run(left)..run(right + 1)] {
+                    if at.is_near(p, view.cutoff)
+                        && (at.block != block || boundary.partial[at.edge as usize])
+                        && segment::distance(p, at.ends[0], at.ends[1]) < view.cutoff
+                        && may_meet(boundary, node, at.edge as usize, view.fixed)
+                    {
+                        let side = boundary.side[at.edge as usize];
+                        found.push(Candidate { node: node as u32, side, edge: at.edge });
                     }
                 }
             }
-        };
-        let mut total = 0;
-        each_cell(&mut |i, j, _| {
-            let bucket = self.bucket(i, j);
-            self.bucket_start[bucket + 1] += 1;
-            total += 1;
-        });
-        for k in 1..self.bucket_start.len() {
-            self.bucket_start[k] += self.bucket_start[k - 1];
+            found[first..].sort_unstable_by_key(|c| c.edge);
         }
-        self.bucket_edges.clear();
-        self.bucket_edges.resize(total, 0);
-        each_cell(&mut |i, j, e| {
-            let bucket = self.bucket(i, j);
-            self.bucket_edges[self.bucket_start[bucket] as usize] = e;
-            self.bucket_start[bucket] += 1;
-        });
-        self.bucket_start.rotate_right(1);
-        self.bucket_start[0] = 0;
     }
+}
+
+impl GridEdge {
+    /// Whether a point is within `distance` (m) of the box round the edge.
+    fn is_near(&self, p: Point, distance: f64) -> bool {
+        let [a, b] = [self.ends[0] - p, self.ends[1] - p];
+        let [x, y] = [(a.x, b.x), (a.y, b.y)].map(|(a, b)| a.min(b).max(-a.max(b)) <= distance);
+        x & y
+    }
+}
+
+fn ends(view: &SearchView, edge: usize) -> (Point, Point) {
+    (view.place[edge], view.place[view.boundary.after(edge)])
 }
 
 /// Gap (m) of a node over the nearest of some edges of one side, negative behind it; infinite where the node is beyond
 /// an end of the side and outside the side round that corner.
 fn gap_over(view: &SearchView, edges: &[Candidate]) -> f64 {
     let p = view.place[view.boundary.node_point[edges[0].node as usize] as usize];
-    let ends = |e: usize| (view.place[e], view.place[view.boundary.after(e)]);
     let gap = |e: usize| {
-        let (a, b) = ends(e);
+        let (a, b) = ends(view, e);
         (p - a).dot(&Vector::new(b.y - a.y, a.x - b.x)) / (b - a).norm()
     };
     let distance = |c: &&Candidate| {
-        let (a, b) = ends(c.edge as usize);
+        let (a, b) = ends(view, c.edge as usize);
         segment::distance(p, a, b)
     };
     let Some(nearest) = edges.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else { return f64::INFINITY };
-    let (a, b) = ends(nearest.edge as usize);
+    let (a, b) = ends(view, nearest.edge as usize);
     let along = (p - a).dot(&(b - a));
     let round = view.boundary.side_round(nearest.edge, along < 0.0, along > (b - a).norm_squared());
     if round.is_some_and(|e| gap(e as usize) > 0.0) { f64::INFINITY } else { gap(nearest.edge as usize) }
-}
-
-fn cell_of(v: f64, cell: f64) -> i64 {
-    (v / cell).floor() as i64
 }
 
 /// Whether a node and an edge can touch at all.
@@ -234,17 +315,4 @@ fn may_meet(boundary: &Boundary, node: usize, edge: usize, fixed: &[bool]) -> bo
         && boundary.node_partial(node)
         && boundary.side[edge] != boundary.side[point]
         && boundary.side[edge] != before
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn buckets_hold_what_was_put_in() {
-        let grid = SearchGrid { bucket_start: vec![0; 17], ..SearchGrid::default() };
-        for (i, j) in [(0, 0), (-5, 3), (1 << 40, -(1 << 39))] {
-            assert!(grid.bucket(i, j) < 16);
-        }
-    }
 }

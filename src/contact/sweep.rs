@@ -93,6 +93,15 @@ pub struct OpenClose {
 }
 
 impl OpenClose {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.watch.as_slice());
+        let turns = [&self.sequence, &self.ends, &self.list, &self.moved].map(|list| size_of_val(list.as_slice()));
+        let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
+        let push = size_of_val(self.push.as_slice());
+        rows + turns.iter().sum::<usize>() + own + push + self.order.bytes() + self.bearings.bytes()
+    }
+
     /// Forgets the order, and takes the masses of a stage.
     pub fn prepare(&mut self, metric: &Metric, supports: &[Support], rows: &[SupportRow]) {
         self.order.clear();

@@ -27,6 +27,9 @@ use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepError, StepReport};
 
+/// Covers from which a step is worth other threads than the caller's own.
+const THREADS_FROM: usize = 4096;
+
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interpolation {
@@ -71,7 +74,7 @@ pub struct Cosimulation {
     backup: Saved,
     /// Number of the interval in progress; one with another number is over.
     serial: u64,
-    /// Threads of steps, when there is more than the caller's own.
+    /// Threads of steps, when they are more than the caller's own and the model is worth them.
     pool: Option<Arc<rayon::ThreadPool>>,
 }
 
@@ -241,7 +244,8 @@ impl Cosimulation {
         self.standing.interpolation
     }
 
-    /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it.
+    /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it. Small
+    /// models keep to the caller's thread: handing a step over would cost more than it saves.
     ///
     /// # Errors
     /// No thread at all, more than 1024, or threads that the system refuses.
@@ -250,12 +254,12 @@ impl Cosimulation {
         if !(1..=limits::THREADS_MAX).contains(&threads) {
             return Err(refuse(&format!("at least 1 and at most {}", limits::THREADS_MAX)));
         }
-        self.pool = match threads {
-            1 => None,
-            _ => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Some(Arc::new(pool.map_err(|error| refuse(&format!("a number that the system grants ({error})")))?))
-            }
+        let is_small = self.simulation.slope().covers.cover_count() < THREADS_FROM;
+        self.pool = if threads == 1 || is_small {
+            None
+        } else {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            Some(Arc::new(pool.map_err(|error| refuse(&format!("a number that the system grants ({error})")))?))
         };
         self.simulation.set_serial(self.pool.is_none());
         Ok(())

@@ -45,8 +45,6 @@ pub struct Covers {
     pub host: Vec<u32>,
     /// Elements in the order of their lattice triangles, row by row, for finding them by place.
     by_triangle: Vec<u32>,
-    /// Boundary loops of the blocks.
-    pub outlines: Outlines,
 }
 
 impl Covers {
@@ -151,8 +149,9 @@ impl Covers {
     }
 }
 
-/// Cuts the covers of `mesh` by the outlines and joints that are arranged with its edges.
-pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> Covers {
+/// Cuts the covers of `mesh` by the outlines and joints that are arranged with its edges; the loops round the blocks
+/// come with them.
+pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
     let raw = RawElements::collect(&mesh, &arrangement);
     let joined = Joined::new(&arrangement, &raw);
     let blocks = order_blocks(&raw, &joined);
@@ -166,11 +165,11 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> Covers {
         element_of_face[raw.face[old as usize] as usize] = new as u32;
     }
     drop((raw, joined, blocks, slot_cover));
-    covers.outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
+    let outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
     drop((arrangement, element_of_face));
     covers.by_triangle = by_triangle(&covers);
     covers.host = hosts(&covers);
-    covers
+    (covers, outlines)
 }
 
 /// See [`Covers::by_triangle`].
@@ -400,7 +399,6 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
         block_covers: Vec::new(),
         host: Vec::new(),
         by_triangle: Vec::new(),
-        outlines: Outlines::default(),
     }
 }
 

@@ -46,11 +46,6 @@ impl Outlines {
         self.loop_block.is_empty()
     }
 
-    /// Bytes of the loops.
-    pub fn bytes(&self) -> usize {
-        size_of_val(self.pieces.as_slice()) + size_of_val(self.loop_start.as_slice()) * 2
-    }
-
     /// Pieces of a loop.
     pub fn of_loop(&self, k: usize) -> &[BoundaryPiece] {
         &self.pieces[self.loop_start[k] as usize..self.loop_start[k + 1] as usize]

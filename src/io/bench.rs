@@ -72,7 +72,8 @@ pub struct BenchReport {
 /// # Errors
 /// A model that cannot be built or fails, which for a standard one is a defect.
 pub fn bench(options: &BenchOptions, begin: &mut (dyn FnMut(&str) + Send)) -> Result<BenchReport, BenchError> {
-    let Some(threads) = options.threads else { return bench_here(options, begin) };
+    // Zero stands for all threads; a pool of its own, so that one thread does all that it counts as its time.
+    let threads = options.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|_| BenchError::Threads(threads))?.install(|| bench_here(options, begin))
 }

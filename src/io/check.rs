@@ -77,7 +77,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         stars_by_cover_count,
         cover_masses: sorted(slope.metric.row_sum.clone()),
         vertices: distinct(&covers.polygon_points),
-        boundary_edges: covers.outlines.pieces.len(),
+        boundary_edges: built.boundary_pieces,
         initial_contacts: scratch.contacts.len(),
         critical_dt: slope.critical_dt,
         small_covers_treated: small_covers(simulation, 2.0 * triangle),

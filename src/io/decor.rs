@@ -16,7 +16,9 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
     });
     let mut fixed: Vec<Point> = supports.collect();
     fixed.dedup();
-    let joints = covers.outlines.pieces.iter().filter(|piece| piece.trace != NONE && piece.element < piece.opposite);
+    let boundary = &slope.boundary;
+    let ends = |k: usize| [boundary.reference[k], boundary.reference[boundary.after(k)]];
+    let joints = (0..boundary.len()).filter(|&k| boundary.trace[k] != NONE);
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
     let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
     ModelDecor {
@@ -31,7 +33,7 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
             format!("mesh size {} m", covers.mesh.size),
         ],
         bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
-        trace_segments: joints.map(|piece| ([piece.a, piece.b], slope.trace_law[piece.trace as usize])).collect(),
+        trace_segments: joints.map(|k| (ends(k), slope.trace_law[boundary.trace[k] as usize])).collect(),
     }
 }
 

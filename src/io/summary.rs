@@ -128,7 +128,7 @@ impl ModelCounts {
             physical_covers: covers.cover_count(),
             stars: covers.covers_by_star().len(),
             contact_nodes: slope.boundary.node_count(),
-            boundary_edges: covers.outlines.pieces.len(),
+            boundary_edges: simulation.built().boundary_pieces,
             contacts: simulation.state().contacts.len(),
             joints: slope.trace_law.len(),
             supports: slope.supports.len(),

@@ -12,13 +12,13 @@ mod stage;
 use std::collections::BTreeMap;
 
 use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, Covers};
+use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
-    ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
+    ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Port, Slope, State, Water};
 
 use place::Places;
 
@@ -35,6 +35,8 @@ pub struct Built {
     pub monitors: Vec<(usize, Point)>,
     /// What the noder did.
     pub noding: NodingReport,
+    /// Pieces of block boundaries inside single elements, both sides of a joint counted.
+    pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
     pub traces: Vec<(Vec<Point>, u32)>,
     /// What the user should know.
@@ -52,17 +54,27 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings(&noding);
     tell(BuildStage::Covers);
-    let covers = cover::cut(mesh, arrangement);
+    let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
-    let (slope, bolt_warnings) = slope(case, &joints, covers, tolerance, tell)?;
+    tell(BuildStage::Masses);
+    let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
+    tell(BuildStage::Start);
     quiet::check_columns(&slope)?;
-    let places = Places { covers: &slope.covers, tolerance };
+    let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &slope, &places)?;
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    Ok(Built { slope, state, monitors, noding, traces: joints.traces, warnings })
+    Ok(Built {
+        slope,
+        state,
+        monitors,
+        noding,
+        boundary_pieces: outlines.pieces.len(),
+        traces: joints.traces,
+        warnings,
+    })
 }
 
 /// The fixed part of the model, and what its bolts have to tell.
@@ -70,37 +82,31 @@ fn slope(
     case: &Case,
     joints: &geometry::Joints,
     covers: Covers,
+    outlines: &Outlines,
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Slope, Vec<String>), Invalid> {
-    tell(BuildStage::Masses);
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, tolerance };
+    let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
     let laws = joint_laws(case, stiffness);
-    let (mut fixities, mut supports) = fixities(case, &places, stiffness)?;
-    let fixed_supports = supports.len() as u32;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
-    let quiet::Quiets { quiets, columns, free_field } = ground.quiets(&mut fixities, &mut supports)?;
+    let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, &BoundaryOptions::default());
+    let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
-    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
-    let loads = loads(case, &places, &faces)?;
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
-    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
-    let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
+    let (loads, ports, water) = from_outside(case, &places, &boundary)?;
     let slope = Slope {
+        patches: Patches::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
-        rocks,
-        element_rock,
         metric,
         laws,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
@@ -109,25 +115,50 @@ fn slope(
         supports,
         fixed_supports,
         base_motions: quiet::base_motions(case),
-        quiets,
-        columns,
-        free_field,
+        quiets: quiets.quiets,
+        columns: quiets.columns,
+        free_field: quiets.free_field,
         bolts,
         loads,
         ports,
         water,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
-        dt: internal_step(case, critical),
-        critical_dt: critical,
+        dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
+        critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,
         failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
+        rocks,
+        element_rock,
         covers,
     };
     Ok((slope, bolt_warnings))
+}
+
+/// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
+fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
+    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness)?;
+    let of_case = supports.len() as u32;
+    let quiets = ground.quiets(&mut fixities, &mut supports)?;
+    Ok((fixities, supports, of_case, quiets))
+}
+
+/// Loads, ports and water.
+fn from_outside(
+    case: &Case,
+    places: &Places,
+    boundary: &Boundary,
+) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
+    let faces = ports::Faces { boundary, tolerance: places.tolerance };
+    Ok((loads(case, places, &faces)?, ports::ports(case, places, &faces)?, ports::water(case, &faces)?))
+}
+
+/// Shortest stable step (s) of all rocks.
+fn shortest_critical_dt(covers: &Covers, rocks: &[Elasticity]) -> f64 {
+    rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min)
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.

@@ -41,8 +41,8 @@ impl Slope {
         vec![
             ("elements", elements(&self.covers) + self.element_rock.bytes()),
             ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
+            ("patches", self.patches.bytes()),
             ("covers", covers(&self.covers)),
-            ("loops of blocks", self.covers.outlines.bytes()),
             ("boundary", boundary(&self.boundary)),
             ("masses", metric(&self.metric)),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
@@ -80,15 +80,16 @@ impl Scratch {
 
     /// Bytes of the buffers, by part.
     pub fn memory(&self) -> Vec<Part> {
-        let fields: [&dyn Array; 5] = [&self.load_force, &self.force, &self.predicted, &self.damped, &self.increment];
+        let fields: [&dyn Array; 4] = [&self.load_force, &self.predicted, &self.damped, &self.increment];
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", metric(&self.metric)),
-            ("blocks", sum(&[&self.motion, &self.push, &self.touching])),
-            ("places", sum(&[&self.place, &self.frames])),
+            ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
+            ("places", self.place.bytes() + self.frames.bytes()),
             ("judged pairs", self.admitted.bytes()),
             ("search", self.search.bytes()),
-            ("contacts", self.contacts.bytes()),
+            ("contacts", sum(&[&self.contacts, &self.sliding])),
+            ("open–close iteration", self.open_close.bytes()),
             ("supports and bolts", sum(&[&self.rows, &self.bolts])),
             ("yielding", self.yielded.bytes()),
             ("implicit", implicit(&self.implicit)),
@@ -110,11 +111,11 @@ fn covers(covers: &Covers) -> usize {
 
 fn boundary(boundary: &Boundary) -> usize {
     let Boundary { covers, weights, reference, next, block, side, node_before, trace, partial, .. } = boundary;
-    let Boundary { node_point, node_previous, node_next, .. } = boundary;
-    let Boundary { side_first, side_last, side_corner, side_previous, side_next, .. } = boundary;
+    let Boundary { node_point, node_convex, node_edge_before, node_previous, node_next, .. } = boundary;
+    let Boundary { side_first, side_last, side_corner, side_previous, side_next, side_ends, .. } = boundary;
     sum(&[covers, weights, reference, next, block, side, node_before, trace, partial])
-        + sum(&[node_point, node_previous, node_next])
-        + sum(&[side_first, side_last, side_corner, side_previous, side_next])
+        + sum(&[node_point, node_convex, node_edge_before, node_previous, node_next])
+        + sum(&[side_first, side_last, side_corner, side_previous, side_next, side_ends])
 }
 
 fn metric(metric: &Metric) -> usize {

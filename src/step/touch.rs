@@ -14,6 +14,8 @@ use super::{Regime, Step};
 const SKIN: f64 = 0.1;
 /// Distance, relative to the mesh size, within which pairs are kept.
 pub(super) const CUTOFF: f64 = 0.25;
+/// Size of a cell of the search, relative to the mesh size.
+const CELL: f64 = 0.5;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
 
@@ -32,16 +34,17 @@ impl Step<'_> {
         scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
         }));
-        contact::edge_frames(boundary, &scratch.place, scratch.serial, &mut scratch.frames);
+        scratch.frames.update(boundary, &scratch.place, scratch.serial);
         let size = slope.covers.mesh.size;
         if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {
                 boundary,
                 place: &scratch.place,
-                cell: size,
+                cell: CELL * size,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
                 fixed: &scratch.metric.fixed,
+                serial: scratch.serial,
             };
             scratch.search.search(&view, &mut self.state.near);
             scratch.open_close.forget_order();

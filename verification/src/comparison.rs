@@ -1,6 +1,7 @@
 //! The explicit method beside the implicit one: the same models, error against the exact answer, and cost.
 
 mod models;
+pub mod ratio;
 mod report;
 
 use std::time::Instant;
@@ -140,7 +141,7 @@ impl Run {
 fn bytes(simulation: &Simulation) -> usize {
     let scratch = simulation.scratch();
     let [matrix, factor] = scratch.implicit.matrix.bytes();
-    let vectors = [&scratch.load_force, &scratch.force, &scratch.predicted, &scratch.damped, &scratch.increment];
+    let vectors = [&scratch.load_force, &scratch.predicted, &scratch.damped, &scratch.increment];
     let implicit = [&scratch.implicit.moved, &scratch.implicit.offset, &scratch.implicit.applied];
     let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
     let state = 2 * simulation.state().displacement.len();
@@ -151,6 +152,8 @@ fn bytes(simulation: &Simulation) -> usize {
 
 /// Processor time (s) of all threads of this process so far; 0 where the system does not tell.
 fn cpu_seconds() -> f64 {
+    // The system brings its count up to date when a thread gives way.
+    std::thread::yield_now();
     let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
     let of = |task: std::fs::DirEntry| -> Option<f64> {
         let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;

@@ -20,10 +20,14 @@ usage: cargo xtask TASK
   verify           solves the full set of verification problems and writes docs/verification.md
                    with its plots; fails when a value is missed that the report did not state
   compare          runs the comparison of the explicit with the implicit integrator
+  ratio            runs explicit and implicit steps of a continuum and writes docs/implicit_ratio.md
+  overhead         tells what a step costs through the C ABI and the FMUs above the engine's own
   schema           writes docs/case.schema.json
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
+  bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench
+                   such as --models all
   ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
                    times two builds of the program in turn and prints the ratios of each part
   pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
@@ -38,8 +42,11 @@ fn main() -> ExitCode {
         ["long"] => Ok(tasks::long(&house)),
         ["verify"] => tasks::verification(&house, "report").map(|()| ExitCode::SUCCESS),
         ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
+        ["overhead"] => tasks::overhead(&house).map(|()| ExitCode::SUCCESS),
+        ["ratio"] => tasks::verification(&house, "ratio").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["bench", ref options @ ..] => tasks::write_benchmark(&house, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&house)).map(|()| ExitCode::SUCCESS)
         }

@@ -9,6 +9,7 @@ use crate::house::{self, House};
 use crate::python;
 
 const SCHEMA: &str = "docs/case.schema.json";
+const BENCHMARK: &str = "benchmark";
 const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
 const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
@@ -79,6 +80,14 @@ pub fn verification(house: &House, program: &str) -> Result<(), String> {
     house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program]))
 }
 
+/// Tells what a step costs through every export.
+///
+/// # Errors
+/// When the program does not build or run.
+pub fn overhead(house: &House) -> Result<(), String> {
+    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
+}
+
 /// Writes the schema of the case file as the command line tells it.
 ///
 /// # Errors
@@ -89,6 +98,23 @@ pub fn write_schema(house: &House) -> Result<(), String> {
     std::fs::write(house.root.join(SCHEMA), schema).map_err(|error| format!("{SCHEMA}: {error}"))?;
     println!("wrote {SCHEMA}");
     Ok(())
+}
+
+/// Times standard models on one thread, or as `options` say, and writes tables and plots with commit and date.
+///
+/// # Errors
+/// When the program does not build or run.
+pub fn write_benchmark(house: &House, options: &[&str]) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let line =
+        |command: &mut Command| house::capture(command).map(|told| String::from_utf8_lossy(&told).trim().to_owned());
+    let commit = line(house.command("git").args(["describe", "--always", "--dirty"]))?;
+    let date = line(house.command("date").args(["-u", "+%Y-%m-%d"]))?;
+    let label = format!("Commit {commit}, {date}");
+    let mut bench = house.command(house.enmm());
+    bench.args(["bench", "--output", BENCHMARK, "--label", &label]);
+    let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
+    house::run(bench.args(threads).args(options))
 }
 
 /// Runs the main case and further ones and copies their pictures to where the README shows them.

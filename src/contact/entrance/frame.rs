@@ -1,21 +1,37 @@
-//! Edges at their current places, once a step for all nodes that judge them.
+//! Edges and nodes at their current places, once a step for all that judge them.
 
 use rayon::prelude::*;
 
 use crate::contact::Boundary;
 use crate::geometry::{Point, Vector};
 
-use super::right_of;
+use super::{is_convex, right_of};
 
-/// Edges that a thread takes at least.
+/// Edges or nodes that a thread takes at least.
 const GRAIN: usize = 2048;
 
 /// An edge at its current place.
 #[derive(Debug, Clone, Copy)]
-pub struct EdgeFrame {
-    start: Point,
-    tangent: Vector,
-    length: f64,
+pub(super) struct EdgeFrame {
+    /// Start (m).
+    pub start: Point,
+    /// Unit tangent.
+    pub tangent: Vector,
+    /// Length (m).
+    pub length: f64,
+}
+
+/// A node at its current place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodeFrame {
+    /// Place (m).
+    pub place: Point,
+    /// To the node before it and to the node after it on its loop (m).
+    pub to: [Vector; 2],
+    /// How far those are (m).
+    pub distance: [f64; 2],
+    /// Whether its rock is a corner of less than half a turn.
+    pub is_convex: bool,
 }
 
 /// Where a point is over an edge.
@@ -27,6 +43,13 @@ pub(super) struct Over {
     pub gap: f64,
     /// Distance along the edge beyond its nearer end (m); 0 within.
     pub beyond: f64,
+}
+
+/// All edges and nodes at their current places.
+#[derive(Debug, Clone, Default)]
+pub struct Frames {
+    pub(super) edges: Vec<EdgeFrame>,
+    pub(super) nodes: Vec<NodeFrame>,
 }
 
 impl Over {
@@ -47,32 +70,52 @@ impl EdgeFrame {
         Self { start: a, tangent: (b - a) / length, length }
     }
 
-    /// Unit tangent.
-    pub(super) fn tangent(&self) -> Vector {
-        self.tangent
+    /// Outward unit normal.
+    pub fn normal(&self) -> Vector {
+        right_of(self.tangent)
     }
 
-    /// Length (m).
-    pub(super) fn length(&self) -> f64 {
-        self.length
-    }
-
-    pub(super) fn over(&self, p: Point) -> Over {
+    /// Where a point is over the edge.
+    pub fn over(&self, p: Point) -> Over {
         let from = p - self.start;
         let along = from.dot(&self.tangent);
         let beyond = (-along).max(along - self.length).max(0.0);
-        Over { along, gap: from.dot(&right_of(self.tangent)), beyond }
+        Over { along, gap: from.dot(&self.normal()), beyond }
     }
 }
 
-/// Frames of all edges, where `place` are the current places of the boundary points.
-pub fn edge_frames(boundary: &Boundary, place: &[Point], serial: bool, frames: &mut Vec<EdgeFrame>) {
-    let frame = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
-    if serial {
-        frames.clear();
-        frames.extend(place.iter().zip(&boundary.next).map(frame));
-    } else {
-        let pairs = place.par_iter().zip(&boundary.next).with_min_len(GRAIN);
-        pairs.map(frame).collect_into_vec(frames);
+impl NodeFrame {
+    fn new(place: Point, neighbours: [Point; 2]) -> Self {
+        let to = neighbours.map(|q| q - place);
+        let distance = to.map(|d| d.norm());
+        Self { place, to, distance, is_convex: is_convex(to, distance) }
+    }
+}
+
+impl Frames {
+    /// Bytes of the buffers.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
+    }
+
+    /// Frames of all edges and nodes, where `place` are the current places of the boundary points.
+    pub fn update(&mut self, boundary: &Boundary, place: &[Point], serial: bool) {
+        let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
+        let at = |node: u32| place[boundary.node_point[node as usize] as usize];
+        let node = |((point, previous), next): ((&u32, &u32), &u32)| {
+            NodeFrame::new(place[*point as usize], [at(*previous), at(*next)])
+        };
+        let Boundary { node_point, node_previous, node_next, .. } = boundary;
+        if serial {
+            self.edges.clear();
+            self.edges.extend(place.iter().zip(&boundary.next).map(edge));
+            self.nodes.clear();
+            self.nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
+        } else {
+            let edges = place.par_iter().zip(&boundary.next).with_min_len(GRAIN);
+            edges.map(edge).collect_into_vec(&mut self.edges);
+            let nodes = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
+            nodes.map(node).collect_into_vec(&mut self.nodes);
+        }
     }
 }

@@ -13,15 +13,14 @@ impl Narrow<'_> {
     /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness (Eq. 13).
     pub(super) fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
         let boundary = self.boundary;
-        let here = self.node_place(node);
-        let p = here.dot(&pick.tangent);
+        let frame = &self.frames.nodes[node];
+        let p = frame.place.dot(&pick.tangent);
         let before = boundary.node_before[pick.edge as usize] as usize;
         let from = self.node_place(before).dot(&pick.tangent);
         let to = self.node_place(boundary.node_next[before] as usize).dot(&pick.tangent);
         let overlap = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
-        let previous = self.node_place(boundary.node_previous[node] as usize);
-        let next = self.node_place(boundary.node_next[node] as usize);
-        let (q, r) = (previous.dot(&pick.tangent), next.dot(&pick.tangent));
+        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]]
+            .map(|n| self.node_place(n as usize).dot(&pick.tangent));
         let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
         let mut facing = 0.0;
         if q > p {
@@ -33,23 +32,16 @@ impl Narrow<'_> {
             facing += overlap(r) + low * self.reach_beyond(beyond, from, r, pick);
         }
         let share = self.share_at_corner(node, pick);
-        let span = 0.5 * ((previous - here).norm() + (next - here).norm());
+        let span = 0.5 * (frame.distance[0] + frame.distance[1]);
         let length = (0.5 * facing).max(LENGTH_FLOOR * span);
         let stiff = length.max(PENALTY_LENGTH_FLOOR * span);
         (length * share, stiff * share)
     }
 
-    /// Whether a node is the convex start of a side.
-    fn is_convex_corner(&self, node: usize) -> bool {
-        let (boundary, point) = (self.boundary, self.boundary.node_point[node]);
-        let side = boundary.side[point as usize] as usize;
-        boundary.side_first[side] == point && boundary.side_corner[side] == Corner::Convex
-    }
-
     /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from
     /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
     fn tie_shares(&self, node: usize, pick: &Pick, before: usize, distances: [f64; 2]) -> [f64; 2] {
-        if !self.is_convex_corner(node) {
+        if !self.boundary.node_convex[node] {
             return [0.0; 2];
         }
         let boundary = self.boundary;
@@ -71,16 +63,15 @@ impl Narrow<'_> {
     /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
     /// an inner node, whose segments that corner has.
     fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
-        let (boundary, side) = (self.boundary, pick.side as usize);
         let band = HELD_BEYOND * self.size;
-        let convex = |s: usize| boundary.side_corner[s] == Corner::Convex;
-        let least = if self.is_convex_corner(node) { 0.5 } else { 0.0 };
+        let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
-        if boundary.side_first[side] == pick.edge && convex(side) {
-            share = share.min(least + (1.0 - least) * pick.along / band);
-        }
-        if boundary.side_last[side] == pick.edge && convex(boundary.side_next[side] as usize) {
-            share = share.min(least + (1.0 - least) * (pick.length - pick.along) / band);
+        for (end, within) in
+            self.boundary.side_ends[pick.side as usize].iter().zip([pick.along, pick.length - pick.along])
+        {
+            if end.edge == pick.edge && end.corner == Corner::Convex {
+                share = share.min(least + (1.0 - least) * within / band);
+            }
         }
         share.clamp(1e-3, 1.0)
     }

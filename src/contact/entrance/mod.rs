@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
-use frame::Over;
+use frame::{EdgeFrame, Over};
 
 use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
 
-pub use frame::{EdgeFrame, edge_frames};
+pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
 const RUN: usize = 4096;
@@ -44,8 +44,8 @@ pub struct Narrow<'a> {
     pub boundary: &'a Boundary,
     /// Current places of the boundary points (m).
     pub place: &'a [Point],
-    /// Edges at these places.
-    pub frames: &'a [EdgeFrame],
+    /// Edges and nodes at these places.
+    pub frames: &'a Frames,
     /// Star positions (m).
     pub star: &'a [Point],
     /// Displacements of the covers (m).
@@ -211,21 +211,20 @@ impl Narrow<'_> {
         }
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
-        let frame = &self.frames[edge as usize];
-        let (length, tangent) = (frame.length(), frame.tangent());
+        let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
         let mut pick = Pick { side: edges[0].side, edge, gap, along, length, tangent, held, is_held, admitted: false };
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
         let near = bonded || gap - self.allowance(&pick) < self.reach;
         pick.admitted = near
             && !(held.is_none() && self.is_false_sight(node, &pick))
-            && self.enters(node, &pick, p)
+            && self.enters(node, &pick)
             && self.within(node, &pick, p, beyond);
         Some(pick)
     }
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.
     fn nearest(&self, p: Point, edges: &[Candidate]) -> (u32, Over) {
-        let over = |c: &Candidate| (c.edge, self.frames[c.edge as usize].over(p));
+        let over = |c: &Candidate| (c.edge, self.frames.edges[c.edge as usize].over(p));
         let mut nearest = over(&edges[0]);
         if edges.len() > 1 {
             let mut distance = nearest.1.distance();
@@ -252,11 +251,7 @@ impl Narrow<'_> {
     }
 
     fn node_place(&self, node: usize) -> Point {
-        self.place[self.boundary.node_point[node] as usize]
-    }
-
-    fn ends(&self, edge: usize) -> (Point, Point) {
-        (self.place[edge], self.place[self.boundary.after(edge)])
+        self.frames.nodes[node].place
     }
 
     /// Distance (m) beyond a corner that counts as the corner.
@@ -270,10 +265,11 @@ fn right_of(along: Vector) -> Vector {
     Vector::new(along.y, -along.x)
 }
 
-/// Whether the rock between the directions to the previous and the next node is a corner of less than half a turn.
-fn is_convex(previous: Vector, next: Vector) -> bool {
+/// Whether the rock between the ways to the previous and the next node, of these lengths (m), is a corner of less than
+/// half a turn.
+fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2]) -> bool {
     let (cross, dot) = (next.perp(&previous), next.dot(&previous));
-    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * previous.norm() * next.norm())
+    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * distance[0] * distance[1])
 }
 
 /// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge.

@@ -1,10 +1,10 @@
 //! The vertex rule of theory §6: which of the sides near a node it may enter.
 
-use crate::contact::{ContactState, Corner};
+use crate::contact::{ContactState, Corner, SideEnd};
 use crate::cover;
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 
-use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, is_convex, right_of};
+use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
 
 /// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
 const LEDGE: f64 = 5e-4;
@@ -27,33 +27,18 @@ impl Narrow<'_> {
     pub(super) fn within(&self, node: usize, pick: &Pick, p: Point, beyond: f64) -> bool {
         let tolerance = self.corner_tolerance(pick);
         [End::Start, End::Finish].into_iter().all(|end| {
-            let (edge, corner, point) = self.end(pick.side as usize, end);
-            if corner == Corner::Reflex {
+            let at = self.boundary.side_ends[pick.side as usize][end as usize];
+            if at.corner == Corner::Reflex {
                 return true;
             }
             let past = match end {
                 End::Start => pick.along < 0.0,
                 End::Finish => pick.along > pick.length,
             };
-            let missed = edge == pick.edge && past && beyond > tolerance;
-            !missed && ((p - point).norm() >= self.size || self.is_inside_round(node, pick, p, end))
+            let missed = at.edge == pick.edge && past && beyond > tolerance;
+            let corner = self.place[at.point as usize];
+            !missed && ((p - corner).norm() >= self.size || self.is_inside_round(node, pick, p, end))
         })
-    }
-
-    /// Edge, corner and place of an end of a side.
-    fn end(&self, side: usize, end: End) -> (u32, Corner, Point) {
-        let boundary = self.boundary;
-        match end {
-            End::Start => {
-                let first = boundary.side_first[side];
-                (first, boundary.side_corner[side], self.place[first as usize])
-            }
-            End::Finish => {
-                let last = boundary.side_last[side];
-                let corner = boundary.side_corner[boundary.side_next[side] as usize];
-                (last, corner, self.ends(last as usize).1)
-            }
-        }
     }
 
     /// Whether the node, at a convex `end` of the side, is inside the facet that meets this one there.
@@ -66,21 +51,11 @@ impl Narrow<'_> {
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
-        let side = pick.side as usize;
-        let (edge, _, q) = self.end(side, end);
-        let (round, corner, neighbour) = match end {
-            End::Start => {
-                (boundary.side_last[boundary.side_previous[side] as usize], edge, boundary.node_previous[node])
-            }
-            End::Finish => {
-                let next = boundary.side_first[boundary.side_next[side] as usize];
-                (next, next, boundary.node_next[node])
-            }
-        };
-        let (a, b) = self.ends(round as usize);
-        let outward = right_of(b - a).normalize();
-        let own = self.node_place(neighbour as usize) - p;
-        let facing = if end == End::Start { right_of(-own) } else { right_of(own) }.normalize();
+        let SideEnd { round, point: corner, .. } = boundary.side_ends[pick.side as usize][end as usize];
+        let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
+        let frame = &self.frames.nodes[node];
+        let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
+        let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
             return (p - q).dot(&outward) <= tolerance;
@@ -109,12 +84,10 @@ impl Narrow<'_> {
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
-    pub(super) fn enters(&self, node: usize, pick: &Pick, p: Point) -> bool {
-        let normal = right_of(pick.tangent);
-        let [d, e] =
-            [self.boundary.node_previous[node], self.boundary.node_next[node]].map(|n| self.node_place(n as usize) - p);
-        let outside = |d: Vector| d.dot(&normal) >= -ENTRANCE_SINE * d.norm();
-        outside(d) && outside(e) && (is_convex(d, e) || faces(e - d, normal))
+    pub(super) fn enters(&self, node: usize, pick: &Pick) -> bool {
+        let (normal, frame) = (right_of(pick.tangent), &self.frames.nodes[node]);
+        let outside = |k: usize| frame.to[k].dot(&normal) >= -ENTRANCE_SINE * frame.distance[k];
+        outside(0) & outside(1) && (frame.is_convex || faces(frame.to[1] - frame.to[0], normal))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one

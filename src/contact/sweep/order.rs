@@ -53,6 +53,13 @@ struct Manifold {
 }
 
 impl SweepOrder {
+    /// Bytes of the order and of what it is made with.
+    pub fn bytes(&self) -> usize {
+        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.turn.as_slice());
+        let making = size_of_val(self.entries.as_slice()) + size_of_val(self.manifolds.as_slice());
+        order + making + size_of_val(self.colours.as_slice())
+    }
+
     /// Whether it has to be made.
     pub fn is_empty(&self) -> bool {
         self.part_end.is_empty()

@@ -37,6 +37,13 @@ pub struct Bearings {
     viscosity: Vec<f64>,
 }
 
+impl Bearings {
+    /// Bytes of rows and factor.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.rows.as_slice()) + size_of_val(self.factor.as_slice())
+    }
+}
+
 impl Bearing {
     fn along(&self, own: &[Vector]) -> f64 {
         (0..3).map(|k| self.weights[k].dot(&own[self.covers[k] as usize])).sum()

@@ -1,19 +1,14 @@
-//! What the system tells of this program: time that its threads had, and memory.
+//! What the system tells of this program: time that a thread had, and memory.
 
 use std::fs;
 
-/// Processor time (s) that all threads of the program have had; none where the system does not tell.
+/// Processor time (s) that this thread has had; none where the system does not tell.
 ///
 /// On a machine that is shared it is what wall time would be alone; its resolution is a tick of the scheduler.
 pub fn processor_seconds() -> Option<f64> {
-    let threads = fs::read_dir("/proc/self/task").ok()?.filter_map(Result::ok);
-    let of_thread = |entry: fs::DirEntry| -> Option<f64> {
-        let text = fs::read_to_string(entry.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse().ok()
-    };
-    // Threads that end meanwhile are left out.
-    let nanoseconds: f64 = threads.filter_map(of_thread).sum();
-    (nanoseconds > 0.0).then_some(nanoseconds * 1e-9)
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
 }
 
 /// Most memory (bytes) that the program has held since [`forget_peak`]; none where the system does not tell.

@@ -1,11 +1,12 @@
-//! One model timed: windows of steps that start from the same state again and again.
+//! One model timed: windows of steps that start from the same state again and again, so that each step has its
+//! quickest time, which other programs on the machine hardly touch.
 
 use std::time::Instant;
 
 use serde::Serialize;
 
 use super::clock::{forget_peak, memory_peak, processor_seconds};
-use super::models::{Model, advance};
+use super::models::Model;
 use super::{BenchError, Machine};
 use crate::io::checkpoint::encode;
 use crate::io::vtu::{write_joints_vtu, write_vtu};
@@ -16,8 +17,12 @@ use crate::state::{Counters, Seconds};
 const WINDOW_UPDATES: u64 = 1_000_000;
 /// Fewest and most steps of a window.
 const WINDOW_STEPS: [u64; 2] = [20, 200];
+/// Parts of state and buffers that grow with contacts.
+const OF_CONTACTS: [&str; 4] = ["near pairs", "search", "judged pairs", "contacts"];
 /// Fewest windows.
 const WINDOWS_MIN: usize = 2;
+/// What the processor's clock may be late by (s).
+const PROCESSOR_TICK: f64 = 0.004;
 /// Floating-point operations of one element: gradient 22, rotation 8, stretch 4, stress 12, forces 22, their sum 6.
 const OPERATIONS_PER_ELEMENT: f64 = 74.0;
 /// Bytes of an element that a step must read: three covers, cut area, triangle and rock.
@@ -26,13 +31,11 @@ const ELEMENT_BYTES: f64 = 3.0 * 4.0 + 8.0 + 2.0;
 /// written, force, damped and predicted velocity written and read.
 const COVER_BYTES: f64 = 16.0 + 3.0 * 8.0 + 16.0 + 2.0 * 32.0 + 3.0 * 32.0;
 
-/// What a model costs. Times are those of the quickest window.
+/// What a model costs.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Measured {
     /// Name of the model.
     pub model: String,
-    /// Clock of all rates and milliseconds: `processor` (one thread, time that it really had) or `wall`.
-    pub clock: &'static str,
     /// Free blocks.
     pub blocks: usize,
     /// Manifold elements of free blocks.
@@ -51,15 +54,14 @@ pub struct Measured {
     pub steps: u64,
     /// Windows timed.
     pub windows: usize,
-    /// Median over the quickest window.
-    pub spread: f64,
-    /// Milliseconds per step.
+    /// Milliseconds per step: the mean over the steps of a window, each the quickest of all windows; never more than
+    /// the processor time of the quickest window, where one thread does all.
     pub ms_per_step: f64,
-    /// Milliseconds of wall time per step, in the window of least wall time.
+    /// Milliseconds of wall time per step in the median window.
     pub wall_ms_per_step: f64,
     /// Seconds per simulated second.
     pub seconds_per_simulated_second: f64,
-    /// Milliseconds per step of each stage.
+    /// Milliseconds per step of each stage, taken like those of the step.
     pub stages: StageMilliseconds,
     /// Mean sweeps of a step.
     pub sweeps_mean: f64,
@@ -78,13 +80,16 @@ pub struct Measured {
     /// Milliseconds to encode one checkpoint.
     pub checkpoint_ms: f64,
     /// Bytes of one checkpoint, which holds the whole state.
-    pub state_bytes: usize,
+    pub checkpoint_bytes: usize,
     /// Time to build the model (s).
     pub build_seconds: f64,
-    /// Most memory (bytes) that the program held from the build of the model on; null where the system does not tell.
+    /// Most memory (bytes) that the program held from the build of the model to the last step; null where the system
+    /// does not tell.
     pub memory_peak: Option<u64>,
-    /// The same per element.
-    pub memory_per_element: Option<f64>,
+    /// Bytes of what is fixed, of what changes in time, and of buffers.
+    pub heap_bytes: [usize; 3],
+    /// Bytes of the state and buffers that hold near pairs and contacts, per contact; null without contact.
+    pub bytes_per_contact: Option<f64>,
     /// Bytes that the element stage must move for an element and its share of covers.
     pub bytes_per_element: f64,
     /// Floating-point operations of an element.
@@ -127,13 +132,58 @@ impl StageMilliseconds {
     }
 }
 
-/// One window.
-struct Window {
-    /// Time (s) on the clock that counts.
-    seconds: f64,
-    wall: f64,
-    /// Wall time of the stages (s).
-    stages: Seconds,
+/// Seconds of a step: search, elements, entrance, sweep, commit, and all of it.
+type StepSeconds = [f64; 6];
+
+/// What all windows together have found.
+struct Windows {
+    /// Each step at its quickest, stage by stage.
+    quickest: Vec<StepSeconds>,
+    /// Wall time of each window (s).
+    wall: Vec<f64>,
+    /// Processor time of the quickest window (s); infinite where it does not count.
+    processor: f64,
+}
+
+impl Windows {
+    fn new(steps: u64) -> Self {
+        let quickest = vec![[f64::INFINITY; 6]; steps as usize];
+        Self { quickest, wall: Vec::new(), processor: f64::INFINITY }
+    }
+
+    /// Times one more window.
+    fn take(&mut self, simulation: &mut Simulation) -> Result<(), BenchError> {
+        let processor = processor_seconds();
+        let clock = Instant::now();
+        let mut before = (stage_seconds(simulation), 0.0);
+        for quickest in &mut self.quickest {
+            simulation.advance(false)?;
+            let now = (stage_seconds(simulation), clock.elapsed().as_secs_f64());
+            let [search, elements, entrance, sweep, commit] = [0, 1, 2, 3, 4].map(|k| now.0[k] - before.0[k]);
+            let step = [search, elements, entrance, sweep, commit, now.1 - before.1];
+            quickest.iter_mut().zip(step).for_each(|(quickest, seconds)| *quickest = quickest.min(seconds));
+            before = now;
+        }
+        self.wall.push(before.1);
+        let spent = processor_seconds().zip(processor).map(|(after, before)| after - before);
+        if let Some(spent) = spent.filter(|&spent| spent > 0.0 && rayon::current_num_threads() == 1) {
+            self.processor = self.processor.min(spent + PROCESSOR_TICK);
+        }
+        Ok(())
+    }
+
+    /// Seconds per step by stage and of all; the stages share what processor time takes off.
+    fn per_step(&self) -> StepSeconds {
+        let sum = |k: usize| self.quickest.iter().map(|step| step[k]).sum::<f64>();
+        let sums = [0, 1, 2, 3, 4, 5].map(sum);
+        let scale = (self.processor / sums[5]).min(1.0) / self.quickest.len() as f64;
+        sums.map(|seconds| seconds * scale)
+    }
+}
+
+fn stage_seconds(simulation: &Simulation) -> [f64; 5] {
+    let Seconds { search, elements, entrance, sweep, commit } = simulation.scratch().seconds;
+    [search, elements, entrance, sweep, commit]
 }
 
 /// Builds a model and times it for some `seconds`.
@@ -149,43 +199,19 @@ pub fn measure(model: &Model, seconds: f64, machine: &Machine) -> Result<Measure
     let elements = simulation.slope().covers.element_count() as u64;
     let steps = (WINDOW_UPDATES / elements).clamp(WINDOW_STEPS[0], WINDOW_STEPS[1]);
     let start = simulation.state().clone();
-    let mut windows = Vec::new();
+    let mut windows = Windows::new(steps);
     let clock = Instant::now();
-    while windows.len() < WINDOWS_MIN || clock.elapsed().as_secs_f64() < seconds {
+    while windows.wall.len() < WINDOWS_MIN || clock.elapsed().as_secs_f64() < seconds {
         simulation.restore(start.clone());
-        windows.push(window(&mut simulation, steps)?);
+        windows.take(&mut simulation)?;
     }
     let mut measured = Measured { model: model.to_string(), steps, build_seconds, ..sizes(&simulation) };
-    measured.take_windows(windows, &simulation, &start.counters);
-    measured.take_outputs(&simulation)?;
     measured.memory_peak = memory_peak();
-    measured.memory_per_element = measured.memory_peak.map(|peak| peak as f64 / measured.elements as f64);
+    measured.take_heaps(&simulation);
+    measured.take_windows(&windows, &simulation, &start.counters);
+    measured.take_outputs(&simulation)?;
     measured.take_shares(machine);
     Ok(measured)
-}
-
-fn window(simulation: &mut Simulation, steps: u64) -> Result<Window, BenchError> {
-    let stages = simulation.scratch().seconds;
-    let processor = processor_seconds();
-    let clock = Instant::now();
-    advance(simulation, steps)?;
-    let wall = clock.elapsed().as_secs_f64();
-    let processor = processor_seconds().zip(processor).map(|(after, before)| after - before);
-    let seconds = processor.filter(|_| counts_processor()).unwrap_or(wall);
-    let now = simulation.scratch().seconds;
-    let stages = Seconds {
-        elements: now.elements - stages.elements,
-        search: now.search - stages.search,
-        entrance: now.entrance - stages.entrance,
-        sweep: now.sweep - stages.sweep,
-        commit: now.commit - stages.commit,
-    };
-    Ok(Window { seconds, wall, stages })
-}
-
-/// Whether processor time is the clock: with several threads it would count those that wait.
-fn counts_processor() -> bool {
-    rayon::current_num_threads() == 1 && processor_seconds().is_some()
 }
 
 fn sizes(simulation: &Simulation) -> Measured {
@@ -196,7 +222,6 @@ fn sizes(simulation: &Simulation) -> Measured {
     free.for_each(|block| (blocks, elements) = (blocks + 1, elements + covers.elements_of(block).len()));
     let moved = covers.cover_count() as f64 * COVER_BYTES / covers.element_count() as f64;
     Measured {
-        clock: if counts_processor() { "processor" } else { "wall" },
         blocks,
         elements,
         held_elements: covers.element_count() - elements,
@@ -211,21 +236,16 @@ fn sizes(simulation: &Simulation) -> Measured {
 }
 
 impl Measured {
-    fn take_windows(&mut self, mut windows: Vec<Window>, simulation: &Simulation, before: &Counters) {
-        windows.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let quickest = &windows[0];
+    fn take_windows(&mut self, windows: &Windows, simulation: &Simulation, before: &Counters) {
         let steps = self.steps as f64;
-        self.windows = windows.len();
-        self.spread = windows[windows.len() / 2].seconds / quickest.seconds;
-        self.ms_per_step = 1e3 * quickest.seconds / steps;
-        self.wall_ms_per_step = 1e3 * windows.iter().map(|w| w.wall).fold(f64::INFINITY, f64::min) / steps;
-        self.seconds_per_simulated_second = quickest.seconds / (steps * self.dt);
-        // Stages share the time that the thread had as they share wall time.
-        let scale = 1e3 / steps * quickest.seconds / quickest.wall;
-        let Seconds { search, elements, entrance, sweep, commit } = quickest.stages;
-        let claimed = search + elements + entrance + sweep + commit;
-        let [search, elements, entrance, sweep, commit, rest] =
-            [search, elements, entrance, sweep, commit, quickest.wall - claimed].map(|seconds| scale * seconds);
+        let mut wall = windows.wall.clone();
+        wall.sort_by(f64::total_cmp);
+        self.windows = wall.len();
+        self.wall_ms_per_step = 1e3 * wall[wall.len() / 2] / steps;
+        let [search, elements, entrance, sweep, commit, all] = windows.per_step().map(|seconds| 1e3 * seconds);
+        let rest = all - (search + elements + entrance + sweep + commit);
+        self.ms_per_step = all;
+        self.seconds_per_simulated_second = 1e-3 * all / self.dt;
         self.stages = StageMilliseconds { search, elements, entrance, sweep, commit, rest };
         let after = simulation.state().counters;
         let per_second = |count: f64, ms: f64| count / (1e-3 * ms);
@@ -236,6 +256,14 @@ impl Measured {
         self.step_elements_per_second = per_second(self.elements as f64, self.ms_per_step);
         self.searches = after.searches - before.searches;
         self.ms_per_search = (self.searches > 0).then(|| search * steps / self.searches as f64);
+    }
+
+    fn take_heaps(&mut self, simulation: &Simulation) {
+        let (slope, state, scratch) = (simulation.slope(), simulation.state(), simulation.scratch());
+        self.heap_bytes = [slope.bytes(), state.bytes(), scratch.bytes()];
+        let parts = state.memory().into_iter().chain(scratch.memory());
+        let of_contacts: usize = parts.filter(|part| OF_CONTACTS.contains(&part.0)).map(|part| part.1).sum();
+        self.bytes_per_contact = (self.contacts > 0).then(|| of_contacts as f64 / self.contacts as f64);
     }
 
     fn take_outputs(&mut self, simulation: &Simulation) -> Result<(), BenchError> {
@@ -249,7 +277,7 @@ impl Measured {
         files.iter().for_each(|file| drop(std::fs::remove_file(file)));
         written?;
         let clock = Instant::now();
-        self.state_bytes = encode(simulation.state(), "")?.len();
+        self.checkpoint_bytes = encode(simulation.state(), "")?.len();
         self.checkpoint_ms = 1e3 * clock.elapsed().as_secs_f64();
         Ok(())
     }

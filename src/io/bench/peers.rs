@@ -2,8 +2,9 @@
 //! (server EPYC, AVX-512, two virtual cores).
 
 /// Where the figures come from.
-pub const SOURCE: &str = "Figures of others and goals are those of the project's performance survey, taken on one core \
-of the same kind of\nmachine at another time: its clock drifts by a third, so that only ratios within one run are exact.";
+pub const SOURCE: &str = "Figures of others and goals are those of the project's performance survey, taken on one \
+core of the same kind\nof machine at another time: its clock drifts by a third, so that only ratios within one run \
+are exact.";
 
 /// Head of the table of elements.
 pub const ELEMENT_HEAD: [&str; 9] =

@@ -35,8 +35,8 @@ pub fn write_report(report: &BenchReport, origin: &Origin, directory: &Path) -> 
 /// The results as a page.
 pub fn markdown(report: &BenchReport, origin: &Origin) -> String {
     let mut text = String::from("# What standard models cost\n\n");
-    let _ = write!(text, "{}. `{}`. enmm {}", origin.label, origin.command, report.version);
-    let _ = writeln!(text, ", {} threads for the models.\n\n{INTRODUCTION}\n", report.threads);
+    let _ = writeln!(text, "{}; enmm {}, threads for the models: {}.\n", origin.label, report.version, report.threads);
+    let _ = writeln!(text, "    {}\n\n{INTRODUCTION}\n", origin.command);
     push_machine(&mut text, &report.machine);
     push_table(&mut text, "Steps", &STEP_HEAD, report.models.iter().map(step_row));
     push_table(&mut text, "Stages (ms per step)", &STAGE_HEAD, report.models.iter().map(stage_row));
@@ -50,8 +50,8 @@ pub fn markdown(report: &BenchReport, origin: &Origin) -> String {
 }
 
 const INTRODUCTION: &str = "A model is built, brought to a state (at rest, or in motion), and timed in windows of \
-steps that all\nstart from that state; figures are those of the quickest window. On one thread the clock is processor \
-time, which a busy\nmachine does not stretch. Elements of held rock, which no step touches, are not counted.";
+steps that all start\nfrom that state; each step counts with its quickest time, which other programs on the machine \
+hardly touch. Elements of\nheld rock, which no step touches, are not counted.";
 
 const STEP_HEAD: [&str; 12] = [
     "model",
@@ -69,12 +69,14 @@ const STEP_HEAD: [&str; 12] = [
 ];
 const STAGE_HEAD: [&str; 9] =
     ["model", "search", "elements", "entrance", "sweep", "commit", "rest", "searches per step", "ms per search"];
-const BUILD_HEAD: [&str; 9] = [
+const BUILD_HEAD: [&str; 11] = [
     "model",
     "built in s",
     "peak MB",
-    "bytes per element",
-    "state bytes per element",
+    "fixed bytes per element",
+    "state",
+    "buffers",
+    "bytes per contact",
     "moved bytes per element",
     "operations per element",
     "frame ms",
@@ -133,13 +135,15 @@ fn stage_row(found: &Measured) -> Vec<String> {
 }
 
 fn build_row(found: &Measured) -> Vec<String> {
-    let per_element = |bytes: f64| format!("{:.0}", bytes / (found.elements + found.held_elements) as f64);
+    let per_element = |bytes: usize| format!("{:.0}", bytes as f64 / (found.elements + found.held_elements) as f64);
     vec![
         found.model.clone(),
         digits(found.build_seconds),
         found.memory_peak.map_or_else(none, |peak| digits(peak as f64 / 1e6)),
-        found.memory_peak.map_or_else(none, |peak| per_element(peak as f64)),
-        per_element(found.state_bytes as f64),
+        per_element(found.heap_bytes[0]),
+        per_element(found.heap_bytes[1]),
+        per_element(found.heap_bytes[2]),
+        found.bytes_per_contact.map_or_else(none, digits),
         digits(found.bytes_per_element),
         digits(found.operations_per_element),
         digits(found.frame_ms),
@@ -233,7 +237,12 @@ mod tests {
         let continuum = Measured { model: "continuum_10000".to_owned(), ..Measured::default() };
         let report = BenchReport { version: "1".to_owned(), models: vec![found, continuum], ..BenchReport::default() };
         let text = markdown(&report, &Origin { label: "today".to_owned(), command: "enmm bench".to_owned() });
-        assert!(text.contains("| slope_500x4 | 503 |") && text.contains("today. `enmm bench`."), "{text}");
+        assert!(
+            text.contains("| slope_500x4 | 503 |")
+                && text.contains("today; enmm 1,")
+                && text.contains("\n    enmm bench\n"),
+            "{text}"
+        );
         assert!(text.contains("## Slopes beside others") && text.contains("## Elements beside others"), "{text}");
         let wide = |line: &&str| line.chars().count() > 120 && !line.starts_with('|');
         assert_eq!(text.lines().find(wide), None);

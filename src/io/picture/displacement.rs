@@ -92,32 +92,35 @@ fn exaggeration(largest: f64, elements: &Polygons) -> f64 {
     round_above(EXAGGERATED * size / largest)
 }
 
-/// The snapshot with every point displaced `factor` times as far.
+/// Elements and boundaries alone, with every point displaced `factor` times as far.
 fn exaggerated(snapshot: &Snapshot, factor: f64) -> Snapshot {
-    let mut shown = snapshot.clone();
+    let (elements, boundaries) = (snapshot.elements.clone(), snapshot.boundaries.clone());
+    let mut shown = Snapshot { elements, boundaries, ..Snapshot::default() };
     for (point, displacement) in shown.elements.points.iter_mut().zip(&snapshot.displacement) {
         *point += displacement * (factor - 1.0);
     }
     let displacement_at = corner_displacements(snapshot);
     for boundary in &mut shown.boundaries {
         for point in &mut boundary.loops.points {
-            let corner = displacement_at.get(&(boundary.block, place_key(point)));
-            *point += corner.copied().unwrap_or(boundary.displacement) * (factor - 1.0);
+            let corner = displacement_at.get(&(boundary.block, place_key(point))).copied().flatten();
+            *point += corner.unwrap_or(boundary.displacement) * (factor - 1.0);
         }
     }
     shown
 }
 
-/// Displacement (m) by block and place of the corners of its elements.
-fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Vector> {
-    let mut displacements = HashMap::with_capacity(snapshot.displacement.len());
+/// Displacement (m) by block and place of the points of its boundary that are corners of its elements.
+fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Option<Vector>> {
+    let points = snapshot.boundaries.iter().flat_map(|b| b.loops.points.iter().map(|p| (b.block, place_key(p))));
+    let mut displacements: HashMap<_, _> = points.map(|key| (key, None)).collect();
     for (k, &block) in snapshot.block.iter().enumerate().take(snapshot.elements.len()) {
         if corners(&snapshot.elements, k).is_none() {
             continue;
         }
         for i in snapshot.elements.range(k) {
-            if let Some(displacement) = snapshot.displacement.get(i) {
-                displacements.insert((block, place_key(&snapshot.elements.points[i])), *displacement);
+            let known = displacements.get_mut(&(block, place_key(&snapshot.elements.points[i])));
+            if let (Some(known), Some(displacement)) = (known, snapshot.displacement.get(i)) {
+                *known = Some(*displacement);
             }
         }
     }

@@ -75,8 +75,8 @@ impl<'a> Line<'a> {
 
     /// Finds where the bolt meets pieces of block boundaries; places that coincide become one.
     fn meet(&mut self) {
-        for piece in self.places.covers.outlines.pieces.iter().filter(|p| p.opposite == NONE || p.element < p.opposite)
-        {
+        let pieces = self.places.outlines.pieces.iter();
+        for piece in pieces.filter(|p| p.opposite == NONE || p.element < p.opposite) {
             let [a, b] = [piece.a, piece.b].map(|p| self.direction.perp(&(p - self.ends[0])));
             if a * b > 0.0 || a == b {
                 continue;

@@ -1,12 +1,13 @@
 //! Places that a case names, found on the built covers.
 
-use crate::cover::{BoundaryPiece, Covers, Weights};
+use crate::cover::{BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector, segment};
 use crate::model::case::Invalid;
 
 /// Finds places of a case on the covers of its model.
 pub(super) struct Places<'a> {
     pub covers: &'a Covers,
+    pub outlines: &'a Outlines,
     /// Distance (m) within which a place counts as on the rock or on a boundary.
     pub tolerance: f64,
 }
@@ -94,7 +95,7 @@ impl Places<'_> {
             p.opposite == NONE && [p.a, p.b].iter().all(|&q| segment::distance(q, a, b) <= self.tolerance)
         };
         let pieces: Vec<OuterPiece> =
-            self.covers.outlines.pieces.iter().filter(on_edge).map(|p| self.outer_piece(p)).collect();
+            self.outlines.pieces.iter().filter(on_edge).map(|p| self.outer_piece(p)).collect();
         if pieces.is_empty() {
             return Err(Invalid {
                 key: key.into(),

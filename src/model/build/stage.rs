@@ -11,9 +11,9 @@ pub enum BuildStage {
     Covers,
     /// Rocks, masses, supports.
     Masses,
-    /// Boundary of the blocks.
+    /// Boundary of the blocks, loads and ports.
     Boundary,
-    /// Loads, stresses, state at the start.
+    /// State at the start.
     Start,
 }
 
@@ -25,7 +25,7 @@ impl BuildStage {
             Self::Arrangement => "arrangement",
             Self::Covers => "elements and covers",
             Self::Masses => "masses and supports",
-            Self::Boundary => "boundary",
+            Self::Boundary => "boundary and loads",
             Self::Start => "state at the start",
         }
     }
@@ -34,11 +34,11 @@ impl BuildStage {
     pub fn share(self) -> f64 {
         match self {
             Self::Joints => 0.0,
-            Self::Arrangement => 0.02,
-            Self::Covers => 0.5,
-            Self::Masses => 0.8,
-            Self::Boundary => 0.85,
-            Self::Start => 0.95,
+            Self::Arrangement => 0.01,
+            Self::Covers => 0.35,
+            Self::Masses => 0.95,
+            Self::Boundary => 0.96,
+            Self::Start => 0.98,
         }
     }
 }

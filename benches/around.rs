@@ -1,0 +1,61 @@
+//! What stands around the steps: the build of a model, one element by itself, a saved state, a report, a frame.
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+
+use enmm::geometry::Vector;
+use enmm::io::bench::Model;
+use enmm::io::checkpoint::encode;
+use enmm::model::Simulation;
+
+const MODEL: Model = Model::Slope(500, 16);
+
+fn moving() -> Simulation {
+    let mut simulation = MODEL.build().unwrap_or_else(|e| panic!("{e}"));
+    MODEL.warm(&mut simulation).unwrap_or_else(|e| panic!("{e}"));
+    simulation
+}
+
+fn build(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("build");
+    group.sample_size(10).measurement_time(Duration::from_secs(4));
+    for model in [MODEL, Model::Continuum(10_000)] {
+        group.bench_function(model.to_string(), |bencher| bencher.iter(|| black_box(model.build().is_ok())));
+    }
+}
+
+/// Internal forces of all elements one after the other, by the formula that the step's kernels must agree with.
+fn elements(criterion: &mut Criterion) {
+    let simulation = moving();
+    let (slope, state) = (simulation.slope(), simulation.state());
+    let covers = &slope.covers;
+    let forces = |e: usize| -> Vector {
+        let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
+        let at = slope.deformation(e, &state.displacement);
+        at.forces(gradients, covers.element_area[e], slope.rock_of(e), &slope.pre_stress_of(e))[0]
+    };
+    let mut group = criterion.benchmark_group("elements");
+    group.throughput(Throughput::Elements(covers.element_count() as u64));
+    group.bench_function("one by one", |bencher| {
+        bencher.iter(|| (0..covers.element_count()).map(forces).sum::<Vector>());
+    });
+}
+
+fn outputs(criterion: &mut Criterion) {
+    let mut simulation = moving();
+    let mut group = criterion.benchmark_group("outputs");
+    group.sample_size(20);
+    let start = simulation.state().clone();
+    group.bench_function("saved state", |bencher| bencher.iter(|| black_box(simulation.state().clone())));
+    let mut copy = start.clone();
+    group.bench_function("state copied into another", |bencher| bencher.iter(|| copy.copy_from(black_box(&start))));
+    group.bench_function("checkpoint", |bencher| bencher.iter(|| encode(simulation.state(), "").map(|b| b.len())));
+    group.bench_function("snapshot", |bencher| bencher.iter(|| black_box(simulation.snapshot())));
+    group.bench_function("energies", |bencher| bencher.iter(|| black_box(simulation.report())));
+    group.bench_function("restore", |bencher| bencher.iter(|| simulation.restore(start.clone())));
+}
+
+criterion_group!(benches, build, elements, outputs);
+criterion_main!(benches);
