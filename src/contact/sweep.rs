@@ -165,7 +165,7 @@ impl OpenClose {
         if options.serial || count < part::GRAIN {
             self.rows.iter_mut().zip(&mut self.watch).zip(&self.sequence).for_each(fill);
         } else {
-            let rows = self.rows.par_iter_mut().with_min_len(part::GRAIN / 4);
+            let rows = self.rows.par_iter_mut().with_min_len(part::GRAIN / 2);
             rows.zip(&mut self.watch).zip(&self.sequence).for_each(fill);
         }
         self.own.clear();

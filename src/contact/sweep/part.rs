@@ -6,7 +6,7 @@ use super::body::Ground;
 use super::row::{Row, Watch, larger};
 
 /// Rows below which both halves of a part stay in one thread.
-pub const GRAIN: usize = 4096;
+pub const GRAIN: usize = 2048;
 
 /// Change of a force, over what counts as settled, from which its bodies have moved.
 const MOVES: f64 = 0.3;

@@ -121,8 +121,8 @@ impl Row {
             (normal, limit) = self.follow(normal, &contacts[self.contact as usize]);
         }
         self.asked = [normal, shear];
-        let bears = normal > self.open;
-        let (normal, limit) = (if bears { normal } else { 0.0 }, if bears { limit } else { 0.0 });
+        let bears = if normal > self.open { 1.0 } else { 0.0 };
+        let (normal, limit) = (normal * bears, limit * bears);
         let force = [normal, smaller(larger(shear, -limit), limit)];
         let step = [force[0] - self.force[0], force[1] - self.force[1]];
         if step != [0.0; 2] {
