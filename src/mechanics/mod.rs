@@ -1,14 +1,17 @@
 //! Mass, strain, stress, elastic law, body and boundary forces, energies: pure functions over slices.
 //! Knows nothing of contact or files.
 
+pub mod block_lanes;
 mod column;
 mod consistent;
 mod cover_matrix;
 mod elasticity;
+pub mod element_lanes;
 mod internal;
 mod load;
 mod mass;
 mod motion;
+pub mod patch;
 mod plasticity;
 pub mod pressure;
 mod record;
@@ -20,6 +23,9 @@ pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::Metric;
-pub use motion::{BlockMotion, Damping, Kick, damping_work, kick, kinetic_energy, rigid_motion, rigid_velocity};
+pub use motion::{
+    BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
+};
+pub use patch::{Patch, Patches};
 pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
 pub use record::Record;

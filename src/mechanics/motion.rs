@@ -1,8 +1,9 @@
-//! Velocities of one block: the explicit kick by forces, damping, energy and momentum in the block's metric.
+//! Velocities of one block: what forces and damping do to it as a whole, energy and momentum in the block's metric.
 
 use crate::geometry::{Point, Vector};
 
 use super::Metric;
+use super::block_lanes::{BlockSums, Common, Reference, WorkSums};
 
 /// J90·v: turned by +90°.
 fn turned(v: Vector) -> Vector {
@@ -37,35 +38,29 @@ struct Sums {
 }
 
 /// One block's slices of the cover arrays, and the block's place in the metric.
-pub struct Kick<'a> {
+pub struct BlockCovers<'a> {
     /// Masses of all covers and blocks.
     pub metric: &'a Metric,
     /// Block.
     pub block: usize,
     /// Covers of the block in the arrays of the metric.
-    pub covers: std::ops::Range<usize>,
+    pub range: std::ops::Range<usize>,
     /// Star positions (m), all covers.
     pub star: &'a [Point],
     /// Displacements (m), all covers.
     pub displacement: &'a [Vector],
     /// Velocities before the step (m/s), all covers.
     pub velocity: &'a [Vector],
-    /// Gravity and body loads (m/s²).
-    pub acceleration: Vector,
-    /// Damping of this step.
-    pub damping: Damping,
-    /// Step by which forces act (s).
-    pub dt: f64,
 }
 
-impl Kick<'_> {
+impl BlockCovers<'_> {
     fn place(&self, i: usize) -> Point {
         self.star[i] + self.displacement[i]
     }
 
     /// Centroid of the block in its metric.
     fn centre(&self) -> Point {
-        let first: Point = self.covers.clone().map(|i| self.place(i) * self.metric.inertial[i]).sum();
+        let first: Point = self.range.clone().map(|i| self.place(i) * self.metric.inertial[i]).sum();
         first / self.metric.total[self.block]
     }
 
@@ -73,9 +68,9 @@ impl Kick<'_> {
     fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let metric = self.metric;
         let total = metric.total[self.block];
-        let velocity = self.covers.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
+        let velocity = self.range.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
         let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
-        for i in self.covers.clone() {
+        for i in self.range.clone() {
             let (m, d, u) = (metric.mass[i], self.place(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
@@ -87,23 +82,10 @@ impl Kick<'_> {
         Sums { velocity, linear, moment, polar }
     }
 
-    /// C at the current places: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
-    fn correction(&self, centre: Point) -> f64 {
-        let (metric, block) = (self.metric, self.block);
-        let (mut first, mut polar) = (Vector::zeros(), 0.0);
-        for i in self.covers.clone() {
-            let d = self.place(i) - centre;
-            first += d * metric.mass[i];
-            polar += metric.mass[i] * d.norm_squared();
-        }
-        polar -= first.norm_squared() / metric.total[block];
-        (metric.polar_lumped[block] / metric.polar[block] - 1.0) / polar
-    }
-
     /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
     fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
         let sum: f64 =
-            self.covers.clone().map(|i| self.metric.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity))).sum();
+            self.range.clone().map(|i| self.metric.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity))).sum();
         sum - of.linear.dot(&with.linear) / self.metric.total[self.block]
     }
 
@@ -113,105 +95,145 @@ impl Kick<'_> {
 }
 
 /// Kinetic energy (J/m) of a block in its metric (Eq. 5).
-pub fn kinetic_energy(kick: &Kick) -> f64 {
-    let (metric, block) = (kick.metric, kick.block);
-    let sums = kick.sums(kick.velocity, kick.centre());
+pub fn kinetic_energy(covers: &BlockCovers) -> f64 {
+    let (metric, block) = (covers.metric, covers.block);
+    let sums = covers.sums(covers.velocity, covers.centre());
     let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
     0.5 * metric.total[block] * sums.velocity.norm_squared()
-        + 0.5 * kick.product(kick.velocity, kick.velocity, &sums, &sums)
+        + 0.5 * covers.product(covers.velocity, covers.velocity, &sums, &sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
 
-/// Work (J/m) that damping took in a step that ended with velocities `after`: the lost momentum times the mean of the
-/// velocities before and after (Eq. 18).
-pub fn damping_work(kick: &Kick, after: &[Vector]) -> f64 {
-    let (factor, whole) = match kick.damping {
-        Damping::Deformation(factor) => (factor, 0.0),
-        Damping::Mass(factor) => (factor, 1.0),
-    };
-    if factor >= 1.0 {
-        return 0.0;
-    }
-    let (metric, block, centre) = (kick.metric, kick.block, kick.centre());
-    let [old, new] = [kick.velocity, after].map(|field| kick.sums(field, centre));
-    let turning = |with: &Sums| old.moment * with.moment / old.polar;
-    let share = metric.polar[block] / metric.polar_lumped[block];
-    let rigid = |with: &Sums| metric.total[block] * old.velocity.dot(&with.velocity) + share * turning(with);
-    let deforming = |field: &[Vector], with: &Sums| kick.product(kick.velocity, field, &old, with) - turning(with);
-    let both = deforming(kick.velocity, &old) + deforming(after, &new) + whole * (rigid(&old) + rigid(&new));
-    0.5 * (1.0 - factor) * both
-}
-
 /// Rigid motion of a block in its metric: centroid (m), its velocity (m/s) and the spin (rad/s).
-pub fn rigid_motion(kick: &Kick) -> (Point, Vector, f64) {
-    let centre = kick.centre();
-    let sums = kick.sums(kick.velocity, centre);
-    (centre, sums.velocity, kick.spin(&sums))
+pub fn rigid_motion(covers: &BlockCovers) -> (Point, Vector, f64) {
+    let centre = covers.centre();
+    let sums = covers.sums(covers.velocity, centre);
+    (centre, sums.velocity, covers.spin(&sums))
 }
 
 /// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
-pub fn rigid_velocity(kick: &Kick, velocity: Vector, spin: f64, out: &mut [Vector]) {
-    let centre = kick.centre();
-    for (k, i) in kick.covers.clone().enumerate() {
-        out[k] = velocity + turned(kick.place(i) - centre) * spin;
+pub fn rigid_velocity(covers: &BlockCovers, velocity: Vector, spin: f64, out: &mut [Vector]) {
+    let centre = covers.centre();
+    for (k, i) in covers.range.clone().enumerate() {
+        out[k] = velocity + turned(covers.place(i) - centre) * spin;
     }
 }
 
-/// Damps the block's velocity and kicks it by `force` (N/m, this block's covers only); writes the `damped` and the
-/// `predicted` velocities (Eqs. 3, 10–12).
-pub fn kick(kick: &Kick, force: &[Vector], predicted: &mut [Vector], damped: &mut [Vector]) -> BlockMotion {
-    let centre = kick.centre();
-    damp(kick, centre, predicted);
-    damped.copy_from_slice(predicted);
-    let mut spin = 0.0;
-    if kick.metric.is_free(kick.block) {
-        spin = kick.correction(centre);
-        push_free(kick, centre, spin, force, predicted);
-    } else {
-        for (k, i) in kick.covers.clone().enumerate() {
-            let force = force[k] + kick.acceleration * kick.metric.row_sum[i];
-            predicted[k] += force.component_mul(&kick.metric.inverse[i]) * kick.dt;
-        }
-    }
-    BlockMotion { centre, spin }
-}
-
-fn damp(kick: &Kick, centre: Point, predicted: &mut [Vector]) {
-    let own = &kick.velocity[kick.covers.clone()];
-    match kick.damping {
+/// Writes the velocities (m/s) that damping leaves (Eqs. 11, 12).
+pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
+    let own = &covers.velocity[covers.range.clone()];
+    match damping {
         Damping::Deformation(factor) if factor < 1.0 => {
-            let sums = kick.sums(kick.velocity, centre);
+            let centre = covers.centre();
+            let sums = covers.sums(covers.velocity, centre);
             let spin = sums.moment / sums.polar;
-            for (k, i) in kick.covers.clone().enumerate() {
-                let rigid = sums.velocity + turned(kick.place(i) - centre) * spin;
-                let held = kick.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
-                predicted[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
+            for (k, i) in covers.range.clone().enumerate() {
+                let rigid = sums.velocity + turned(covers.place(i) - centre) * spin;
+                let held = covers.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
+                damped[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
         }
-        Damping::Deformation(_) => predicted.copy_from_slice(own),
+        Damping::Deformation(_) => damped.copy_from_slice(own),
         Damping::Mass(factor) => {
-            for (new, old) in predicted.iter_mut().zip(own) {
+            for (new, old) in damped.iter_mut().zip(own) {
                 *new = old * factor;
             }
         }
     }
 }
 
-/// Adds dt·a of a free block (Eq. 3).
-fn push_free(kick: &Kick, centre: Point, spin: f64, force: &[Vector], predicted: &mut [Vector]) {
-    let metric = kick.metric;
-    let share = metric.inverse_total[kick.block];
-    let total: Vector = force.iter().sum();
-    let (mut torque, mut mean) = (0.0, Vector::zeros());
-    for (k, i) in kick.covers.clone().enumerate() {
-        torque += (kick.place(i) - centre).perp(&force[k]);
-        let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];
-        mean += own * (metric.inertial[i] * share);
+/// How a block moves at the start of a step, in its metric; places and velocities count from the reference.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockStart {
+    /// What the rest counts from.
+    pub from: Reference,
+    /// Centroid (m).
+    centre: Vector,
+    /// Velocity of the centroid (m/s).
+    velocity: Vector,
+    /// Σmq (kg).
+    first: Vector,
+    /// Σmw (kg/s).
+    momentum: Vector,
+    /// Moment of momentum (kg·m/s) and polar inertia (kg·m) of the lumped masses about their own centroid.
+    moment: f64,
+    polar: f64,
+}
+
+impl BlockStart {
+    /// The start of a block from its sums.
+    pub fn new(metric: &Metric, block: usize, from: Reference, sums: &BlockSums) -> Self {
+        let total = metric.total[block];
+        Self {
+            from,
+            centre: sums.inertial_place / total,
+            velocity: sums.inertial_velocity / total,
+            first: sums.first,
+            momentum: sums.momentum,
+            moment: sums.moment - sums.first.perp(&sums.momentum) / total,
+            polar: sums.polar - sums.first.norm_squared() / total,
+        }
     }
-    let common = total * share - mean + kick.acceleration;
-    let spin = spin * torque;
-    for (k, i) in kick.covers.clone().enumerate() {
-        let own = (force[k] - total * (metric.inertial[i] * share)) / metric.mass[i];
-        predicted[k] += (own + common + turned(kick.place(i) - centre) * spin) * kick.dt;
+
+    /// What contacts see of the block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
+    pub fn motion(&self, metric: &Metric, block: usize) -> BlockMotion {
+        let centre = self.from.place + self.centre;
+        if !metric.is_free(block) {
+            return BlockMotion { centre, spin: 0.0 };
+        }
+        BlockMotion { centre, spin: (metric.polar_lumped[block] / metric.polar[block] - 1.0) / self.polar }
     }
+
+    /// What damping and the forces on a block give to all its covers in common (Eqs. 3, 11).
+    pub fn common(&self, metric: &Metric, block: usize, sums: &BlockSums, step: &KickStep) -> Common {
+        let mut common = Common::default();
+        if let Damping::Deformation(factor) = step.damping
+            && factor < 1.0
+        {
+            let share = 1.0 - factor;
+            let rigid = self.from.velocity + self.velocity;
+            common = Common::about(rigid * share, self.moment / self.polar * share, self.centre);
+        }
+        if metric.is_free(block) {
+            let share = metric.inverse_total[block];
+            let torque = sums.torque - self.centre.perp(&sums.force);
+            let mean = (sums.weighted - sums.force * (metric.square[block] * share)) * share;
+            let pushed = sums.force * share - mean + step.acceleration;
+            let spin = self.motion(metric, block).spin * torque;
+            let by_force = Common::about(pushed * step.dt, spin * step.dt, self.centre);
+            common.velocity += by_force.velocity;
+            common.spin += by_force.spin;
+            common.weighted = sums.force * (-share * step.dt);
+        }
+        common
+    }
+
+    /// Work (J/m) that damping took in the step: the lost momentum times the mean of the velocities before and after
+    /// it (Eq. 18).
+    pub fn damping_work(&self, metric: &Metric, block: usize, sums: &WorkSums, damping: Damping) -> f64 {
+        let (factor, whole) = match damping {
+            Damping::Deformation(factor) => (factor, 0.0),
+            Damping::Mass(factor) => (factor, 1.0),
+        };
+        let total = metric.total[block];
+        let moment = sums.moment - self.first.perp(&sums.momentum) / total;
+        let turning = self.moment * moment / self.polar;
+        let deforming = sums.product - self.momentum.dot(&sums.momentum) / total - turning;
+        let own = self.from.velocity + self.velocity;
+        let both = self.from.velocity * 2.0 + sums.inertial / total;
+        let share = metric.polar[block] / metric.polar_lumped[block];
+        let rigid = total * own.dot(&both) + share * turning;
+        0.5 * (1.0 - factor) * (deforming + whole * rigid)
+    }
+}
+
+/// What every block shares in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KickStep {
+    /// Gravity and body loads (m/s²).
+    pub acceleration: Vector,
+    /// Damping; that of deformation is the block's own.
+    pub damping: Damping,
+    /// Time (s) over which forces act.
+    pub dt: f64,
 }

@@ -15,10 +15,10 @@ use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance,
 use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
-    ColumnState, Elasticity, Load, LoadAction, Metric, PreStress, StressField, TimeTable, critical_dt,
+    ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Port, Slope, State, Water};
 
 use place::Places;
 
@@ -96,20 +96,17 @@ fn slope(
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
-    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
-    let loads = loads(case, &places, &faces)?;
+    tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
-    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
-    let critical = rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min);
+    let (loads, ports, water) = from_outside(case, &places, &boundary)?;
     let slope = Slope {
+        patches: Patches::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
-        rocks,
-        element_rock,
         metric,
         laws,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
@@ -127,13 +124,15 @@ fn slope(
         water,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
-        dt: internal_step(case, critical),
-        critical_dt: critical,
+        dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
+        critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
         tolerance: case.solver.contact_tolerance,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,
         failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
+        rocks,
+        element_rock,
         covers,
     };
     Ok((slope, bolt_warnings))
@@ -145,6 +144,21 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))
+}
+
+/// Loads, ports and water.
+fn from_outside(
+    case: &Case,
+    places: &Places,
+    boundary: &Boundary,
+) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
+    let faces = ports::Faces { boundary, tolerance: places.tolerance };
+    Ok((loads(case, places, &faces)?, ports::ports(case, places, &faces)?, ports::water(case, &faces)?))
+}
+
+/// Shortest stable step (s) of all rocks.
+fn shortest_critical_dt(covers: &Covers, rocks: &[Elasticity]) -> f64 {
+    rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min)
 }
 
 /// Distance (m) within which a place of the case counts as on the rock.

@@ -41,6 +41,7 @@ impl Slope {
         vec![
             ("elements", elements(&self.covers) + self.element_rock.bytes()),
             ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
+            ("patches", self.patches.bytes()),
             ("covers", covers(&self.covers)),
             ("boundary", boundary(&self.boundary)),
             ("masses", metric(&self.metric)),
@@ -79,11 +80,11 @@ impl Scratch {
 
     /// Bytes of the buffers, by part.
     pub fn memory(&self) -> Vec<Part> {
-        let fields: [&dyn Array; 5] = [&self.load_force, &self.force, &self.predicted, &self.damped, &self.increment];
+        let fields: [&dyn Array; 4] = [&self.load_force, &self.predicted, &self.damped, &self.increment];
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", metric(&self.metric)),
-            ("blocks", sum(&[&self.motion, &self.push, &self.touching])),
+            ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
             ("places", self.place.bytes() + self.frames.bytes()),
             ("judged pairs", self.admitted.bytes()),
             ("search", self.search.bytes()),

@@ -2,7 +2,8 @@
 
 use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{BlockMotion, Metric, YieldSurface};
+use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
+use crate::mechanics::{BlockMotion, BlockStart, Metric, YieldSurface};
 
 use super::ImplicitScratch;
 
@@ -13,14 +14,18 @@ pub struct Scratch {
     pub metric: Metric,
     /// Forces of loads on covers (N/m).
     pub load_force: Vec<Vector>,
-    /// Internal and load forces on covers (N/m).
-    pub force: Vec<Vector>,
-    /// Velocities without contact forces (m/s).
+    /// Whether anything pushes on covers; otherwise `load_force` is zero.
+    pub is_loaded: bool,
+    /// Velocities without contact forces (m/s); between steps those before the last one.
     pub predicted: Vec<Vector>,
-    /// Velocities after damping and before any force (m/s).
+    /// Velocities after damping and before any force (m/s): only where a report or the start of a stage asks.
     pub damped: Vec<Vector>,
-    /// Centroid and damped energy of each block.
+    /// Centroid and spin of each block.
     pub motion: Vec<BlockMotion>,
+    /// How each block moved at the start of the step.
+    pub start: Vec<BlockStart>,
+    /// Sums over patches.
+    pub sums: Vec<PatchSums>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
     /// Boundary edges and nodes at those places.
@@ -61,6 +66,25 @@ pub struct Scratch {
     pub serial: bool,
     /// Seconds spent in each part of the step.
     pub seconds: Seconds,
+}
+
+/// Sums over the covers of a patch.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PatchSums {
+    /// Part of a block: at the start of the step.
+    pub block: BlockSums,
+    /// Part of a block: what the whole block has in common.
+    pub common: Common,
+    /// Part of a block: at the end of the step.
+    pub works: WorkSums,
+    /// Whole blocks: work of damping (J/m).
+    pub damping: f64,
+    /// Σ(∫ρw)(v + v') of velocities before and after the step (kg/s).
+    pub row_sum: Vector,
+    /// Square of the largest speed (m²/s²), first at the start and then at the end of the step.
+    pub fastest: f64,
+    /// Sum of the squares of speeds at the end of the step (m²/s²): not finite when any is not.
+    pub squares: f64,
 }
 
 /// Wall time (s) by part of the step.

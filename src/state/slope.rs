@@ -3,7 +3,9 @@
 use crate::contact::{BoltSegment, Boundary, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, PreStress, Record, StressField};
+use crate::mechanics::{
+    Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, Patches, PreStress, Record, StressField,
+};
 
 use super::Implicit;
 
@@ -119,6 +121,8 @@ pub struct FreeFieldPoint {
 pub struct Slope {
     /// Covers, elements and blocks.
     pub covers: Covers,
+    /// Covers and elements as a step passes over them.
+    pub patches: Patches,
     /// Rocks.
     pub rocks: Vec<Elasticity>,
     /// Rock of each element.

@@ -1,8 +1,8 @@
 //! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
 
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, pressure};
-use crate::state::{MotionKind, Port, Slope, State, TimedRecord};
+use crate::mechanics::{self, LoadAction, pressure};
+use crate::state::{Drive, MotionKind, Port, Slope, State, TimedRecord};
 
 use super::{Regime, quiet};
 
@@ -49,6 +49,22 @@ pub fn acceleration(slope: &Slope, state: &State, t: f64) -> Vector {
     let body: Vector = slope.loads.iter().map(|load| load.body(t)).sum();
     let share = state.drive.share(t);
     state.drive.gravity(share) + body - state.drive.base_acceleration(share)
+}
+
+/// Whether [`push_forces`] may add anything but zero.
+pub fn pushes(slope: &Slope, state: &State) -> bool {
+    let Drive { from, to, .. } = &state.drive;
+    let any = |values: &[Vector]| values.iter().any(|v| *v != Vector::zeros());
+    let any_scalar = |values: &[f64]| values.iter().any(|v| *v != 0.0);
+    slope.loads.iter().any(|load| !matches!(load.action, LoadAction::Body(_)))
+        || slope.water.is_some()
+        || quiet::frozen(slope, state).next().is_some()
+        || [from, to].into_iter().any(|inputs| {
+            any(&inputs.port_traction)
+                || any_scalar(&inputs.port_pressure)
+                || any(&inputs.block_force)
+                || any_scalar(&inputs.block_moment)
+        })
 }
 
 /// Adds to `force` (N/m per cover) what loads and inputs push with at time `t` (s); inputs and water act by their share

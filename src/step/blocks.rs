@@ -1,178 +1,538 @@
-//! The pass over blocks: element forces and kick of one block after the other, in parallel over groups of blocks.
+//! Passes over patches: forces and kick of every block while its patch is in the cache, and the end of a step; in
+//! parallel over runs of patches. No sum goes over more than a patch, or over the parts of one block in their order.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
+use enmm_lanes::{Kernel, Lanes, Table, dispatch};
+
+use crate::contact::BlockPush;
 use crate::geometry::Vector;
-use crate::mechanics::{self, BlockMotion, Damping, Deformation, Kick};
-use crate::state::{Scratch, Slope, State};
+use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Wants, WorkSums};
+use crate::mechanics::{
+    BlockCovers, BlockMotion, BlockStart, Damping, KickStep, Metric, Patch, Patches, element_lanes,
+};
+use crate::state::{PatchSums, Slope, State};
 
 use super::DECAY_MAX;
 
-/// Covers below which a group of blocks is not split between threads.
-const GRAIN: usize = 2048;
+/// Covers below which a run of patches is not split between threads.
+const GRAIN: usize = 4096;
 
-/// Covers below which a group of blocks is not split between threads.
+/// Covers below which a run of patches is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
-    if serial { usize::MAX } else { GRAIN }
+    if serial || rayon::current_num_threads() == 1 { usize::MAX } else { GRAIN }
 }
 
-/// What every block of a pass shares.
+thread_local! {
+    /// Displacements and forces of the patch in hand.
+    static TABLES: RefCell<[Table; 2]> = RefCell::default();
+}
+
+/// Output slices that can be cut between patches.
+trait Cut: Sized + Send {
+    /// The outputs of some covers, blocks and patches, and the rest.
+    fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self);
+}
+
+/// Work on a run of patches with its outputs.
+trait Work: Sync {
+    type Out<'o>: Cut;
+    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, tables: &mut [Table; 2]);
+}
+
+/// A run of patches in the hands of one thread.
+struct Run<'a, 'o, W: Work> {
+    work: &'a W,
+    patches: &'a Patches,
+    range: Range<usize>,
+    out: W::Out<'o>,
+}
+
+impl<W: Work> Run<'_, '_, W> {
+    fn cut(self, at: usize) -> (Self, Self) {
+        let Self { work, patches, range, out } = self;
+        let (start, end) = (patches.get(range.start), patches.get(at));
+        let covers = end.covers.start - start.covers.start;
+        let (left, right) = out.cut(covers, end.blocks.start - start.blocks.start, at - range.start);
+        let run = |range, out| Self { work, patches, range, out };
+        (run(range.start..at, left), run(at..range.end, right))
+    }
+
+    /// Splits the run between threads down to `grain` covers.
+    fn share(self, grain: usize) {
+        let Range { start, end } = self.range;
+        let covers = self.patches.get(end - 1).covers.end - self.patches.get(start).covers.start;
+        if covers > grain && end - start > 1 {
+            let (left, right) = self.cut(start + (end - start) / 2);
+            rayon::join(|| left.share(grain), || right.share(grain));
+        } else {
+            TABLES.with_borrow_mut(|tables| dispatch(InHand { run: self, tables }));
+        }
+    }
+}
+
+/// A run with the tables of its thread.
+struct InHand<'a, 'o, 't, W: Work> {
+    run: Run<'a, 'o, W>,
+    tables: &'t mut [Table; 2],
+}
+
+impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { run: mut rest, tables } = self;
+        while rest.range.len() > 1 {
+            let next = rest.range.start + 1;
+            let (first, others) = rest.cut(next);
+            first.work.patch(lanes, first.range.start, first.out, tables);
+            rest = others;
+        }
+        rest.work.patch(lanes, rest.range.start, rest.out, tables);
+    }
+}
+
+/// What every block of a step shares.
 pub(super) struct Pass<'a> {
     pub slope: &'a Slope,
     pub state: &'a State,
+    pub metric: &'a Metric,
     pub acceleration: Vector,
-    /// Covers below which a group of blocks is not split between threads.
+    /// Covers below which a run of patches is not split between threads.
     pub grain: usize,
     /// Deformation damping carries ξ·dt here; each block turns it into its own factor.
     pub damping: Damping,
+    /// Time (s) over which forces act.
     pub dt: f64,
+    /// Forces of loads on covers (N/m); empty when nothing pushes.
+    pub load_force: &'a [Vector],
 }
 
-/// The output slices of a group of blocks.
-struct Group<'a> {
-    blocks: Range<usize>,
-    force: &'a mut [Vector],
-    predicted: &'a mut [Vector],
-    damped: &'a mut [Vector],
-    motion: &'a mut [BlockMotion],
-}
+impl Pass<'_> {
+    fn step(&self, block: usize) -> KickStep {
+        KickStep {
+            acceleration: self.acceleration,
+            damping: block_damping(self.slope, self.damping, block),
+            dt: self.dt,
+        }
+    }
 
-impl<'a> Group<'a> {
-    fn split(self, block: usize, cover: usize) -> (Self, Self) {
-        let (force, force_rest) = self.force.split_at_mut(cover);
-        let (predicted, predicted_rest) = self.predicted.split_at_mut(cover);
-        let (damped, damped_rest) = self.damped.split_at_mut(cover);
-        let (motion, motion_rest) = self.motion.split_at_mut(block - self.blocks.start);
-        let first = Group { blocks: self.blocks.start..block, force, predicted, damped, motion };
-        let second = Group {
-            blocks: block..self.blocks.end,
-            force: force_rest,
-            predicted: predicted_rest,
-            damped: damped_rest,
-            motion: motion_rest,
+    fn span(&self, covers: Range<usize>) -> Span<'_> {
+        Span {
+            star: &self.slope.covers.star_position[covers.clone()],
+            displacement: &self.state.displacement[covers.clone()],
+            velocity: &self.state.velocity[covers.clone()],
+            mass: &self.metric.mass[covers.clone()],
+            inertial: &self.metric.inertial[covers],
+        }
+    }
+
+    fn reference(&self, block: usize) -> Reference {
+        self.span(self.slope.covers.covers_of(block)).reference()
+    }
+
+    /// How the covers of a block are written.
+    fn own(&self, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+        let held = !self.metric.is_free(block);
+        let (factor, masked) = match step.damping {
+            Damping::Deformation(factor) => (factor, factor < 1.0),
+            Damping::Mass(factor) => (factor, false),
         };
-        (first, second)
+        Own {
+            factor,
+            dt: self.dt,
+            acceleration: self.acceleration,
+            held: held.then(|| (&self.metric.row_sum[covers.clone()], &self.metric.inverse[covers])),
+            masked,
+        }
+    }
+
+    /// Adds the element forces of a patch to the table of its covers (Eq. 7).
+    #[inline(always)]
+    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, [displacement, force]: &mut [Table; 2]) {
+        let (slope, u) = (self.slope, &self.state.displacement);
+        let patches = &slope.patches;
+        let (own, halo) = (patch.covers.len(), patches.halo(patch));
+        let local = displacement.first_mut(own + halo.len());
+        local[..own].copy_from_slice(&u[patch.covers.clone()]);
+        for (pair, &cover) in local[own..].iter_mut().zip(halo) {
+            *pair = u[cover as usize];
+        }
+        let local = force.first_mut(own + halo.len());
+        local.fill(Vector::zeros());
+        if let Some(load) = self.load_force.get(patch.covers.clone()) {
+            local[..own].copy_from_slice(load);
+        }
+        for batch in patches.batches(patch) {
+            let rock = &slope.rocks[batch.rock as usize];
+            let g = &slope.covers.gradients[batch.set as usize];
+            let elements = (patches.groups(batch), patches.pre_stress(batch));
+            element_lanes::push_forces(lanes, elements, (rock, g), displacement, force);
+        }
+        if !self.state.plastic.is_empty() {
+            self.relieve(patch, force);
+        }
+    }
+
+    /// Adds what plastic strain takes from the forces of the elements of a patch.
+    #[inline(never)]
+    fn relieve(&self, patch: &Patch, force: &mut Table) {
+        let (slope, patches) = (self.slope, &self.slope.patches);
+        for batch in patches.batches(patch) {
+            let Some(strength) = &slope.strengths[batch.rock as usize] else { continue };
+            let g = &slope.covers.gradients[batch.set as usize];
+            for (e, slots) in patches.elements(batch) {
+                let plastic = &self.state.plastic[e];
+                if *plastic == [0.0; 4] {
+                    continue;
+                }
+                let deformation = slope.deformation(e, &self.state.displacement);
+                let relief = strength.forces(&deformation, g, slope.covers.element_area[e], plastic);
+                slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
+            }
+        }
+    }
+}
+
+/// Output slices of a kick.
+struct Kicked<'o> {
+    predicted: &'o mut [Vector],
+    motion: &'o mut [BlockMotion],
+    start: &'o mut [BlockStart],
+    sums: &'o mut [PatchSums],
+}
+
+impl Cut for Kicked<'_> {
+    fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self) {
+        let (predicted, predicted_rest) = self.predicted.split_at_mut(covers);
+        let (motion, motion_rest) = self.motion.split_at_mut(blocks);
+        let (start, start_rest) = self.start.split_at_mut(blocks);
+        let (sums, sums_rest) = self.sums.split_at_mut(patches);
+        let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
+        (Kicked { predicted, motion, start, sums }, rest)
+    }
+}
+
+impl Work for Pass<'_> {
+    type Out<'o> = Kicked<'o>;
+
+    /// Forces and kick of the blocks of a patch; of a part of a block all but what is common to the block.
+    #[inline(always)]
+    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Kicked, tables: &mut [Table; 2]) {
+        let patch = self.slope.patches.get(patch);
+        let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
+        sums.fastest = 0.0;
+        let fixed = match patch.part_of {
+            Some(block) => self.metric.fixed[block as usize],
+            None => patch.blocks.clone().all(|b| self.metric.fixed[b]),
+        };
+        if fixed {
+            let squares = self.state.velocity[patch.covers.clone()].iter().map(|v| v.norm_squared());
+            sums.fastest = squares.fold(0.0, f64::max);
+            predicted.fill(Vector::zeros());
+            motion.fill(BlockMotion::default());
+            return;
+        }
+        self.push_elements(lanes, patch, tables);
+        let force = tables[1].first(patch.covers.len());
+        if let Some(block) = patch.part_of {
+            self.kick_part(lanes, (patch, block as usize), force, predicted, sums);
+            return;
+        }
+        for (k, block) in patch.blocks.clone().enumerate() {
+            let covers = self.slope.covers.covers_of(block);
+            let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
+            let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
+            (motion[k], start[k]) = self.kick_block(lanes, block, force, predicted, &mut sums.fastest);
+        }
     }
 }
 
 impl Pass<'_> {
-    /// Fills forces, predicted velocities and block motions of the scratch.
-    pub fn run(&self, scratch: &mut Scratch) {
-        scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let Scratch { metric, force, predicted, damped, motion, load_force, .. } = scratch;
-        force.copy_from_slice(load_force);
-        self.group(metric, Group { blocks: 0..motion.len(), force, predicted, damped, motion });
+    #[inline(always)]
+    fn kick_block<L: Lanes>(
+        &self,
+        lanes: L,
+        block: usize,
+        force: &[Vector],
+        predicted: &mut [Vector],
+        fastest: &mut f64,
+    ) -> (BlockMotion, BlockStart) {
+        let covers = self.slope.covers.covers_of(block);
+        if self.metric.fixed[block] {
+            let squares = self.state.velocity[covers].iter().map(|v| v.norm_squared());
+            *fastest = squares.fold(*fastest, f64::max);
+            predicted.fill(Vector::zeros());
+            return Default::default();
+        }
+        let (span, step) = (self.span(covers.clone()), self.step(block));
+        let from = span.reference();
+        let sums = span.sums(lanes, &from, force);
+        let start = BlockStart::new(self.metric, block, from, &sums);
+        let common = start.common(self.metric, block, &sums, &step);
+        let own = self.own(block, covers, &step);
+        *fastest = fastest.max(span.kick(lanes, &from, &own, &common, (force, predicted)));
+        (start.motion(self.metric, block), start)
     }
 
-    fn group(&self, metric: &mechanics::Metric, group: Group) {
-        let covers = &self.slope.covers;
-        let first = covers.block_covers[group.blocks.start] as usize;
-        if group.force.len() > self.grain && group.blocks.len() > 1 {
-            let half = (first + group.force.len() / 2) as u32;
-            let starts = &covers.block_covers[group.blocks.start + 1..group.blocks.end];
-            let block = group.blocks.start + 1 + starts.partition_point(|&c| c < half).min(starts.len() - 1);
-            let (left, right) = group.split(block, covers.block_covers[block] as usize - first);
-            rayon::join(|| self.group(metric, left), || self.group(metric, right));
+    #[inline(always)]
+    fn kick_part<L: Lanes>(
+        &self,
+        lanes: L,
+        (patch, block): (&Patch, usize),
+        force: &[Vector],
+        predicted: &mut [Vector],
+        sums: &mut PatchSums,
+    ) {
+        let (span, step, from) = (self.span(patch.covers.clone()), self.step(block), self.reference(block));
+        let own = self.own(block, patch.covers.clone(), &step);
+        sums.block = span.sums(lanes, &from, force);
+        sums.fastest = span.kick(lanes, &from, &own, &Common::default(), (force, predicted));
+    }
+
+    /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
+    pub fn kick(&self, out: &mut KickOut) {
+        let patches = &self.slope.patches;
+        let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };
+        Run { work: self, patches, range: 0..patches.len(), out: kicked }.share(self.grain);
+        let mut is_cut = false;
+        for first in patches.cut_blocks() {
+            is_cut |= self.join_parts(first, out);
+        }
+        if is_cut {
+            let spread = Spread { pass: self, sums: out.sums, start: out.start };
+            Run { work: &spread, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
+        }
+    }
+
+    /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
+    fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
+        let patches = &self.slope.patches;
+        let block = patches.get(first).blocks.start;
+        if self.metric.fixed[block] {
+            return false;
+        }
+        let mut sums = out.sums[first].block;
+        let parts = patches.parts(first);
+        parts.clone().skip(1).for_each(|part| sums += out.sums[part].block);
+        let start = BlockStart::new(self.metric, block, self.reference(block), &sums);
+        let common = start.common(self.metric, block, &sums, &self.step(block));
+        parts.for_each(|part| out.sums[part].common = common);
+        (out.motion[block], out.start[block]) = (start.motion(self.metric, block), start);
+        common != Common::default()
+    }
+}
+
+/// What a kick fills.
+pub(super) struct KickOut<'a> {
+    pub predicted: &'a mut [Vector],
+    pub motion: &'a mut [BlockMotion],
+    pub start: &'a mut [BlockStart],
+    pub sums: &'a mut [PatchSums],
+}
+
+/// Adds what is common to a block to its parts.
+struct Spread<'a> {
+    pass: &'a Pass<'a>,
+    sums: &'a [PatchSums],
+    start: &'a [BlockStart],
+}
+
+struct Predicted<'o>(&'o mut [Vector]);
+
+impl Cut for Predicted<'_> {
+    fn cut(self, covers: usize, _: usize, _: usize) -> (Self, Self) {
+        let (left, right) = self.0.split_at_mut(covers);
+        (Self(left), Self(right))
+    }
+}
+
+impl Work for Spread<'_> {
+    type Out<'o> = Predicted<'o>;
+
+    #[inline(always)]
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &mut [Table; 2]) {
+        let Pass { slope, metric, .. } = self.pass;
+        let patch = slope.patches.get(k);
+        let Some(block) = patch.part_of.map(|b| b as usize).filter(|b| !metric.fixed[*b]) else { return };
+        let common = &self.sums[k].common;
+        if *common == Common::default() {
             return;
         }
-        for (k, block) in group.blocks.enumerate() {
-            let range = covers.covers_of(block);
-            let local = range.start - first..range.end - first;
-            group.motion[k] = self.block(
-                metric,
-                block,
-                &mut group.force[local.clone()],
-                &mut group.predicted[local.clone()],
-                &mut group.damped[local],
-            );
-        }
+        let inverse = (!metric.is_free(block)).then(|| &metric.inverse[patch.covers.clone()]);
+        let from = &self.start[block].from;
+        self.pass.span(patch.covers.clone()).add_common(lanes, from, common, inverse, predicted);
     }
+}
 
-    fn block(
-        &self,
-        metric: &mechanics::Metric,
-        block: usize,
-        force: &mut [Vector],
-        predicted: &mut [Vector],
-        damped: &mut [Vector],
-    ) -> BlockMotion {
-        if metric.fixed[block] {
-            predicted.fill(Vector::zeros());
-            damped.fill(Vector::zeros());
-            return BlockMotion::default();
-        }
-        self.push_elements(block, force);
-        mechanics::kick(&self.kick(metric, block), force, predicted, damped)
+/// The end of a step: contacts' part of the velocities, new places, sums for the works.
+pub(super) struct Finish<'a> {
+    pub slope: &'a Slope,
+    pub metric: &'a Metric,
+    /// Velocities before the step (m/s).
+    pub before: &'a [Vector],
+    pub motion: &'a [BlockMotion],
+    pub start: &'a [BlockStart],
+    pub push: &'a [BlockPush],
+    /// Velocity increments of covers by contacts and supports (m/s).
+    pub increment: &'a [Vector],
+    pub damping: Damping,
+    /// Time (s) by which places move.
+    pub dt: f64,
+    /// Whether the work of body loads is asked for.
+    pub is_loaded: bool,
+    pub grain: usize,
+}
+
+/// Output slices of the end of a step.
+pub(super) struct Finished<'o> {
+    pub velocity: &'o mut [Vector],
+    pub displacement: &'o mut [Vector],
+    pub sums: &'o mut [PatchSums],
+}
+
+impl Cut for Finished<'_> {
+    fn cut(self, covers: usize, _: usize, patches: usize) -> (Self, Self) {
+        let (velocity, velocity_rest) = self.velocity.split_at_mut(covers);
+        let (displacement, displacement_rest) = self.displacement.split_at_mut(covers);
+        let (sums, sums_rest) = self.sums.split_at_mut(patches);
+        let rest = Finished { velocity: velocity_rest, displacement: displacement_rest, sums: sums_rest };
+        (Finished { velocity, displacement, sums }, rest)
     }
+}
 
-    fn kick<'a>(&'a self, metric: &'a mechanics::Metric, block: usize) -> Kick<'a> {
-        Kick {
-            acceleration: self.acceleration,
-            damping: self.block_damping(block),
-            dt: self.dt,
-            ..resting(self.slope, metric, &self.state.displacement, &self.state.velocity, block)
-        }
-    }
+impl Work for Finish<'_> {
+    type Out<'o> = Finished<'o>;
 
-    /// Work (J/m) that damping took from all blocks in a step that ended with the predicted velocities of the scratch.
-    pub fn damping_work(&self, scratch: &Scratch) -> f64 {
-        (0..scratch.motion.len())
-            .filter(|&b| !scratch.metric.fixed[b])
-            .map(|b| mechanics::damping_work(&self.kick(&scratch.metric, b), &scratch.predicted))
-            .sum()
-    }
-
-    /// Adds the element forces of a block to its covers (Eq. 7).
-    fn push_elements(&self, block: usize, force: &mut [Vector]) {
-        let (slope, u) = (self.slope, &self.state.displacement);
-        let covers = &slope.covers;
-        let first = covers.block_covers[block];
-        for e in covers.elements_of(block) {
-            let ids = covers.element_covers[e];
-            let g = &covers.gradients[covers.element_triangle[e].set as usize];
-            let deformation = Deformation::new(ids.map(|i| u[i as usize]), g);
-            let area = covers.element_area[e];
-            let mut forces = deformation.forces(g, area, slope.rock_of(e), &slope.pre_stress_of(e));
-            if let Some((strength, plastic)) = self.state.plastic.get(e).and_then(|p| Some((slope.strength_of(e)?, p)))
-            {
-                let relief = strength.forces(&deformation, g, area, plastic);
-                forces.iter_mut().zip(relief).for_each(|(f, r)| *f += r);
+    #[inline(always)]
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &mut [Table; 2]) {
+        let patch = self.slope.patches.get(k);
+        let Finished { velocity, displacement, sums: [sums] } = out else { return };
+        (sums.works, sums.row_sum, sums.damping) = Default::default();
+        (sums.fastest, sums.squares) = (0.0, 0.0);
+        let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
+        for block in blocks.filter(|b| !self.metric.fixed[*b]) {
+            let own = self.slope.covers.covers_of(block);
+            let covers = own.start.max(patch.covers.start)..own.end.min(patch.covers.end);
+            let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
+            let mut end = End {
+                star: &self.slope.covers.star_position[covers.clone()],
+                mass: &self.metric.mass[covers.clone()],
+                inertial: &self.metric.inertial[covers.clone()],
+                row_sum: &self.metric.row_sum[covers.clone()],
+                before: &self.before[covers.clone()],
+                increment: &self.increment[covers],
+                velocity: &mut velocity[local.clone()],
+                displacement: &mut displacement[local],
+            };
+            let (works, [fastest, squares]) = self.block(lanes, block, &mut end);
+            (sums.fastest, sums.squares) = (sums.fastest.max(fastest), sums.squares + squares);
+            sums.row_sum += works.row_sum;
+            if patch.part_of.is_some() {
+                sums.works = works;
+            } else {
+                sums.damping += self.damping_work(block, &works);
             }
-            for (i, f) in ids.into_iter().zip(forces) {
-                force[(i - first) as usize] += f;
-            }
-        }
-    }
-
-    /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion, or the common one.
-    fn block_damping(&self, block: usize) -> Damping {
-        match self.damping {
-            Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
-                Damping::Deformation((-(ratio_dt * self.slope.block_frequency[block]).min(DECAY_MAX)).exp())
-            }
-            Damping::Deformation(_) => Damping::Deformation(1.0),
-            mass => mass,
         }
     }
 }
 
-/// One block's slices with neither damping nor force: for its energy and momentum.
-pub(super) fn resting<'a>(
+impl Finish<'_> {
+    #[inline(always)]
+    fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2]) {
+        let (metric, push, from) = (self.metric, &self.push[block], &self.start[block].from);
+        let is_pushed = *push != BlockPush::default() && metric.is_free(block);
+        let mut common = Common::default();
+        if is_pushed {
+            let share = metric.inverse_total[block];
+            let velocity = (push.impulse * (1.0 + metric.square[block] * share) - push.weighted) * share;
+            let centre = self.motion[block].centre - from.place;
+            common = Common::about(velocity, metric.spin[block] * push.moment, centre);
+            common.weighted = push.impulse * -share;
+        }
+        let is_damped = is_damping(self.block_damping(block));
+        let bits = end.increment.iter().fold(0, |bits, v| bits | v.x.to_bits() | v.y.to_bits());
+        let wants = Wants { dt: self.dt, is_pushed, is_touched: bits != 0, is_damped, is_loaded: self.is_loaded };
+        end.finish(lanes, from, &common, wants)
+    }
+
+    fn block_damping(&self, block: usize) -> Damping {
+        block_damping(self.slope, self.damping, block)
+    }
+
+    fn damping_work(&self, block: usize, works: &WorkSums) -> f64 {
+        let damping = self.block_damping(block);
+        if !is_damping(damping) {
+            return 0.0;
+        }
+        self.start[block].damping_work(self.metric, block, works, damping)
+    }
+
+    /// Ends the step of all blocks.
+    pub fn run(&self, out: Finished) -> Totals {
+        let patches = &self.slope.patches;
+        let Finished { velocity, displacement, sums } = out;
+        let out = Finished { velocity, displacement, sums: &mut *sums };
+        Run { work: self, patches, range: 0..patches.len(), out }.share(self.grain);
+        let mut totals = Totals::default();
+        for sums in &*sums {
+            totals.damping += sums.damping;
+            totals.row_sum += sums.row_sum;
+            totals.fastest = totals.fastest.max(sums.fastest);
+            totals.squares += sums.squares;
+        }
+        for first in patches.cut_blocks() {
+            let mut works = WorkSums::default();
+            patches.parts(first).for_each(|part| works += sums[part].works);
+            let block = patches.get(first).blocks.start;
+            if !self.metric.fixed[block] {
+                totals.damping += self.damping_work(block, &works);
+            }
+        }
+        totals
+    }
+}
+
+/// Sums over all covers at the end of a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Totals {
+    /// Work that damping took (J/m).
+    pub damping: f64,
+    /// Σ(∫ρw)(v + v') of velocities before and after the step (kg/s).
+    pub row_sum: Vector,
+    /// Square of the largest speed (m²/s²).
+    pub fastest: f64,
+    /// Sum of the squares of speeds (m²/s²): not finite when any is not.
+    pub squares: f64,
+}
+
+/// Whether damping takes anything.
+fn is_damping(damping: Damping) -> bool {
+    let (Damping::Deformation(factor) | Damping::Mass(factor)) = damping;
+    factor < 1.0
+}
+
+/// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion, or the common one.
+pub(super) fn block_damping(slope: &Slope, damping: Damping, block: usize) -> Damping {
+    match damping {
+        Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
+            Damping::Deformation((-(ratio_dt * slope.block_frequency[block]).min(DECAY_MAX)).exp())
+        }
+        Damping::Deformation(_) => Damping::Deformation(1.0),
+        mass => mass,
+    }
+}
+
+/// One block's slices: for its energy, momentum and damping.
+pub(super) fn block_covers<'a>(
     slope: &'a Slope,
-    metric: &'a mechanics::Metric,
+    metric: &'a Metric,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
     block: usize,
-) -> Kick<'a> {
-    Kick {
-        metric,
-        block,
-        covers: slope.covers.covers_of(block),
-        star: &slope.covers.star_position,
-        displacement,
-        velocity,
-        acceleration: Vector::zeros(),
-        damping: Damping::Deformation(1.0),
-        dt: 0.0,
-    }
+) -> BlockCovers<'a> {
+    let range = slope.covers.covers_of(block);
+    BlockCovers { metric, block, range, star: &slope.covers.star_position, displacement, velocity }
 }

@@ -2,11 +2,13 @@
 
 use std::time::Instant;
 
-use crate::contact::{self, ContactState};
+use crate::contact::ContactState;
 use crate::geometry::Vector;
-use crate::state::Ledger;
+use crate::mechanics;
+use crate::state::{Ledger, Scratch};
 
-use super::{Regime, Step, StepReport, report};
+use super::blocks::{self, Finish, Finished, Totals};
+use super::{Regime, Step, StepReport, guard, report};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
@@ -15,24 +17,24 @@ impl Step<'_> {
     /// Ends a sub-step of `dt` (s); returns the report of its start when one is wanted.
     pub(super) fn commit(&mut self, dt: f64) -> StepReport {
         let clock = Instant::now();
-        self.finish_velocities();
+        let totals = self.finish(dt);
         self.measure_contacts();
-        let works = self.works(dt);
+        let works = self.works(dt, &totals);
         let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
         self.record_contacts(dt);
         self.commit_columns(dt);
-        let state = &mut *self.state;
-        for (u, v) in state.displacement.iter_mut().zip(&self.scratch.predicted) {
-            *u += v * dt;
+        if self.report {
+            self.drift(dt);
         }
+        let state = &mut *self.state;
         for row in &self.scratch.bolts {
             let segment = &self.slope.bolts[row.segment as usize];
             let bolt = &mut state.bolts[row.segment as usize];
             let length = segment.span(&self.slope.covers.star_position, &state.displacement).norm();
             *bolt = segment.after(bolt, length, row.force);
         }
-        state.velocity.copy_from_slice(&self.scratch.predicted);
+        std::mem::swap(&mut state.velocity, &mut self.scratch.predicted);
         state.ledger.add_works(&works, 1.0);
         state.dt_last = dt;
         self.time += dt;
@@ -40,31 +42,56 @@ impl Step<'_> {
         report
     }
 
-    /// Adds what the impulses of all contacts give to every cover (Eq. 17).
-    fn finish_velocities(&mut self) {
-        let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let metric = &scratch.metric;
-        for (block, push) in scratch.push.iter().enumerate() {
-            let range = slope.covers.covers_of(block);
-            for i in range.clone() {
-                scratch.predicted[i] += scratch.increment[i];
-            }
-            if *push == contact::BlockPush::default() || !metric.is_free(block) {
-                continue;
-            }
-            let share = metric.inverse_total[block];
-            let common = (push.impulse * (1.0 + metric.square[block] * share) - push.weighted) * share;
-            let spin = metric.spin[block] * push.moment;
-            for i in range {
-                let arm = slope.covers.star_position[i] + self.state.displacement[i] - scratch.motion[block].centre;
-                let own = push.impulse * (metric.inertial[i] / metric.mass[i] * share);
-                scratch.predicted[i] += common - own + Vector::new(-arm.y, arm.x) * spin;
+    /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers for `dt` (s) unless a
+    /// report wants the places before.
+    fn finish(&mut self, dt: f64) -> Totals {
+        let is_loaded = self.extra(dt) != Vector::zeros();
+        let (slope, state) = (self.slope, &mut *self.state);
+        let Scratch { metric, predicted, increment, motion, start, push, sums, serial, .. } = &mut *self.scratch;
+        let finish = Finish {
+            slope,
+            metric,
+            before: &state.velocity,
+            motion,
+            start,
+            push,
+            increment,
+            damping: self.damping,
+            dt: if self.report { 0.0 } else { dt },
+            is_loaded,
+            grain: blocks::grain(*serial),
+        };
+        let displacement = &mut state.displacement;
+        let totals = finish.run(Finished { velocity: predicted, displacement, sums });
+        self.is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(slope).powi(2);
+        totals
+    }
+
+    /// Moves the covers with the final velocities after a report.
+    fn drift(&mut self, dt: f64) {
+        for (u, v) in self.state.displacement.iter_mut().zip(&self.scratch.predicted) {
+            *u += v * dt;
+        }
+    }
+
+    /// Velocities after damping and before any force.
+    fn fill_damped(&mut self) {
+        let (slope, state) = (self.slope, &*self.state);
+        let Scratch { metric, damped, .. } = &mut *self.scratch;
+        for block in 0..slope.covers.block_count() {
+            let covers = blocks::block_covers(slope, metric, &state.displacement, &state.velocity, block);
+            let out = &mut damped[slope.covers.covers_of(block)];
+            if metric.fixed[block] {
+                out.fill(Vector::zeros());
+            } else {
+                mechanics::damp(&covers, blocks::block_damping(slope, self.damping, block), out);
             }
         }
     }
 
     /// Energies at the start of this sub-step and the unbalanced ratio.
-    fn report(&self, dt: f64, works: &Ledger) -> StepReport {
+    fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
+        self.fill_damped();
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.metric, &state.displacement, velocity);
         let mut ledger = state.ledger;
@@ -107,6 +134,7 @@ impl Step<'_> {
         if self.state.stage_step > 0 || !matches!(self.regime, Regime::Static { ramp: 0.0 }) {
             return;
         }
+        self.fill_damped();
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let scratch = &*self.scratch;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {

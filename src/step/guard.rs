@@ -1,6 +1,7 @@
 //! Checks after every step: a run that has gone wrong stops with block, place and cause.
 
 use crate::geometry::Point;
+use crate::state::Slope;
 
 use super::Step;
 
@@ -45,6 +46,11 @@ pub struct StepError {
     pub failure: Failure,
 }
 
+/// Speed (m/s) beyond which a cover has run away: the fastest wave of any rock.
+pub(super) fn speed_limit(slope: &Slope) -> f64 {
+    slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max)
+}
+
 impl Step<'_> {
     /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
     pub(super) fn guard(&self) -> Result<(), StepError> {
@@ -53,17 +59,8 @@ impl Step<'_> {
             let (place, failure) = (slope.covers.star_position[0], Failure::Singular);
             return Err(StepError { block: 0, place, time: self.time, failure });
         }
-        let limit = slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max);
-        let square = limit * limit;
-        if let Some(i) =
-            self.state.velocity.iter().position(|v| v.norm_squared().partial_cmp(&square).is_none_or(|o| o.is_gt()))
-        {
-            let speed = self.state.velocity[i].norm();
-            let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
-            let block = slope.covers.cover_block[i];
-            let place = slope.covers.star_position[i] + self.state.displacement[i];
-            let place = if place.iter().all(|x| x.is_finite()) { place } else { slope.covers.star_position[i] };
-            return Err(StepError { block, place, time: self.time, failure });
+        if !self.is_sound {
+            self.guard_speeds()?;
         }
         let limit = slope.penetration_limit;
         match self.scratch.contacts.iter().find(|c| c.loaded_penetration() > limit) {
@@ -75,5 +72,23 @@ impl Step<'_> {
             }),
             None => Ok(()),
         }
+    }
+
+    /// Fails when a velocity is not finite or beyond the wave speed.
+    fn guard_speeds(&self) -> Result<(), StepError> {
+        let slope = self.slope;
+        let limit = speed_limit(slope);
+        let square = limit * limit;
+        if let Some(i) =
+            self.state.velocity.iter().position(|v| v.norm_squared().partial_cmp(&square).is_none_or(|o| o.is_gt()))
+        {
+            let speed = self.state.velocity[i].norm();
+            let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
+            let block = slope.covers.cover_block[i];
+            let place = slope.covers.star_position[i] + self.state.displacement[i];
+            let place = if place.iter().all(|x| x.is_finite()) { place } else { slope.covers.star_position[i] };
+            return Err(StepError { block, place, time: self.time, failure });
+        }
+        Ok(())
     }
 }

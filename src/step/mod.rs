@@ -120,13 +120,7 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) ->
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
-pub fn each_contact(
-    slope: &Slope,
-    regime: Regime,
-    state: &State,
-    serial: bool,
-    see: &mut dyn FnMut(&VertexEdge),
-) {
+pub fn each_contact(slope: &Slope, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
     let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
     prepare(slope, &state, &mut scratch);
     let dt = slope.dt - state.part;
@@ -159,6 +153,8 @@ struct Step<'a> {
     time: f64,
     report: bool,
     damping: Damping,
+    /// Whether all speeds were found finite and below the limit.
+    is_sound: bool,
     /// Whether the matrix of an implicit step was not positive definite however short the sub-step.
     singular: bool,
 }
@@ -166,7 +162,17 @@ struct Step<'a> {
 impl<'a> Step<'a> {
     fn new(slope: &'a Slope, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
         let time = state.stage_start + state.stage_step as f64 * slope.dt + state.part;
-        Self { slope, regime, state, scratch, time, report: false, damping: Damping::Deformation(0.0), singular: false }
+        Self {
+            slope,
+            regime,
+            state,
+            scratch,
+            time,
+            report: false,
+            damping: Damping::Deformation(0.0),
+            is_sound: false,
+            singular: false,
+        }
     }
 }
 

@@ -4,7 +4,9 @@ use std::time::Instant;
 
 use crate::geometry::Vector;
 use crate::mechanics::Damping;
+use crate::state::Scratch;
 
+use super::blocks::KickOut;
 use super::{DECAY_MAX, Regime, Step, applied, blocks, ramp, yielding};
 
 impl Step<'_> {
@@ -19,25 +21,41 @@ impl Step<'_> {
     pub(super) fn predict(&mut self, dt: f64) {
         let clock = Instant::now();
         let kick_dt = 0.5 * (self.state.dt_last + dt);
-        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
-        let ramp = ramp(self.regime, self.time - state.stage_start);
-        scratch.load_force.fill(Vector::zeros());
-        applied::push_forces(slope, state, self.time, ramp, &mut scratch.load_force);
+        self.load();
         self.damping = self.damping_of(dt);
+        let (acceleration, grain, is_loaded) =
+            (self.acceleration(dt), blocks::grain(self.scratch.serial), self.scratch.is_loaded);
+        let Scratch { metric, predicted, motion, start, sums, load_force, .. } = &mut *self.scratch;
         let pass = blocks::Pass {
-            slope,
+            slope: self.slope,
             state: &*self.state,
-            acceleration: self.acceleration(dt),
+            metric,
+            acceleration,
             damping: self.damping,
             dt: kick_dt,
-            grain: blocks::grain(self.scratch.serial),
+            grain,
+            load_force: if is_loaded { load_force } else { &[] },
         };
-        pass.run(self.scratch);
+        pass.kick(&mut KickOut { predicted, motion, start, sums });
+        self.scratch.speed_max = self.scratch.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
         self.kick_columns(dt);
         for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
             *spin = motion.spin;
         }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+    }
+
+    /// Forces of loads, when there are any.
+    fn load(&mut self) {
+        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let was_loaded = std::mem::replace(&mut scratch.is_loaded, applied::pushes(slope, state));
+        if was_loaded || scratch.is_loaded {
+            scratch.load_force.fill(Vector::zeros());
+        }
+        if scratch.is_loaded {
+            let ramp = ramp(self.regime, self.time - state.stage_start);
+            applied::push_forces(slope, state, self.time, ramp, &mut scratch.load_force);
+        }
     }
 
     /// Acceleration of all rock (m/s²) in a step of `dt` (s).

@@ -10,17 +10,13 @@ use super::{Regime, applied, implicit, quiet};
 /// and a restored state.
 pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     let covers = slope.covers.cover_count();
-    for field in [
-        &mut scratch.load_force,
-        &mut scratch.force,
-        &mut scratch.predicted,
-        &mut scratch.damped,
-        &mut scratch.increment,
-    ] {
+    for field in [&mut scratch.load_force, &mut scratch.predicted, &mut scratch.damped, &mut scratch.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
     scratch.motion.resize(slope.covers.block_count(), Default::default());
+    scratch.start.resize(slope.covers.block_count(), Default::default());
+    scratch.sums.resize(slope.patches.len(), Default::default());
     scratch.push.resize(slope.covers.block_count(), Default::default());
     scratch.columns.clear();
     scratch.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));

@@ -5,7 +5,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, Metric};
 use crate::state::{Ledger, Scratch, Slope, State};
 
-use super::blocks::resting;
+use super::blocks::block_covers;
 use super::{implicit, quiet};
 
 /// A step as seen from outside; energies hold at the step's start.
@@ -36,7 +36,7 @@ pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], v
     }
     (0..slope.covers.block_count())
         .filter(|&b| !metric.fixed[b])
-        .map(|b| mechanics::kinetic_energy(&resting(slope, metric, displacement, velocity, b)))
+        .map(|b| mechanics::kinetic_energy(&block_covers(slope, metric, displacement, velocity, b)))
         .sum()
 }
 
@@ -94,8 +94,8 @@ pub fn energies(slope: &Slope, state: &State, metric: &Metric) -> Ledger {
 pub fn momentum(slope: &Slope, state: &State, metric: &Metric) -> (Vector, f64) {
     let (mut linear, mut angular) = (Vector::zeros(), 0.0);
     for block in (0..slope.covers.block_count()).filter(|&b| metric.is_free(b)) {
-        let kick = resting(slope, metric, &state.displacement, &state.velocity, block);
-        let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&kick);
+        let covers = block_covers(slope, metric, &state.displacement, &state.velocity, block);
+        let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&covers);
         linear += velocity * metric.total[block];
         angular += metric.total[block] * centre.perp(&velocity) + metric.polar[block] * spin;
     }
@@ -104,8 +104,8 @@ pub fn momentum(slope: &Slope, state: &State, metric: &Metric) -> (Vector, f64) 
 
 /// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
 pub fn block_motion(slope: &Slope, state: &State, metric: &Metric, block: usize) -> (Point, Vector, f64, f64) {
-    let kick = resting(slope, metric, &state.displacement, &state.velocity, block);
-    let (centre, velocity, spin) = mechanics::rigid_motion(&kick);
-    let kinetic = if metric.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&kick) };
+    let covers = block_covers(slope, metric, &state.displacement, &state.velocity, block);
+    let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
+    let kinetic = if metric.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
     (centre, velocity, spin, kinetic)
 }

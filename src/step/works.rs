@@ -4,15 +4,28 @@ use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
-use super::{Step, blocks};
+use super::Step;
+use super::blocks::Totals;
 
 impl Step<'_> {
+    /// Acceleration (m/s²) beyond gravity in a step of `dt` (s): its work is external.
+    pub(super) fn extra(&self, dt: f64) -> Vector {
+        self.acceleration(dt) - self.slope.gravity
+    }
+
+    /// Loads times velocities before and after the step (W/m).
+    fn load_power(&self) -> f64 {
+        if !self.scratch.is_loaded {
+            return 0.0;
+        }
+        let velocities = self.state.velocity.iter().zip(&self.scratch.predicted);
+        self.scratch.load_force.iter().zip(velocities).map(|(f, (before, after))| f.dot(&(before + after))).sum()
+    }
+
     /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
-    pub(super) fn works(&self, dt: f64) -> Ledger {
+    pub(super) fn works(&self, dt: f64, finished: &Totals) -> Ledger {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let pass =
-            blocks::Pass { slope, state, acceleration: Vector::zeros(), damping: self.damping, dt, grain: usize::MAX };
-        let mut works = Ledger { damping: pass.damping_work(scratch), ..Ledger::default() };
+        let mut works = Ledger { damping: finished.damping, ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
         for (contact, [before, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
             let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
@@ -34,11 +47,7 @@ impl Step<'_> {
             let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&scratch.predicted);
             works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick_dt);
         }
-        let extra = self.acceleration(dt) - slope.gravity;
-        for i in 0..state.velocity.len() {
-            let force = scratch.load_force[i] + extra * slope.metric.row_sum[i];
-            works.external_work += force.dot(&(state.velocity[i] + scratch.predicted[i])) * (0.5 * kick_dt);
-        }
+        works.external_work += 0.5 * kick_dt * (self.extra(dt).dot(&finished.row_sum) + self.load_power());
         works
     }
 }

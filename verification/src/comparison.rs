@@ -141,7 +141,7 @@ impl Run {
 fn bytes(simulation: &Simulation) -> usize {
     let scratch = simulation.scratch();
     let [matrix, factor] = scratch.implicit.matrix.bytes();
-    let vectors = [&scratch.load_force, &scratch.force, &scratch.predicted, &scratch.damped, &scratch.increment];
+    let vectors = [&scratch.load_force, &scratch.predicted, &scratch.damped, &scratch.increment];
     let implicit = [&scratch.implicit.moved, &scratch.implicit.offset, &scratch.implicit.applied];
     let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
     let state = 2 * simulation.state().displacement.len();

@@ -1,0 +1,189 @@
+//! Lanes on AVX2: two registers of four.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Eight, Kernel, LANES, Lanes, Pair, Slot, Table};
+
+/// Proof that the processor has AVX2: only [`run`] makes one.
+#[derive(Clone, Copy)]
+pub struct Avx2(());
+
+/// Eight values; only an [`Avx2`] makes them, so that one at hand proves AVX2 as well.
+#[derive(Clone, Copy)]
+pub struct Registers([__m256d; 2]);
+
+/// Runs a kernel with lanes of this kind.
+///
+/// # Safety
+/// The processor must have AVX2.
+#[target_feature(enable = "avx2")]
+pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx2(()))
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for Registers {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: registers at hand prove AVX2.
+                Self(unsafe { [$intrinsic(self.0[0], other.0[0]), $intrinsic(self.0[1], other.0[1])] })
+            }
+        }
+    };
+}
+
+operator!(Add, add, _mm256_add_pd);
+operator!(Sub, sub, _mm256_sub_pd);
+operator!(Mul, mul, _mm256_mul_pd);
+operator!(Div, div, _mm256_div_pd);
+
+impl Neg for Registers {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: registers at hand prove AVX2.
+        Self(unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            [_mm256_xor_pd(self.0[0], sign), _mm256_xor_pd(self.0[1], sign)]
+        })
+    }
+}
+
+impl Eight for Registers {}
+
+/// x and y of the pairs 0–1 and 2–3.
+#[inline(always)]
+fn split(_: Avx2, low: __m256d, high: __m256d) -> [__m256d; 2] {
+    // SAFETY: the token proves AVX2.
+    unsafe {
+        let x = _mm256_unpacklo_pd(low, high);
+        let y = _mm256_unpackhi_pd(low, high);
+        [_mm256_permute4x64_pd::<0b11_01_10_00>(x), _mm256_permute4x64_pd::<0b11_01_10_00>(y)]
+    }
+}
+
+/// The pairs 0–1 and 2–3 of x and y.
+#[inline(always)]
+fn join(_: Avx2, x: __m256d, y: __m256d) -> [__m256d; 2] {
+    // SAFETY: the token proves AVX2.
+    unsafe {
+        let (low, high) = (_mm256_unpacklo_pd(x, y), _mm256_unpackhi_pd(x, y));
+        [_mm256_permute2f128_pd::<0x20>(low, high), _mm256_permute2f128_pd::<0x31>(low, high)]
+    }
+}
+
+/// Two pairs of a table.
+#[inline(always)]
+fn two(_: Avx2, table: &Table, slots: [Slot; 2]) -> __m256d {
+    // SAFETY: the token proves AVX2; each address is that of a pair, two f64 in a row.
+    unsafe {
+        let first = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[0])));
+        _mm256_insertf128_pd::<1>(first, _mm_loadu_pd(table.values(slots[1])))
+    }
+}
+
+/// Adds to two pairs of a table, one after the other.
+#[inline(always)]
+fn add_two(_: Avx2, table: &mut Table, slots: [Slot; 2], lanes: __m256d) {
+    // SAFETY: the token proves AVX2; each address is that of a pair, two f64 in a row.
+    unsafe {
+        let parts = [_mm256_castpd256_pd128(lanes), _mm256_extractf128_pd::<1>(lanes)];
+        for (slot, part) in slots.into_iter().zip(parts) {
+            let at = table.values_mut(slot);
+            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), part));
+        }
+    }
+}
+
+impl Lanes for Avx2 {
+    type F = Registers;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_set1_pd(value); 2] })
+    }
+
+    #[inline(always)]
+    fn load(self, values: &[f64; LANES]) -> Registers {
+        let at = values.as_ptr();
+        // SAFETY: the token proves AVX2; the array holds eight values.
+        Registers(unsafe { [_mm256_loadu_pd(at), _mm256_loadu_pd(at.add(4))] })
+    }
+
+    #[inline(always)]
+    fn store(self, lanes: Registers, out: &mut [f64; LANES]) {
+        let at = out.as_mut_ptr();
+        // SAFETY: the token proves AVX2; the array holds eight values.
+        unsafe {
+            _mm256_storeu_pd(at, lanes.0[0]);
+            _mm256_storeu_pd(at.add(4), lanes.0[1]);
+        }
+    }
+
+    #[inline(always)]
+    fn load_pairs(self, pairs: &[Pair; LANES]) -> [Registers; 2] {
+        let at = pairs.as_ptr().cast::<f64>();
+        // SAFETY: the token proves AVX2; eight pairs are sixteen f64 in a row.
+        let [a, b, c, d] = unsafe {
+            [_mm256_loadu_pd(at), _mm256_loadu_pd(at.add(4)), _mm256_loadu_pd(at.add(8)), _mm256_loadu_pd(at.add(12))]
+        };
+        let ([x, y], [z, w]) = (split(self, a, b), split(self, c, d));
+        [Registers([x, z]), Registers([y, w])]
+    }
+
+    #[inline(always)]
+    fn store_pairs(self, [x, y]: [Registers; 2], out: &mut [Pair; LANES]) {
+        let at = out.as_mut_ptr().cast::<f64>();
+        for k in 0..2 {
+            let [low, high] = join(self, x.0[k], y.0[k]);
+            // SAFETY: the token proves AVX2; eight pairs are sixteen f64 in a row.
+            unsafe {
+                _mm256_storeu_pd(at.add(8 * k), low);
+                _mm256_storeu_pd(at.add(8 * k + 4), high);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self, lanes: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_sqrt_pd(lanes.0[0]), _mm256_sqrt_pd(lanes.0[1])] })
+    }
+
+    #[inline(always)]
+    fn max(self, a: Registers, b: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_max_pd(a.0[0], b.0[0]), _mm256_max_pd(a.0[1], b.0[1])] })
+    }
+
+    #[inline(always)]
+    fn sum(self, lanes: Registers) -> f64 {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let four = _mm256_add_pd(lanes.0[0], lanes.0[1]);
+            let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
+            _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)))
+        }
+    }
+
+    #[inline(always)]
+    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Registers; 2] {
+        let [a, b, c, d, e, f, g, h] = *slots;
+        let [x, y] = split(self, two(self, table, [a, b]), two(self, table, [c, d]));
+        let [z, w] = split(self, two(self, table, [e, f]), two(self, table, [g, h]));
+        [Registers([x, z]), Registers([y, w])]
+    }
+
+    #[inline(always)]
+    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], [x, y]: [Registers; 2]) {
+        for k in 0..2 {
+            let [low, high] = join(self, x.0[k], y.0[k]);
+            add_two(self, table, [slots[4 * k], slots[4 * k + 1]], low);
+            add_two(self, table, [slots[4 * k + 2], slots[4 * k + 3]], high);
+        }
+    }
+}

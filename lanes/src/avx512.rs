@@ -1,0 +1,186 @@
+//! Lanes on AVX-512F: one register of eight.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Eight, Kernel, LANES, Lanes, Pair, Slot, Table};
+
+/// Proof that the processor has AVX-512F: only [`run`] makes one.
+#[derive(Clone, Copy)]
+pub struct Avx512(());
+
+/// Eight values; only an [`Avx512`] makes them, so that one at hand proves AVX-512F as well.
+#[derive(Clone, Copy)]
+pub struct Register(__m512d);
+
+/// Runs a kernel with lanes of this kind.
+///
+/// # Safety
+/// The processor must have AVX-512F.
+#[target_feature(enable = "avx512f")]
+pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx512(()))
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for Register {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: a register at hand proves AVX-512F.
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    };
+}
+
+operator!(Add, add, _mm512_add_pd);
+operator!(Sub, sub, _mm512_sub_pd);
+operator!(Mul, mul, _mm512_mul_pd);
+operator!(Div, div, _mm512_div_pd);
+
+impl Neg for Register {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: a register at hand proves AVX-512F.
+        Self(unsafe {
+            let sign = _mm512_set1_epi64(i64::MIN);
+            _mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0), sign))
+        })
+    }
+}
+
+impl Eight for Register {}
+
+/// x and y of the pairs 0–3 and 4–7.
+#[inline(always)]
+fn split(_: Avx512, low: __m512d, high: __m512d) -> [Register; 2] {
+    // SAFETY: the token proves AVX-512F.
+    unsafe {
+        let x = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
+        let y = _mm512_setr_epi64(1, 3, 5, 7, 9, 11, 13, 15);
+        [Register(_mm512_permutex2var_pd(low, x, high)), Register(_mm512_permutex2var_pd(low, y, high))]
+    }
+}
+
+/// The pairs 0–3 and 4–7 of x and y.
+#[inline(always)]
+fn join(_: Avx512, [x, y]: [Register; 2]) -> [__m512d; 2] {
+    // SAFETY: the token proves AVX-512F.
+    unsafe {
+        let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+        let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+        [_mm512_permutex2var_pd(x.0, low, y.0), _mm512_permutex2var_pd(x.0, high, y.0)]
+    }
+}
+
+/// Four pairs of a table.
+#[inline(always)]
+fn four(_: Avx512, table: &Table, slots: [Slot; 4]) -> __m512d {
+    // SAFETY: the token proves AVX-512F; each address is that of a pair, two f64 in a row.
+    unsafe {
+        let a = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[0])));
+        let b = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[2])));
+        let a = _mm256_insertf128_pd::<1>(a, _mm_loadu_pd(table.values(slots[1])));
+        let b = _mm256_insertf128_pd::<1>(b, _mm_loadu_pd(table.values(slots[3])));
+        _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(a), b)
+    }
+}
+
+/// Adds to four pairs of a table, one after the other.
+#[inline(always)]
+fn add_four(_: Avx512, table: &mut Table, slots: [Slot; 4], lanes: __m512d) {
+    // SAFETY: the token proves AVX-512F; each address is that of a pair, two f64 in a row.
+    unsafe {
+        let [a, b] = [_mm512_castpd512_pd256(lanes), _mm512_extractf64x4_pd::<1>(lanes)];
+        let parts = [
+            _mm256_castpd256_pd128(a),
+            _mm256_extractf128_pd::<1>(a),
+            _mm256_castpd256_pd128(b),
+            _mm256_extractf128_pd::<1>(b),
+        ];
+        for (slot, part) in slots.into_iter().zip(parts) {
+            let at = table.values_mut(slot);
+            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), part));
+        }
+    }
+}
+
+impl Lanes for Avx512 {
+    type F = Register;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_set1_pd(value) })
+    }
+
+    #[inline(always)]
+    fn load(self, values: &[f64; LANES]) -> Register {
+        // SAFETY: the token proves AVX-512F; the array holds eight values.
+        Register(unsafe { _mm512_loadu_pd(values.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, lanes: Register, out: &mut [f64; LANES]) {
+        // SAFETY: the token proves AVX-512F; the array holds eight values.
+        unsafe { _mm512_storeu_pd(out.as_mut_ptr(), lanes.0) }
+    }
+
+    #[inline(always)]
+    fn load_pairs(self, pairs: &[Pair; LANES]) -> [Register; 2] {
+        let at = pairs.as_ptr().cast::<f64>();
+        // SAFETY: the token proves AVX-512F; eight pairs are sixteen f64 in a row.
+        let (low, high) = unsafe { (_mm512_loadu_pd(at), _mm512_loadu_pd(at.add(LANES))) };
+        split(self, low, high)
+    }
+
+    #[inline(always)]
+    fn store_pairs(self, lanes: [Register; 2], out: &mut [Pair; LANES]) {
+        let [low, high] = join(self, lanes);
+        let at = out.as_mut_ptr().cast::<f64>();
+        // SAFETY: the token proves AVX-512F; eight pairs are sixteen f64 in a row.
+        unsafe {
+            _mm512_storeu_pd(at, low);
+            _mm512_storeu_pd(at.add(LANES), high);
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self, lanes: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_sqrt_pd(lanes.0) })
+    }
+
+    #[inline(always)]
+    fn max(self, a: Register, b: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_max_pd(a.0, b.0) })
+    }
+
+    #[inline(always)]
+    fn sum(self, lanes: Register) -> f64 {
+        // SAFETY: the token proves AVX-512F.
+        unsafe {
+            let four = _mm256_add_pd(_mm512_castpd512_pd256(lanes.0), _mm512_extractf64x4_pd::<1>(lanes.0));
+            let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
+            _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)))
+        }
+    }
+
+    #[inline(always)]
+    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Register; 2] {
+        let [a, b, c, d, e, f, g, h] = *slots;
+        split(self, four(self, table, [a, b, c, d]), four(self, table, [e, f, g, h]))
+    }
+
+    #[inline(always)]
+    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Register; 2]) {
+        let [a, b, c, d, e, f, g, h] = *slots;
+        let [low, high] = join(self, lanes);
+        add_four(self, table, [a, b, c, d], low);
+        add_four(self, table, [e, f, g, h], high);
+    }
+}

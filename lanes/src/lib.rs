@@ -1,0 +1,137 @@
+//! Eight `f64` side by side on AVX-512, on AVX2 or on plain Rust, chosen at run time, with the same bits on all three.
+//!
+//! A [`Kernel`] is written once over [`Lanes`] and run by [`dispatch`]. Every operation is the IEEE one, in the same
+//! order on every path and never fused, so that results do not depend on the machine. Safe to use: all `unsafe` of the
+//! engine outside `ffi/` is fenced in here.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod path;
+mod portable;
+mod table;
+
+pub use path::{Path, dispatch, dispatch_on, path};
+pub use table::{SLOTS, Slot, Table};
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A pair x, y: a point or a vector of the plane.
+pub type Pair = nalgebra::Vector2<f64>;
+
+/// Number of lanes.
+pub const LANES: usize = 8;
+
+/// Eight `f64`.
+pub trait Eight:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+}
+
+/// What a processor does to eight `f64` at once; a value of this type proves that the processor can.
+pub trait Lanes: Copy {
+    /// Eight values.
+    type F: Eight;
+
+    /// One value in all lanes.
+    fn splat(self, value: f64) -> Self::F;
+
+    /// Eight values in a row.
+    fn load(self, values: &[f64; LANES]) -> Self::F;
+
+    /// Writes eight values.
+    fn store(self, lanes: Self::F, out: &mut [f64; LANES]);
+
+    /// Eight pairs in a row, as x and y.
+    fn load_pairs(self, pairs: &[Pair; LANES]) -> [Self::F; 2];
+
+    /// Writes eight pairs.
+    fn store_pairs(self, lanes: [Self::F; 2], out: &mut [Pair; LANES]);
+
+    /// Square root.
+    fn sqrt(self, lanes: Self::F) -> Self::F;
+
+    /// The greater of each lane; the second where the first is not a number.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+
+    /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
+    fn sum(self, lanes: Self::F) -> f64;
+
+    /// Pairs of a table by their slots.
+    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Self::F; 2];
+
+    /// Adds to pairs of a table, lane after lane.
+    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Self::F; 2]);
+
+    /// Eight pairs of a table in a row from a slot on.
+    #[inline(always)]
+    fn gather_run(self, table: &Table, first: Slot) -> [Self::F; 2] {
+        self.load_pairs(table.run(first))
+    }
+
+    /// Adds to eight pairs of a table in a row from a slot on.
+    #[inline(always)]
+    fn scatter_run(self, table: &mut Table, first: Slot, lanes: [Self::F; 2]) {
+        let run = table.run_mut(first);
+        let [x, y] = self.load_pairs(run);
+        self.store_pairs([x + lanes[0], y + lanes[1]], run);
+    }
+
+    /// Up to eight values in a row; lanes beyond the end take `fill`.
+    #[inline(always)]
+    fn load_some(self, values: &[f64], fill: f64) -> Self::F {
+        match values.first_chunk() {
+            Some(full) => self.load(full),
+            None => {
+                let mut padded = [fill; LANES];
+                padded[..values.len()].copy_from_slice(values);
+                self.load(&padded)
+            }
+        }
+    }
+
+    /// Up to eight pairs in a row; lanes beyond the end take `fill`.
+    #[inline(always)]
+    fn load_some_pairs(self, pairs: &[Pair], fill: Pair) -> [Self::F; 2] {
+        match pairs.first_chunk() {
+            Some(full) => self.load_pairs(full),
+            None => {
+                let mut padded = [fill; LANES];
+                padded[..pairs.len()].copy_from_slice(pairs);
+                self.load_pairs(&padded)
+            }
+        }
+    }
+
+    /// Writes as many pairs as `out` takes, eight at most.
+    #[inline(always)]
+    fn store_some_pairs(self, lanes: [Self::F; 2], out: &mut [Pair]) {
+        match out.first_chunk_mut() {
+            Some(full) => self.store_pairs(lanes, full),
+            None => {
+                let mut padded = [Pair::zeros(); LANES];
+                self.store_pairs(lanes, &mut padded);
+                let count = out.len();
+                out.copy_from_slice(&padded[..count]);
+            }
+        }
+    }
+
+    /// The greatest lane.
+    #[inline(always)]
+    fn greatest(self, lanes: Self::F) -> f64 {
+        let mut values = [0.0; LANES];
+        self.store(lanes, &mut values);
+        values.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Work that is written once for all kinds of lanes; its methods should be `#[inline(always)]`.
+pub trait Kernel {
+    /// What it returns.
+    type Output;
+
+    /// Does the work with lanes of one kind.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}

@@ -1,0 +1,121 @@
+//! Lanes in plain Rust: what the others must equal bit by bit.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Eight, LANES, Lanes, Pair, Slot, Table};
+
+/// Plain Rust.
+#[derive(Clone, Copy)]
+pub struct Portable;
+
+/// Eight values.
+#[derive(Clone, Copy)]
+pub struct Array([f64; LANES]);
+
+impl Array {
+    #[inline(always)]
+    fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl Add for Array {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Array {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Array {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.with(other, |a, b| a * b)
+    }
+}
+
+impl Div for Array {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.with(other, |a, b| a / b)
+    }
+}
+
+impl Neg for Array {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|v| -v))
+    }
+}
+
+impl Eight for Array {}
+
+impl Lanes for Portable {
+    type F = Array;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Array {
+        Array([value; LANES])
+    }
+
+    #[inline(always)]
+    fn load(self, values: &[f64; LANES]) -> Array {
+        Array(*values)
+    }
+
+    #[inline(always)]
+    fn store(self, lanes: Array, out: &mut [f64; LANES]) {
+        *out = lanes.0;
+    }
+
+    #[inline(always)]
+    fn load_pairs(self, pairs: &[Pair; LANES]) -> [Array; 2] {
+        [Array(std::array::from_fn(|k| pairs[k].x)), Array(std::array::from_fn(|k| pairs[k].y))]
+    }
+
+    #[inline(always)]
+    fn store_pairs(self, [x, y]: [Array; 2], out: &mut [Pair; LANES]) {
+        for (k, pair) in out.iter_mut().enumerate() {
+            *pair = Pair::new(x.0[k], y.0[k]);
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self, lanes: Array) -> Array {
+        Array(lanes.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn max(self, a: Array, b: Array) -> Array {
+        a.with(b, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn sum(self, Array(v): Array) -> f64 {
+        ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
+    }
+
+    #[inline(always)]
+    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Array; 2] {
+        let pairs = slots.map(|slot| *table.at(slot));
+        self.load_pairs(&pairs)
+    }
+
+    #[inline(always)]
+    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], [x, y]: [Array; 2]) {
+        for (k, slot) in slots.iter().enumerate() {
+            *table.at_mut(*slot) += Pair::new(x.0[k], y.0[k]);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! A small table of pairs that lanes gather from and scatter to without checks: a slot is always inside.
+
+use super::{LANES, Pair};
+
+/// Slots of a table.
+pub const SLOTS: usize = 4096;
+
+/// Place in a [`Table`]; always below [`SLOTS`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Slot(u16);
+
+impl Slot {
+    /// The slot of an index.
+    ///
+    /// # Panics
+    /// When the index is not below [`SLOTS`].
+    pub fn new(index: usize) -> Self {
+        assert!(index < SLOTS, "slot {index} of {SLOTS}");
+        Self(index as u16)
+    }
+
+    /// Index of the slot.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Pairs in slots, with room for a run of lanes behind the last slot.
+#[derive(Debug, Clone)]
+pub struct Table {
+    pairs: Box<[Pair; SLOTS + LANES]>,
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        let pairs = vec![Pair::zeros(); SLOTS + LANES].into_boxed_slice();
+        Self { pairs: pairs.try_into().unwrap_or_else(|_| unreachable!("a boxed slice of that length")) }
+    }
+}
+
+impl Table {
+    /// The first `count` pairs.
+    #[inline(always)]
+    pub fn first(&self, count: usize) -> &[Pair] {
+        &self.pairs[..count]
+    }
+
+    /// The first `count` pairs.
+    #[inline(always)]
+    pub fn first_mut(&mut self, count: usize) -> &mut [Pair] {
+        &mut self.pairs[..count]
+    }
+
+    /// The pair of a slot.
+    #[inline(always)]
+    pub fn at(&self, slot: Slot) -> &Pair {
+        // SAFETY: a slot is below SLOTS, which is below the length.
+        unsafe { self.pairs.get_unchecked(slot.index()) }
+    }
+
+    /// The pair of a slot.
+    #[inline(always)]
+    pub fn at_mut(&mut self, slot: Slot) -> &mut Pair {
+        // SAFETY: a slot is below SLOTS, which is below the length.
+        unsafe { self.pairs.get_unchecked_mut(slot.index()) }
+    }
+
+    /// Address of the two values of a slot.
+    #[inline(always)]
+    pub(crate) fn values(&self, slot: Slot) -> *const f64 {
+        std::ptr::from_ref(self.at(slot)).cast()
+    }
+
+    /// Address of the two values of a slot.
+    #[inline(always)]
+    pub(crate) fn values_mut(&mut self, slot: Slot) -> *mut f64 {
+        std::ptr::from_mut(self.at_mut(slot)).cast()
+    }
+
+    /// Eight pairs from a slot on.
+    #[inline(always)]
+    pub(crate) fn run(&self, first: Slot) -> &[Pair; LANES] {
+        // SAFETY: a slot is below SLOTS, and LANES pairs stand behind the last one; arrays align as their elements.
+        unsafe { &*self.pairs.as_ptr().add(first.index()).cast() }
+    }
+
+    /// Eight pairs from a slot on.
+    #[inline(always)]
+    pub(crate) fn run_mut(&mut self, first: Slot) -> &mut [Pair; LANES] {
+        // SAFETY: as for `run`; the table is borrowed alone.
+        unsafe { &mut *self.pairs.as_mut_ptr().add(first.index()).cast() }
+    }
+}

@@ -1,0 +1,430 @@
+//! Velocities of a block's covers, eight side by side: the sums that its rigid motion follows from, and the writing of
+//! the kick (Eqs. 3, 5, 10–12).
+//!
+//! Places count from one cover of the block and velocities from that cover's, so that one pass gives all sums without
+//! loss of digits wherever the block is and however fast it flies.
+
+use std::ops::{AddAssign, Range};
+
+use enmm_lanes::{Eight, LANES, Lanes};
+
+use crate::geometry::{Point, Vector};
+
+/// J90·v: turned by +90°.
+fn turned(v: Vector) -> Vector {
+    Vector::new(-v.y, v.x)
+}
+
+/// The sums over the lanes of each.
+#[inline(always)]
+fn totals<L: Lanes, const N: usize>(lanes: L, sums: &[L::F; N]) -> [f64; N] {
+    let mut totals = [0.0; N];
+    for (total, sum) in totals.iter_mut().zip(sums) {
+        *total = lanes.sum(*sum);
+    }
+    totals
+}
+
+/// What sums count from.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Reference {
+    /// Place (m).
+    pub place: Point,
+    /// Velocity (m/s).
+    pub velocity: Vector,
+}
+
+/// Sums over covers of a block: place q and velocity w count from a reference.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockSums {
+    /// Σμq (kg).
+    pub inertial_place: Vector,
+    /// Σmq (kg).
+    pub first: Vector,
+    /// Σm|q|² (kg·m).
+    pub polar: f64,
+    /// Σμw (kg/s).
+    pub inertial_velocity: Vector,
+    /// Σmw (kg/s).
+    pub momentum: Vector,
+    /// Σm q×w (kg·m/s).
+    pub moment: f64,
+    /// ΣF (N/m).
+    pub force: Vector,
+    /// Σq×F (N).
+    pub torque: f64,
+    /// Σ(μ/m)F (N/m).
+    pub weighted: Vector,
+}
+
+impl AddAssign for BlockSums {
+    fn add_assign(&mut self, other: Self) {
+        self.inertial_place += other.inertial_place;
+        self.first += other.first;
+        self.polar += other.polar;
+        self.inertial_velocity += other.inertial_velocity;
+        self.momentum += other.momentum;
+        self.moment += other.moment;
+        self.force += other.force;
+        self.torque += other.torque;
+        self.weighted += other.weighted;
+    }
+}
+
+/// Covers of a block, or of the part of it in one patch: slices of equal length.
+#[derive(Clone, Copy)]
+pub struct Span<'a> {
+    /// Star positions (m).
+    pub star: &'a [Point],
+    /// Displacements (m).
+    pub displacement: &'a [Vector],
+    /// Velocities (m/s).
+    pub velocity: &'a [Vector],
+    /// Lumped masses m (kg/m).
+    pub mass: &'a [f64],
+    /// Masses μ in the centroid (kg/m).
+    pub inertial: &'a [f64],
+}
+
+/// Eight covers of a span.
+struct Chunk<F> {
+    q: [F; 2],
+    v: [F; 2],
+    w: [F; 2],
+    mass: F,
+    inertial: F,
+}
+
+#[inline(always)]
+fn splat<L: Lanes>(lanes: L, v: Vector) -> [L::F; 2] {
+    [lanes.splat(v.x), lanes.splat(v.y)]
+}
+
+impl<F: Eight> Chunk<F> {
+    #[inline(always)]
+    fn new<L: Lanes<F = F>>(lanes: L, from: &Reference, [star, u, v]: [[F; 2]; 3], [mass, inertial]: [F; 2]) -> Self {
+        let (at, with) = (splat(lanes, from.place), splat(lanes, from.velocity));
+        let q = [star[0] + u[0] - at[0], star[1] + u[1] - at[1]];
+        Self { q, v, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
+    }
+}
+
+impl Span<'_> {
+    /// Ranges of up to eight covers.
+    #[inline(always)]
+    fn chunks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let count = self.star.len();
+        (0..count).step_by(LANES).map(move |k| k..(k + LANES).min(count))
+    }
+
+    /// Covers beyond the end are at the reference and have no inertial mass.
+    #[inline(always)]
+    fn chunk<L: Lanes>(&self, lanes: L, range: Range<usize>, from: &Reference) -> Chunk<L::F> {
+        let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+        let u = lanes.load_some_pairs(&self.displacement[range.clone()], Vector::zeros());
+        let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
+        let (mass, inertial) = (&self.mass[range.clone()], &self.inertial[range]);
+        Chunk::new(lanes, from, [star, u, v], [lanes.load_some(mass, 1.0), lanes.load_some(inertial, 0.0)])
+    }
+
+    /// What sums of this block count from, when this span begins it.
+    pub fn reference(&self) -> Reference {
+        Reference { place: self.star[0] + self.displacement[0], velocity: self.velocity[0] }
+    }
+
+    /// Sums over the span under `force` (N/m).
+    #[inline(always)]
+    pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: &[Vector]) -> BlockSums {
+        let mut sums = [lanes.splat(0.0); 15];
+        for range in self.chunks() {
+            let Chunk { q, w, mass, inertial, .. } = self.chunk(lanes, range.clone(), from);
+            let f = lanes.load_some_pairs(&force[range], Vector::zeros());
+            let mq = [mass * q[0], mass * q[1]];
+            let ratio = inertial / mass;
+            let terms = [
+                inertial * q[0],
+                inertial * q[1],
+                mq[0],
+                mq[1],
+                mq[0] * q[0] + mq[1] * q[1],
+                inertial * w[0],
+                inertial * w[1],
+                mass * w[0],
+                mass * w[1],
+                mq[0] * w[1] - mq[1] * w[0],
+                f[0],
+                f[1],
+                q[0] * f[1] - q[1] * f[0],
+                ratio * f[0],
+                ratio * f[1],
+            ];
+            for (sum, term) in sums.iter_mut().zip(&terms) {
+                *sum = *sum + *term;
+            }
+        }
+        let [a, b, c, d, polar, e, f, g, h, moment, i, j, torque, k, l] = totals(lanes, &sums);
+        BlockSums {
+            inertial_place: Vector::new(a, b),
+            first: Vector::new(c, d),
+            polar,
+            inertial_velocity: Vector::new(e, f),
+            momentum: Vector::new(g, h),
+            moment,
+            force: Vector::new(i, j),
+            torque,
+            weighted: Vector::new(k, l),
+        }
+    }
+}
+
+/// A velocity that all covers of a block share but for place and mass: a + (μ/m)·b + spin·J90·q.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Common {
+    /// a (m/s).
+    pub velocity: Vector,
+    /// b (m/s).
+    pub weighted: Vector,
+    /// Spin (rad/s) about the reference.
+    pub spin: f64,
+}
+
+impl Common {
+    /// A spin about a place q, and a translation.
+    pub fn about(velocity: Vector, spin: f64, centre: Vector) -> Self {
+        Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
+    }
+
+    #[inline(always)]
+    fn at<L: Lanes>(&self, lanes: L, chunk: &Chunk<L::F>) -> [L::F; 2] {
+        let ratio = chunk.inertial / chunk.mass;
+        let spin = lanes.splat(self.spin);
+        let x = lanes.splat(self.velocity.x) + ratio * lanes.splat(self.weighted.x) - spin * chunk.q[1];
+        let y = lanes.splat(self.velocity.y) + ratio * lanes.splat(self.weighted.y) + spin * chunk.q[0];
+        [x, y]
+    }
+}
+
+/// What turns velocities into predicted ones beside what is common to the block.
+#[derive(Clone, Copy)]
+pub struct Own<'a> {
+    /// Factor on the velocity.
+    pub factor: f64,
+    /// Time (s) over which forces act.
+    pub dt: f64,
+    /// Body loads (m/s²) on a held block.
+    pub acceleration: Vector,
+    /// Row-sum masses and 1/m along x and y of a held block's covers; none for a free block.
+    pub held: Option<(&'a [f64], &'a [Vector])>,
+    /// Whether damping sets held axes to rest.
+    pub masked: bool,
+}
+
+/// 1 where a cover can move along the axis, 0 where it is held.
+#[inline(always)]
+fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
+    inverse / lanes.max(inverse, lanes.splat(f64::MIN_POSITIVE))
+}
+
+impl Span<'_> {
+    /// Writes the velocities that damping and forces (N/m) leave, with what is common to the block; returns the
+    /// square of the largest speed before.
+    #[inline(always)]
+    pub fn kick<L: Lanes>(
+        &self,
+        lanes: L,
+        from: &Reference,
+        own: &Own,
+        common: &Common,
+        (force, predicted): (&[Vector], &mut [Vector]),
+    ) -> f64 {
+        let (factor, dt) = (lanes.splat(own.factor), lanes.splat(own.dt));
+        let mut speed = lanes.splat(0.0);
+        for range in self.chunks() {
+            let chunk = self.chunk(lanes, range.clone(), from);
+            let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
+            let add = common.at(lanes, &chunk);
+            let mut out = [factor * chunk.v[0] + add[0], factor * chunk.v[1] + add[1]];
+            speed = lanes.max(chunk.v[0] * chunk.v[0] + chunk.v[1] * chunk.v[1], speed);
+            match own.held {
+                None => {
+                    let share = dt / chunk.mass;
+                    out = [out[0] + f[0] * share, out[1] + f[1] * share];
+                }
+                Some((row_sum, inverse)) => {
+                    let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
+                    let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
+                    let body = splat(lanes, own.acceleration);
+                    if own.masked {
+                        out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
+                    }
+                    out[0] = out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt;
+                    out[1] = out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt;
+                }
+            }
+            lanes.store_some_pairs(out, &mut predicted[range]);
+        }
+        lanes.greatest(speed)
+    }
+
+    /// Adds what is common to the block where covers can move.
+    #[inline(always)]
+    pub fn add_common<L: Lanes>(
+        &self,
+        lanes: L,
+        from: &Reference,
+        common: &Common,
+        inverse: Option<&[Vector]>,
+        predicted: &mut [Vector],
+    ) {
+        for range in self.chunks() {
+            let chunk = self.chunk(lanes, range.clone(), from);
+            let mut add = common.at(lanes, &chunk);
+            if let Some(inverse) = inverse {
+                let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
+                add = [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])];
+            }
+            let out = lanes.load_some_pairs(&predicted[range.clone()], Vector::zeros());
+            lanes.store_some_pairs([out[0] + add[0], out[1] + add[1]], &mut predicted[range]);
+        }
+    }
+}
+
+/// Sums over covers of a block at the end of a step: s is the velocity before plus that after it, s' = s − 2w₀ counts
+/// from twice the reference velocity w₀.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct WorkSums {
+    /// Σms' (kg/s).
+    pub momentum: Vector,
+    /// Σμs' (kg/s).
+    pub inertial: Vector,
+    /// Σm q×s' (kg·m/s).
+    pub moment: f64,
+    /// Σm w·s' (J/m).
+    pub product: f64,
+    /// Σ(∫ρw)s (kg/s).
+    pub row_sum: Vector,
+}
+
+impl AddAssign for WorkSums {
+    fn add_assign(&mut self, other: Self) {
+        self.momentum += other.momentum;
+        self.inertial += other.inertial;
+        self.moment += other.moment;
+        self.product += other.product;
+        self.row_sum += other.row_sum;
+    }
+}
+
+/// Covers of a block, or of the part of it in one patch, at the end of a step: slices of equal length.
+pub struct End<'a> {
+    /// Star positions (m).
+    pub star: &'a [Point],
+    /// Lumped masses m (kg/m).
+    pub mass: &'a [f64],
+    /// Masses μ in the centroid (kg/m).
+    pub inertial: &'a [f64],
+    /// Row-sum masses ∫ρw (kg/m).
+    pub row_sum: &'a [f64],
+    /// Velocities before the step (m/s).
+    pub before: &'a [Vector],
+    /// Velocities: predicted ones, final ones afterwards (m/s).
+    pub velocity: &'a mut [Vector],
+    /// Increments by contacts and supports (m/s).
+    pub increment: &'a [Vector],
+    /// Displacements (m): before, after the step afterwards.
+    pub displacement: &'a mut [Vector],
+}
+
+/// What is wanted of the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Wants {
+    /// Time (s) by which places move.
+    pub dt: f64,
+    /// Whether contacts push the block.
+    pub is_pushed: bool,
+    /// Whether any increment is not zero.
+    pub is_touched: bool,
+    /// Whether the work of damping is asked for.
+    pub is_damped: bool,
+    /// Whether the work of body loads is asked for.
+    pub is_loaded: bool,
+}
+
+impl End<'_> {
+    /// Adds what contacts give, moves the covers; returns sums for the works, and the largest and the sum of all
+    /// squares of speeds (m²/s²).
+    #[inline(always)]
+    pub fn finish<L: Lanes>(
+        &mut self,
+        lanes: L,
+        from: &Reference,
+        push: &Common,
+        wants: Wants,
+    ) -> (WorkSums, [f64; 2]) {
+        let zero = lanes.splat(0.0);
+        let (mut sums, mut row, mut fastest, mut squares) = ([zero; 6], [zero; 2], zero, zero);
+        let still = Vector::zeros();
+        let dt = lanes.splat(wants.dt);
+        for start in (0..self.star.len()).step_by(LANES) {
+            let range = start..(start + LANES).min(self.star.len());
+            let u = lanes.load_some_pairs(&self.displacement[range.clone()], still);
+            let mut v = lanes.load_some_pairs(&self.velocity[range.clone()], still);
+            if wants.is_touched {
+                let increment = lanes.load_some_pairs(&self.increment[range.clone()], still);
+                v = [v[0] + increment[0], v[1] + increment[1]];
+            }
+            if wants.is_pushed || wants.is_damped {
+                let chunk = self.chunk(lanes, range.clone(), from, u);
+                if wants.is_pushed {
+                    let add = push.at(lanes, &chunk);
+                    v = [v[0] + add[0], v[1] + add[1]];
+                }
+                if wants.is_damped {
+                    let with = splat(lanes, from.velocity);
+                    let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
+                    let mass = lanes.load_some(&self.mass[range.clone()], 0.0);
+                    add_works(&chunk, mass, s, &mut sums);
+                }
+            }
+            if wants.is_loaded {
+                let before = lanes.load_some_pairs(&self.before[range.clone()], still);
+                let row_sum = lanes.load_some(&self.row_sum[range.clone()], 0.0);
+                row = [row[0] + row_sum * (before[0] + v[0]), row[1] + row_sum * (before[1] + v[1])];
+            }
+            let square = v[0] * v[0] + v[1] * v[1];
+            (fastest, squares) = (lanes.max(square, fastest), squares + square);
+            lanes.store_some_pairs(v, &mut self.velocity[range.clone()]);
+            lanes.store_some_pairs([u[0] + v[0] * dt, u[1] + v[1] * dt], &mut self.displacement[range]);
+        }
+        let [a, b, c, d, moment, product] = totals(lanes, &sums);
+        let [x, y] = totals(lanes, &row);
+        let works = WorkSums {
+            momentum: Vector::new(a, b),
+            inertial: Vector::new(c, d),
+            moment,
+            product,
+            row_sum: Vector::new(x, y),
+        };
+        (works, [lanes.greatest(fastest), lanes.sum(squares)])
+    }
+
+    /// Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
+    #[inline(always)]
+    fn chunk<L: Lanes>(&self, lanes: L, range: Range<usize>, from: &Reference, u: [L::F; 2]) -> Chunk<L::F> {
+        let v = lanes.load_some_pairs(&self.before[range.clone()], from.velocity);
+        let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+        let (mass, inertial) = (&self.mass[range.clone()], &self.inertial[range]);
+        Chunk::new(lanes, from, [star, u, v], [lanes.load_some(mass, 1.0), lanes.load_some(inertial, 0.0)])
+    }
+}
+
+#[inline(always)]
+fn add_works<F: Eight>(chunk: &Chunk<F>, mass: F, s: [F; 2], sums: &mut [F; 6]) {
+    let Chunk { q, w, inertial, .. } = chunk;
+    let ms = [mass * s[0], mass * s[1]];
+    let terms =
+        [ms[0], ms[1], *inertial * s[0], *inertial * s[1], q[0] * ms[1] - q[1] * ms[0], w[0] * ms[0] + w[1] * ms[1]];
+    for (sum, term) in sums.iter_mut().zip(&terms) {
+        *sum = *sum + *term;
+    }
+}
