@@ -39,11 +39,12 @@ impl<'a> Comparison<'a> {
     /// When it is something else.
     pub fn read(words: &'a [&'a str]) -> Result<Self, String> {
         let [old, new, rest @ ..] = words else { return Err("ab needs two programs: OLD NEW".to_owned()) };
-        let mut read = Self { old: old.as_ref(), new: new.as_ref(), models: MODELS, rounds: ROUNDS, threads: "1" };
+        let (old, new) = (Path::new(*old), Path::new(*new));
+        let mut read = Self { old, new, models: MODELS, rounds: ROUNDS, threads: "1" };
         for pair in rest.chunks(2) {
-            match *pair {
-                ["--models", names] => read.models = names,
-                ["--threads", number] => read.threads = number,
+            match pair {
+                ["--models", names] => read.models = *names,
+                ["--threads", number] => read.threads = *number,
                 ["--rounds", number] => read.rounds = number.parse().map_err(|_| format!("{number} is no number"))?,
                 _ => return Err(format!("ab does not know {}", pair.join(" "))),
             }
