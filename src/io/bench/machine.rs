@@ -1,11 +1,12 @@
 //! The machine and its limits: how fast it streams from each level of memory, and how fast it multiplies and adds.
 //!
-//! [`triad`] and [`multiply_add`] are the seam: where wider lanes are to be had, these two take them.
+//! Both run on the widest lanes of the processor, as the engine does, and like it never fuse a product with a sum.
 
 use std::fs;
 use std::hint::black_box;
 use std::time::Instant;
 
+use enmm_lanes::{Kernel, LANES, Lanes, dispatch};
 use serde::Serialize;
 
 /// Levels of memory: name, and numbers in each of the three arrays that are streamed.
@@ -15,7 +16,7 @@ const SAMPLE: f64 = 1e-3;
 /// Measurements, of which the fastest counts.
 const SAMPLES: usize = 12;
 /// Accumulators that do not wait for each other.
-const CHAINS: usize = 64;
+const CHAINS: usize = 16;
 
 /// A machine.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -83,13 +84,15 @@ fn together(threads: usize, rate: impl Fn() -> f64 + Sync) -> f64 {
 fn bytes_per_second(length: usize) -> f64 {
     let (b, c) = (vec![1.0; length], vec![2.0; length]);
     let mut a = vec![0.0; length];
-    24.0 * length as f64 * passes_per_second(|| triad(black_box(&mut a), black_box(&b), black_box(&c), 0.5))
+    let pass = || dispatch(Triad { a: black_box(&mut a), b: black_box(&b), c: black_box(&c), s: 0.5 });
+    24.0 * length as f64 * passes_per_second(pass)
 }
 
 fn operations_per_second() -> f64 {
     const ROUNDS: usize = 1000;
-    let mut sums = [1.0; CHAINS];
-    2.0 * (CHAINS * ROUNDS) as f64 * passes_per_second(|| multiply_add(black_box(&mut sums), 0.999_9, 1e-4, ROUNDS))
+    let mut sums = [[1.0; LANES]; CHAINS];
+    let pass = || dispatch(MultiplyAdd { sums: black_box(&mut sums), factor: 0.999_9, addend: 1e-4, rounds: ROUNDS });
+    2.0 * (LANES * CHAINS * ROUNDS) as f64 * passes_per_second(pass)
 }
 
 /// How often a second the fastest of several measurements did a pass.
@@ -107,20 +110,48 @@ fn passes_per_second(mut pass: impl FnMut()) -> f64 {
     f64::from(count) / fastest
 }
 
-/// `a = b + s·c`.
-fn triad(a: &mut [f64], b: &[f64], c: &[f64], s: f64) {
-    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-        *a = b + s * c;
+/// `a = b + s·c`, as many numbers of each.
+struct Triad<'a> {
+    a: &'a mut [f64],
+    b: &'a [f64],
+    c: &'a [f64],
+    s: f64,
+}
+
+impl Kernel for Triad<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let s = lanes.splat(self.s);
+        let rows = self.a.as_chunks_mut::<LANES>().0.iter_mut();
+        let rows = rows.zip(self.b.as_chunks::<LANES>().0).zip(self.c.as_chunks::<LANES>().0);
+        rows.for_each(|((a, b), c)| lanes.store(lanes.load(b) + s * lanes.load(c), a));
     }
 }
 
 /// `sums = sums·factor + addend`, so many times over.
-fn multiply_add(sums: &mut [f64; CHAINS], factor: f64, addend: f64, rounds: usize) {
-    let mut local = *sums;
-    for _ in 0..rounds {
-        local.iter_mut().for_each(|sum| *sum = *sum * factor + addend);
+struct MultiplyAdd<'a> {
+    sums: &'a mut [[f64; LANES]; CHAINS],
+    factor: f64,
+    addend: f64,
+    rounds: usize,
+}
+
+impl Kernel for MultiplyAdd<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let (factor, addend) = (lanes.splat(self.factor), lanes.splat(self.addend));
+        let mut sums = [addend; CHAINS];
+        for _ in 0..self.rounds {
+            for sum in &mut sums {
+                *sum = *sum * factor + addend;
+            }
+        }
+        self.sums.iter_mut().zip(sums).for_each(|(out, sum)| lanes.store(sum, out));
     }
-    *sums = local;
 }
 
 fn processor() -> Option<String> {
