@@ -87,6 +87,9 @@ impl Metric {
 
     /// Gives a block the plain lumped metric, as every block that is held anywhere needs.
     pub fn hold_block(&mut self, covers: &Covers, block: usize) {
+        if !self.is_free(block) {
+            return;
+        }
         for i in covers.covers_of(block) {
             self.inertial[i] = self.mass[i];
         }
