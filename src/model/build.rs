@@ -18,7 +18,7 @@ use crate::mechanics::{
     ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Port, Slope, State, Water};
+use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 
 use place::Places;
 
@@ -89,16 +89,16 @@ fn slope(
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
-    let metric = Metric::free(&covers, &rocks, &element_rock);
     let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
-    let laws = joint_laws(case, stiffness);
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
-    let (loads, ports, water) = from_outside(case, &places, &boundary)?;
+    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
+    let loads = loads(case, &places, &faces)?;
+    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let slope = Slope {
         patches: Patches::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
@@ -107,8 +107,8 @@ fn slope(
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
-        metric,
-        laws,
+        metric: Metric::free(&covers, &rocks, &element_rock),
+        laws: joint_laws(case, stiffness),
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         fixities,
@@ -145,16 +145,6 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))
-}
-
-/// Loads, ports and water.
-fn from_outside(
-    case: &Case,
-    places: &Places,
-    boundary: &Boundary,
-) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
-    let faces = ports::Faces { boundary, tolerance: places.tolerance };
-    Ok((loads(case, places, &faces)?, ports::ports(case, places, &faces)?, ports::water(case, &faces)?))
 }
 
 /// Shortest stable step (s) of all rocks.
