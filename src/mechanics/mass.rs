@@ -108,7 +108,8 @@ impl Metric {
         }
     }
 
-    /// Makes free blocks so many times lighter as rigid bodies; what deforms keeps its mass, which limits the step.
+    /// Makes free blocks so many times lighter as rigid bodies (Eqs. 73–75); what deforms keeps its mass, which limits
+    /// the step.
     pub fn lighten(&mut self, lightness: f64) {
         self.lightness = lightness;
         for block in (0..self.total.len()).filter(|&b| self.inverse_total[b] > 0.0) {

@@ -515,7 +515,7 @@ fn is_damping(damping: Damping) -> bool {
 }
 
 /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
-/// lighter by the root of that faster.
+/// lighter by the root of that faster (Eq. 76).
 pub(super) fn block_damping(slope: &Slope, metric: &Metric, damping: Damping, block: usize) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
