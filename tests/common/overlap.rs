@@ -1,8 +1,11 @@
 //! An audit of overlaps that knows nothing of contacts: only the polygons of the blocks at their current places.
 
 use enmm::contact::Boundary;
-use enmm::geometry::{Point, polygon, segment};
+use enmm::geometry::{Point, Vector, polygon, segment};
 use enmm::model::Simulation;
+
+/// Opening (m) from which a crack is a way in.
+const ROOM: f64 = 1e-3;
 
 /// Deepest overlap (m) of two blocks in the last step, and which.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -46,12 +49,21 @@ fn pair_depth(boundary: &Boundary, place: &[Point], p: &[usize], q: &[usize]) ->
     polygon::overlap_depth(&polygon(p), &polygon(q))
 }
 
-/// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, cracks left out.
+/// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.
 fn corner_depth(boundary: &Boundary, place: &[Point], p: &[usize], q: &[usize]) -> f64 {
     let polygon: Vec<Point> = q.iter().map(|&k| place[k]).collect();
+    let ends = |e: usize| (place[e], place[boundary.after(e)]);
+    // A crack's wall is a way in where the crack stands open by as much as the point lies behind it.
+    let is_way_in = |e: usize, x: Point| {
+        let (a, b) = ends(e);
+        let along = b - a;
+        let foot = a + along * ((x - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        let outward = Vector::new(along.y, -along.x).normalize();
+        !boundary.partial[e] || !polygon::contains(&polygon, foot + outward * (foot - x).norm().max(ROOM))
+    };
     let depth = |x: Point| {
-        let outer = q.iter().filter(|&&e| !boundary.partial[e]);
-        outer.map(|&e| segment::distance(x, place[e], place[boundary.after(e)])).fold(f64::INFINITY, f64::min)
+        let outer = q.iter().filter(|&&e| is_way_in(e, x));
+        outer.map(|&e| segment::distance(x, ends(e).0, ends(e).1)).fold(f64::INFINITY, f64::min)
     };
     p.iter().map(|&k| place[k]).filter(|&x| polygon::contains(&polygon, x)).map(depth).fold(0.0, f64::max)
 }
