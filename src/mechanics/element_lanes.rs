@@ -62,7 +62,7 @@ pub fn push_forces<L: Lanes>(
                 }
             }
         }
-        for (group, [x2, y2, x3, y3]) in some.iter().zip(in_hand) {
+        for (group, &[x2, y2, x3, y3]) in some.iter().zip(&in_hand) {
             lanes.scatter_add(force, &group.slots[0], [-(x2 + x3), -(y2 + y3)]);
             lanes.scatter_add(force, &group.slots[1], [x2, y2]);
             lanes.scatter_add(force, &group.slots[2], [x3, y3]);
