@@ -76,6 +76,18 @@ fn join(_: Avx512, [x, y]: [Register; 2]) -> [__m512d; 2] {
     }
 }
 
+/// Mask of the first `count` lanes, all when there are fewer lanes.
+#[inline(always)]
+fn first(count: usize) -> __mmask8 {
+    ((1_u32 << count.min(LANES)) - 1) as __mmask8
+}
+
+/// Masks of the values 0–7 and 8–15 of the first `count` pairs.
+#[inline(always)]
+fn first_pairs(count: usize) -> [__mmask8; 2] {
+    [first(2 * count), first((2 * count).saturating_sub(LANES))]
+}
+
 /// Four pairs of a table.
 #[inline(always)]
 fn four(_: Avx512, table: &Table, slots: [Slot; 4]) -> __m512d {
@@ -146,6 +158,48 @@ impl Lanes for Avx512 {
             _mm512_storeu_pd(at, low);
             _mm512_storeu_pd(at.add(LANES), high);
         }
+    }
+
+    #[inline(always)]
+    fn load_some(self, values: &[f64], fill: f64) -> Register {
+        match values.first_chunk() {
+            Some(full) => self.load(full),
+            // SAFETY: the token proves AVX-512F; lanes beyond the end are not read.
+            None => {
+                Register(unsafe { _mm512_mask_loadu_pd(_mm512_set1_pd(fill), first(values.len()), values.as_ptr()) })
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn load_some_pairs(self, pairs: &[Pair], fill: Pair) -> [Register; 2] {
+        let Some(full) = pairs.first_chunk() else {
+            let (at, [low, high]) = (pairs.as_ptr().cast::<f64>(), first_pairs(pairs.len()));
+            let (x, y) = (fill.x, fill.y);
+            // SAFETY: the token proves AVX-512F; pairs are f64 in a row, lanes beyond the end are not read.
+            let (low, high) = unsafe {
+                let fill = _mm512_setr_pd(x, y, x, y, x, y, x, y);
+                let high = _mm512_mask_loadu_pd(fill, high, at.wrapping_add(LANES));
+                (_mm512_mask_loadu_pd(fill, low, at), high)
+            };
+            return split(self, low, high);
+        };
+        self.load_pairs(full)
+    }
+
+    #[inline(always)]
+    fn store_some_pairs(self, lanes: [Register; 2], out: &mut [Pair]) {
+        let Some(full) = out.first_chunk_mut() else {
+            let [low, high] = join(self, lanes);
+            let (at, masks) = (out.as_mut_ptr().cast::<f64>(), first_pairs(out.len()));
+            // SAFETY: the token proves AVX-512F; pairs are f64 in a row, lanes beyond the end are not written.
+            unsafe {
+                _mm512_mask_storeu_pd(at, masks[0], low);
+                _mm512_mask_storeu_pd(at.wrapping_add(LANES), masks[1], high);
+            }
+            return;
+        };
+        self.store_pairs(lanes, full);
     }
 
     #[inline(always)]

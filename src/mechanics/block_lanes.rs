@@ -89,7 +89,6 @@ pub struct Span<'a> {
 /// Eight covers of a span.
 struct Chunk<F> {
     q: [F; 2],
-    v: [F; 2],
     w: [F; 2],
     mass: F,
     inertial: F,
@@ -105,7 +104,7 @@ impl<F: Eight> Chunk<F> {
     fn new<L: Lanes<F = F>>(lanes: L, from: &Reference, [star, u, v]: [[F; 2]; 3], [mass, inertial]: [F; 2]) -> Self {
         let (at, with) = (splat(lanes, from.place), splat(lanes, from.velocity));
         let q = [star[0] + u[0] - at[0], star[1] + u[1] - at[1]];
-        Self { q, v, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
+        Self { q, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
     }
 }
 
@@ -132,15 +131,18 @@ impl Span<'_> {
         Reference { place: self.star[0] + self.displacement[0], velocity: self.velocity[0] }
     }
 
-    /// Sums over the span under `force` (N/m).
+    /// Sums over the span, with those of `force` (N/m) where they are asked for.
     #[inline(always)]
-    pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: &[Vector]) -> BlockSums {
-        let mut sums = [lanes.splat(0.0); 15];
+    pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: Option<&[Vector]>) -> BlockSums {
+        let (mut sums, mut pushed) = ([lanes.splat(0.0); 10], [lanes.splat(0.0); 5]);
         for range in self.chunks() {
-            let Chunk { q, w, mass, inertial, .. } = self.chunk(lanes, range.clone(), from);
-            let f = lanes.load_some_pairs(&force[range], Vector::zeros());
+            let chunk = self.chunk(lanes, range.clone(), from);
+            if let Some(force) = force {
+                let f = lanes.load_some_pairs(&force[range], Vector::zeros());
+                add_pushed(&chunk, f, &mut pushed);
+            }
+            let Chunk { q, w, mass, inertial, .. } = chunk;
             let mq = [mass * q[0], mass * q[1]];
-            let ratio = inertial / mass;
             let terms = [
                 inertial * q[0],
                 inertial * q[1],
@@ -152,17 +154,13 @@ impl Span<'_> {
                 mass * w[0],
                 mass * w[1],
                 mq[0] * w[1] - mq[1] * w[0],
-                f[0],
-                f[1],
-                q[0] * f[1] - q[1] * f[0],
-                ratio * f[0],
-                ratio * f[1],
             ];
             for (sum, term) in sums.iter_mut().zip(&terms) {
                 *sum = *sum + *term;
             }
         }
-        let [a, b, c, d, polar, e, f, g, h, moment, i, j, torque, k, l] = totals(lanes, &sums);
+        let [a, b, c, d, polar, e, f, g, h, moment] = totals(lanes, &sums);
+        let [i, j, torque, k, l] = totals(lanes, &pushed);
         BlockSums {
             inertial_place: Vector::new(a, b),
             first: Vector::new(c, d),
@@ -174,6 +172,15 @@ impl Span<'_> {
             torque,
             weighted: Vector::new(k, l),
         }
+    }
+}
+
+#[inline(always)]
+fn add_pushed<F: Eight>(chunk: &Chunk<F>, f: [F; 2], sums: &mut [F; 5]) {
+    let (q, ratio) = (chunk.q, chunk.inertial / chunk.mass);
+    let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
+    for (sum, term) in sums.iter_mut().zip(&terms) {
+        *sum = *sum + *term;
     }
 }
 
@@ -196,10 +203,14 @@ impl Common {
 
     #[inline(always)]
     fn at<L: Lanes>(&self, lanes: L, chunk: &Chunk<L::F>) -> [L::F; 2] {
-        let ratio = chunk.inertial / chunk.mass;
+        let mut weighted = splat(lanes, self.weighted);
+        if self.weighted != Vector::zeros() {
+            let ratio = chunk.inertial / chunk.mass;
+            weighted = [ratio * weighted[0], ratio * weighted[1]];
+        }
         let spin = lanes.splat(self.spin);
-        let x = lanes.splat(self.velocity.x) + ratio * lanes.splat(self.weighted.x) - spin * chunk.q[1];
-        let y = lanes.splat(self.velocity.y) + ratio * lanes.splat(self.weighted.y) + spin * chunk.q[0];
+        let x = lanes.splat(self.velocity.x) + weighted[0] - spin * chunk.q[1];
+        let y = lanes.splat(self.velocity.y) + weighted[1] + spin * chunk.q[0];
         [x, y]
     }
 }
@@ -219,10 +230,10 @@ pub struct Own<'a> {
     pub masked: bool,
 }
 
-/// 1 where a cover can move along the axis, 0 where it is held.
+/// 1 where a cover can move along the axis, 0 where it is held: the lesser of 1 and many times 1/m.
 #[inline(always)]
 fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
-    inverse / lanes.max(inverse, lanes.splat(f64::MIN_POSITIVE))
+    -lanes.max(inverse * lanes.splat(-f64::MAX), lanes.splat(-1.0))
 }
 
 impl Span<'_> {
@@ -239,15 +250,19 @@ impl Span<'_> {
     ) -> f64 {
         let (factor, dt) = (lanes.splat(own.factor), lanes.splat(own.dt));
         let mut speed = lanes.splat(0.0);
+        let common = Some(common).filter(|common| **common != Common::default());
         for range in self.chunks() {
-            let chunk = self.chunk(lanes, range.clone(), from);
+            let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
-            let add = common.at(lanes, &chunk);
-            let mut out = [factor * chunk.v[0] + add[0], factor * chunk.v[1] + add[1]];
-            speed = lanes.max(chunk.v[0] * chunk.v[0] + chunk.v[1] * chunk.v[1], speed);
+            let mut add = [lanes.splat(0.0); 2];
+            if let Some(common) = common {
+                add = common.at(lanes, &self.chunk(lanes, range.clone(), from));
+            }
+            let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
+            speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
             match own.held {
                 None => {
-                    let share = dt / chunk.mass;
+                    let share = dt / lanes.load_some(&self.mass[range.clone()], 1.0);
                     out = [out[0] + f[0] * share, out[1] + f[1] * share];
                 }
                 Some((row_sum, inverse)) => {

@@ -31,6 +31,9 @@ impl<F: Copy> Constants<F> {
     }
 }
 
+/// Groups in hand at once: the stages of one wait for each other, those of several side by side do not.
+const AHEAD: usize = 8;
+
 /// Adds the forces (N/m) of the elements of a batch; `pre_stress` holds xx, yy, xy (Pa) of each group or nothing.
 #[inline(always)]
 pub fn push_forces<L: Lanes>(
@@ -41,40 +44,63 @@ pub fn push_forces<L: Lanes>(
     force: &mut Table,
 ) {
     let constants = Constants::new(lanes, rock, g);
-    if pre_stress.is_empty() {
-        for group in groups {
-            push_group(lanes, &constants, group, displacement, force, None);
+    let mut in_hand = [[constants.one; 4]; AHEAD];
+    let mut pre_stress = pre_stress.chunks(AHEAD);
+    for some in groups.chunks(AHEAD) {
+        for (group, values) in some.iter().zip(&mut in_hand) {
+            *values = deformation(lanes, &constants, group, displacement);
         }
-    } else {
-        for (group, pre) in groups.iter().zip(pre_stress) {
-            push_group(lanes, &constants, group, displacement, force, Some(pre));
+        match pre_stress.next() {
+            None => {
+                for (group, values) in some.iter().zip(&mut in_hand) {
+                    *values = corner_forces(lanes, &constants, &group.area, *values, None);
+                }
+            }
+            Some(pre_stress) => {
+                for ((group, pre), values) in some.iter().zip(pre_stress).zip(&mut in_hand) {
+                    *values = corner_forces(lanes, &constants, &group.area, *values, Some(pre));
+                }
+            }
+        }
+        for (group, &[x2, y2, x3, y3]) in some.iter().zip(&in_hand) {
+            lanes.scatter_add(force, &group.slots[0], [-(x2 + x3), -(y2 + y3)]);
+            lanes.scatter_add(force, &group.slots[1], [x2, y2]);
+            lanes.scatter_add(force, &group.slots[2], [x3, y3]);
         }
     }
 }
 
+/// Deformation gradients 11, 12, 21, 22.
 #[inline(always)]
-fn push_group<L: Lanes>(
-    lanes: L,
-    constants: &Constants<L::F>,
-    group: &Group,
-    displacement: &Table,
-    force: &mut Table,
-    pre: Option<&[[f64; LANES]; 3]>,
-) {
+fn deformation<L: Lanes>(lanes: L, constants: &Constants<L::F>, group: &Group, displacement: &Table) -> [L::F; 4] {
     let u0 = lanes.gather(displacement, &group.slots[0]);
     let u1 = lanes.gather(displacement, &group.slots[1]);
     let u2 = lanes.gather(displacement, &group.slots[2]);
     let [a, b] = [[u1[0] - u0[0], u1[1] - u0[1]], [u2[0] - u0[0], u2[1] - u0[1]]];
     let [g, h] = constants.g;
-    let f11 = constants.one + (a[0] * g[0] + b[0] * h[0]);
-    let f12 = a[0] * g[1] + b[0] * h[1];
-    let f21 = a[1] * g[0] + b[1] * h[0];
-    let f22 = constants.one + (a[1] * g[1] + b[1] * h[1]);
+    [
+        constants.one + (a[0] * g[0] + b[0] * h[0]),
+        a[0] * g[1] + b[0] * h[1],
+        a[1] * g[0] + b[1] * h[0],
+        constants.one + (a[1] * g[1] + b[1] * h[1]),
+    ]
+}
+
+/// Forces x, y on the second and x, y on the third cover; the first bears what holds them in balance.
+#[inline(always)]
+fn corner_forces<L: Lanes>(
+    lanes: L,
+    constants: &Constants<L::F>,
+    area: &[f64; LANES],
+    [f11, f12, f21, f22]: [L::F; 4],
+    pre: Option<&[[f64; LANES]; 3]>,
+) -> [L::F; 4] {
+    let [g, h] = constants.g;
     let (c, s) = (f11 + f22, f21 - f12);
     let trace = lanes.sqrt(c * c + s * s);
     let inverse = constants.one / trace;
     let (c, s) = (c * inverse, s * inverse);
-    let area = -lanes.load(&group.area);
+    let area = -lanes.load(area);
     let shear = constants.two_mu * area;
     let volume = constants.lambda * area * (trace - constants.two);
     let (vc, vs) = (volume * c, volume * s);
@@ -88,10 +114,5 @@ fn push_group<L: Lanes>(
         p[2] = p[2] + (f21 * xx + f22 * xy);
         p[3] = p[3] + (f21 * xy + f22 * yy);
     }
-    let second = [p[0] * g[0] + p[1] * g[1], p[2] * g[0] + p[3] * g[1]];
-    let third = [p[0] * h[0] + p[1] * h[1], p[2] * h[0] + p[3] * h[1]];
-    let first = [-(second[0] + third[0]), -(second[1] + third[1])];
-    lanes.scatter_add(force, &group.slots[0], first);
-    lanes.scatter_add(force, &group.slots[1], second);
-    lanes.scatter_add(force, &group.slots[2], third);
+    [p[0] * g[0] + p[1] * g[1], p[2] * g[0] + p[3] * g[1], p[0] * h[0] + p[1] * h[1], p[2] * h[0] + p[3] * h[1]]
 }

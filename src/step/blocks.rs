@@ -269,7 +269,7 @@ impl Pass<'_> {
         }
         let (span, step) = (self.span(covers.clone()), self.step(block));
         let from = span.reference();
-        let sums = span.sums(lanes, &from, force);
+        let sums = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
         let start = BlockStart::new(self.metric, block, from, &sums);
         let common = start.common(self.metric, block, &sums, &step);
         let own = self.own(block, covers, &step);
@@ -288,7 +288,7 @@ impl Pass<'_> {
     ) {
         let (span, step, from) = (self.span(patch.covers.clone()), self.step(block), self.reference(block));
         let own = self.own(block, patch.covers.clone(), &step);
-        sums.block = span.sums(lanes, &from, force);
+        sums.block = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
         sums.fastest = span.kick(lanes, &from, &own, &Common::default(), (force, predicted));
     }
 
