@@ -7,6 +7,7 @@ use crate::geometry::{Point, Vector};
 use super::{FIRST_SIGHT_DEPTH, Narrow, Pick, right_of};
 
 impl Narrow<'_> {
+    #[inline(always)]
     pub(super) fn contact(&self, node: usize, pick: &Pick) -> VertexEdge {
         let boundary = self.boundary;
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
@@ -50,7 +51,8 @@ impl Narrow<'_> {
 
     /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
     pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
-        let [x0, x1, x2] = covers.map(|i| self.star[i as usize] + self.displacement[i as usize]);
+        let x = |k: usize| self.star[covers[k] as usize] + self.displacement[covers[k] as usize];
+        let (x0, x1, x2) = (x(0), x(1), x(2));
         let (d1, d2, d) = (x1 - x0, x2 - x0, p - x0);
         let area = d1.perp(&d2);
         let (w1, w2) = (d.perp(&d2) / area, d1.perp(&d) / area);

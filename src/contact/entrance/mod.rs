@@ -85,7 +85,7 @@ pub struct Narrow<'a> {
 }
 
 /// A node over an edge of one side.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Pick {
     side: u32,
     edge: u32,
@@ -165,14 +165,14 @@ impl Narrow<'_> {
     /// Appends the picks that the vertex rule admits of some candidates, with their nodes.
     fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<(u32, Pick)>) {
         let Some(first) = candidates.first() else { return };
-        let mut picks: [Option<Pick>; SIDES_MAX] = [None; SIDES_MAX];
+        let mut picks = [Pick::default(); SIDES_MAX];
         let mut known = self.history.partition_point(|h| h.node < first.node);
         for group in candidates.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node;
             let picks = self.pick_edges(node as usize, group, &mut known, &mut picks);
-            if picks.iter().flatten().any(|p| p.admitted) {
+            if picks.iter().any(|p| p.admitted) {
                 self.choose_sides(node as usize, picks);
-                admitted.extend(picks.iter().flatten().filter(|p| p.admitted).map(|p| (node, *p)));
+                admitted.extend(picks.iter().filter(|p| p.admitted).map(|p| (node, *p)));
             }
         }
     }
@@ -184,8 +184,8 @@ impl Narrow<'_> {
         node: usize,
         group: &[Candidate],
         known: &mut usize,
-        picks: &'p mut [Option<Pick>; SIDES_MAX],
-    ) -> &'p mut [Option<Pick>] {
+        picks: &'p mut [Pick; SIDES_MAX],
+    ) -> &'p mut [Pick] {
         let (mut count, p) = (0, self.node_place(node));
         for edges in group.chunk_by(|a, b| a.side == b.side) {
             let key = (node as u32, edges[0].side);
@@ -193,33 +193,32 @@ impl Narrow<'_> {
                 *known += 1;
             }
             let held = self.history.get(*known).filter(|h| (h.node, h.side) == key);
-            if let Some(pick) = self.pick(node, p, edges, held.map(|_| *known as u32))
-                && count < picks.len()
-            {
-                picks[count] = Some(pick);
-                count += 1;
+            if let Some(pick) = picks.get_mut(count) {
+                count += usize::from(self.pick(node, p, edges, held.map(|_| *known as u32), pick));
             }
         }
         &mut picks[..count]
     }
 
-    fn pick(&self, node: usize, p: Point, edges: &[Candidate], held: Option<u32>) -> Option<Pick> {
+    /// Fills the pick of one side in place; returns whether the node is over that side.
+    #[inline(always)]
+    fn pick(&self, node: usize, p: Point, edges: &[Candidate], held: Option<u32>, pick: &mut Pick) -> bool {
         let (edge, over) = self.nearest(p, edges);
         let Over { along, gap, beyond } = over;
         if beyond > WEDGE_RATIO * gap.abs() + HELD_BEYOND * self.size {
-            return None;
+            return false;
         }
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
         let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
-        let mut pick = Pick { side: edges[0].side, edge, gap, along, length, tangent, held, is_held, admitted: false };
+        *pick = Pick { side: edges[0].side, edge, gap, along, length, tangent, held, is_held, admitted: false };
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
-        let near = bonded || gap - self.allowance(&pick) < self.reach;
+        let near = bonded || gap - self.allowance(pick) < self.reach;
         pick.admitted = near
-            && !(held.is_none() && self.is_false_sight(node, &pick))
-            && self.enters(node, &pick)
-            && self.within(node, &pick, p, beyond);
-        Some(pick)
+            && !(held.is_none() && self.is_false_sight(node, pick))
+            && self.enters(node, pick)
+            && self.within(node, pick, p, beyond);
+        true
     }
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.

@@ -92,22 +92,21 @@ impl Narrow<'_> {
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Option<Pick>]) {
+    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) {
+        let block = |p: &Pick| self.boundary.block[p.edge as usize];
         for i in 0..picks.len() {
+            let own = block(&picks[i]);
             for j in i + 1..picks.len() {
-                let (Some(a), Some(b)) = (picks[i], picks[j]) else { continue };
-                let block = |p: &Pick| self.boundary.block[p.edge as usize];
-                if block(&a) != block(&b) {
+                let (a, b) = (&picks[i], &picks[j]);
+                if block(b) != own {
                     continue;
                 }
                 let loser = match self.corner_between(a.side, b.side) {
                     Some(Corner::Reflex) => None,
-                    corner => self.loser(node, &a, &b, corner.is_some()),
+                    corner => self.loser(node, a, b, corner.is_some()),
                 };
-                if let Some(first) = loser
-                    && let Some(pick) = &mut picks[if first { i } else { j }]
-                {
-                    pick.admitted = false;
+                if let Some(first) = loser {
+                    picks[if first { i } else { j }].admitted = false;
                 }
             }
         }
