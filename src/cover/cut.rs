@@ -360,14 +360,14 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
         area[root] += raw.area[e];
     }
     let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
-    roots.sort_by_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
+    roots.sort_by_cached_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
     let mut block_of_root = vec![NONE; n];
     for (k, &r) in roots.iter().enumerate() {
         block_of_root[r as usize] = k as u32;
     }
     let block: Vec<u32> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
     let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_by_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
+    order.sort_by_cached_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
     BlockOrder { order, block, count: roots.len(), low, high }
 }
 
