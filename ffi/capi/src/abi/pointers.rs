@@ -47,7 +47,7 @@ pub unsafe fn write<T: Copy>(name: &str, out: *mut T, value: T) -> Outcome {
 /// Writes a handle.
 ///
 /// # Safety
-/// As [`write`].
+/// As [`write()`].
 pub unsafe fn write_handle<T>(name: &str, out: *mut *mut T, handle: usize) -> Outcome {
     // SAFETY: promised by the caller.
     unsafe { write(name, out, std::ptr::without_provenance_mut(handle)) }
