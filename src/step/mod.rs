@@ -103,11 +103,17 @@ pub fn outlook(slope: &Slope, regime: Regime, mut state: State, serial: bool) ->
     }
 }
 
+/// A copy of the state, with buffers of its own.
+fn beside(slope: &Slope, state: &State, serial: bool) -> (State, Scratch) {
+    let mut scratch = Scratch { serial, ..Scratch::default() };
+    prepare(slope, state, &mut scratch);
+    (state.clone(), scratch)
+}
+
 /// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
 /// it keeps to the calling thread.
 pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
-    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
-    prepare(slope, &state, &mut scratch);
+    let (mut state, mut scratch) = beside(slope, state, serial);
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     if slope.implicit.is_some() {
@@ -121,8 +127,7 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) ->
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
 pub fn each_contact(slope: &Slope, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
-    let (mut state, mut scratch) = (state.clone(), Scratch { serial, ..Scratch::default() });
-    prepare(slope, &state, &mut scratch);
+    let (mut state, mut scratch) = beside(slope, state, serial);
     let dt = slope.dt - state.part;
     let mut step = Step::new(slope, regime, &mut state, &mut scratch);
     if slope.implicit.is_some() {
