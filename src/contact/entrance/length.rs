@@ -61,7 +61,7 @@ impl Narrow<'_> {
     }
 
     /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
-    /// an inner node, whose segments that corner has.
+    /// an inner node, whose segments that corner has. One that is kept by the overlap of the corners fades with it.
     fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
         let band = HELD_BEYOND * self.size;
         let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
@@ -70,6 +70,7 @@ impl Narrow<'_> {
             self.boundary.side_ends[pick.side as usize].iter().zip([pick.along, pick.length - pick.along])
         {
             if end.edge == pick.edge && end.corner == Corner::Convex {
+                let within = if pick.is_held { within.max(self.overlap_at(node, *end)) } else { within };
                 share = share.min(least + (1.0 - least) * within / band);
             }
         }

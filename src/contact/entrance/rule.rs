@@ -36,8 +36,11 @@ impl Narrow<'_> {
                 End::Finish => pick.along > pick.length,
             };
             let missed = at.edge == pick.edge && past && beyond > tolerance;
+            if missed && !(pick.is_held && self.overlap_at(node, at) >= -tolerance) {
+                return false;
+            }
             let corner = self.place[at.point as usize];
-            !missed && ((p - corner).norm() >= self.size || self.is_inside_round(node, pick, p, end))
+            (p - corner).norm() >= self.size || self.is_inside_round(node, pick, p, end)
         })
     }
 
@@ -51,14 +54,15 @@ impl Narrow<'_> {
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
-        let SideEnd { round, point: corner, .. } = boundary.side_ends[pick.side as usize][end as usize];
+        let at = boundary.side_ends[pick.side as usize][end as usize];
+        let SideEnd { round, point: corner, .. } = at;
         let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
-            return (p - q).dot(&outward) <= tolerance;
+            return (p - q).dot(&outward) <= tolerance || pick.is_held && self.overlap_at(node, at) >= -tolerance;
         }
         let gap = (q - p).dot(&facing);
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
@@ -75,6 +79,18 @@ impl Narrow<'_> {
             return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
         }
         gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
+    }
+
+    /// How far (m) the node is inside the facet round an end of a side, or the corner there inside both of the node's.
+    pub(super) fn overlap_at(&self, node: usize, at: SideEnd) -> f64 {
+        let frame = &self.frames.nodes[node];
+        let to = self.place[at.point as usize] - frame.place;
+        let inside = to.dot(&self.frames.edges[at.round as usize].normal());
+        if !frame.is_convex {
+            return inside;
+        }
+        let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
+        inside.max(depths[0].min(depths[1]))
     }
 
     /// Whether a node carried force against a side in the last step.
