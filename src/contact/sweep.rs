@@ -258,7 +258,7 @@ impl OpenClose {
             let step = force - bolt.force;
             if step != 0.0 {
                 push_bolt(bodies, bolt.direction * (-step * kick), &mut ground);
-                ground.mark([0, 1].map(|k| bodies[k].block()), turn);
+                ground.mark([0, 1].map(|k| bodies[k].block()), turn, true);
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
             }

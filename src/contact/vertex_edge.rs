@@ -145,26 +145,25 @@ impl VertexEdge {
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
 
-    /// Takes the forces away; `torn` when the joint was asked for more tension than it has.
+    /// Takes forces (N/m) that the joint carries, none unless it `bears`; `torn` when it was asked for more tension
+    /// than it has. No branch depends on what they are: that is hard to foresee.
     #[inline(always)]
-    pub fn open(&mut self, torn: bool) {
-        let history = &mut self.history;
+    pub fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool) {
+        let slips = shear.abs() >= self.limits.shear(normal);
+        let states = [ContactState::Open, ContactState::Open, ContactState::Lock, ContactState::Slip];
+        self.history.state = states[2 * usize::from(bears) + usize::from(slips)];
+        // The sum turns a zero from below into zero.
+        (self.history.normal_force, self.history.shear_force) = (normal + 0.0, shear + 0.0);
         self.torn = torn;
-        (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
     }
 
     /// Clamps the forces that the springs ask for to what the joint can carry.
     #[inline(always)]
     pub fn decide(&mut self, normal: f64, shear: f64) {
         let torn = normal < -self.limits.tension;
-        if torn || (normal <= 0.0 && self.limits.tension == 0.0) {
-            return self.open(torn);
-        }
-        self.torn = false;
-        let history = &mut self.history;
+        let bears = !torn && (normal > 0.0 || self.limits.tension > 0.0);
         let limit = self.limits.shear(normal);
-        history.normal_force = normal;
-        history.shear_force = shear.clamp(-limit, limit);
-        history.state = if shear.abs() >= limit { ContactState::Slip } else { ContactState::Lock };
+        let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0; 2] };
+        self.bear(force, bears, torn);
     }
 }

@@ -84,7 +84,7 @@ impl Narrow<'_> {
         for (end, within) in
             self.boundary.side_ends[pick.side as usize].iter().zip([pick.along, pick.length - pick.along])
         {
-            if end.edge == pick.edge && end.corner == Corner::Convex {
+            if within < band && end.edge == pick.edge && end.corner == Corner::Convex {
                 let within = if pick.is_held { within.max(self.overlap_at(node, *end)) } else { within };
                 share = share.min(least + (1.0 - least) * within / band);
             }

@@ -38,11 +38,12 @@ impl Ground<'_> {
         Ground { own, first_cover: *first_cover, push, moved, first_block: *first_block }
     }
 
-    /// Notes that blocks of the run move in a turn; none is a held one.
+    /// Notes that blocks of the run move in a turn, if they do; none is a held one.
     #[inline(always)]
-    pub fn mark(&mut self, blocks: [u32; 2], turn: u32) {
+    pub fn mark(&mut self, blocks: [u32; 2], turn: u32, moves: bool) {
         for block in blocks.into_iter().filter(|&block| block != NONE) {
-            self.moved[(block - self.first_block) as usize] = turn;
+            let moved = &mut self.moved[(block - self.first_block) as usize];
+            *moved = if moves { turn } else { *moved };
         }
     }
 

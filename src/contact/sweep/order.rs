@@ -20,7 +20,7 @@ const ABREAST: usize = 4;
 #[derive(Debug, Clone, Default)]
 pub struct SweepOrder {
     /// Near nodes and sides, sorted.
-    keys: Vec<[u32; 2]>,
+    keys: Vec<u64>,
     /// Turn of each.
     turn: Vec<u32>,
     /// Turn after the last one of each part of the tree, parts in the order in which they are swept.
@@ -83,7 +83,7 @@ impl SweepOrder {
             let point = boundary.node_point[run[0].node as usize] as usize;
             let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
             let key = self.keys.len() as u32;
-            self.keys.push([run[0].node, run[0].side]);
+            self.keys.push(key_of(run[0].node, run[0].side));
             self.entries.push(Entry { part: 0, blocks: [own.min(other), own.max(other)], key });
         }
         self.cut(metric);
@@ -169,22 +169,31 @@ impl SweepOrder {
         self.taken.resize(self.turn.len(), NONE);
         let mut k = 0;
         for (index, contact) in contacts.iter().enumerate() {
-            let key = [contact.history.node, contact.history.side];
+            let key = key_of(contact.history.node, contact.history.side);
             while self.keys[k] < key {
                 k += 1;
             }
             self.taken[self.turn[k] as usize] = index as u32;
         }
-        sequence.clear();
+        // Which turns are taken is hard to foresee: no branch depends on it.
+        sequence.resize(contacts.len() + 1, NONE);
         ends.clear();
-        let mut from = 0;
+        let (mut from, mut count) = (0, 0);
         for &end in &self.part_end {
-            let taken = &self.taken[from as usize..end as usize];
-            sequence.extend(taken.iter().copied().filter(|&index| index != NONE));
-            ends.push(sequence.len() as u32);
+            for &index in &self.taken[from as usize..end as usize] {
+                sequence[count] = index;
+                count += usize::from(index != NONE);
+            }
+            ends.push(count as u32);
             from = end;
         }
+        sequence.truncate(count);
     }
+}
+
+/// What near nodes and sides are sorted by.
+fn key_of(node: u32, side: u32) -> u64 {
+    u64::from(node) << u32::BITS | u64::from(side)
 }
 
 /// The smallest part of the tree that holds two leaves, by its place in the order in which parts are swept: both halves

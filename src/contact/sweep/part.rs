@@ -165,9 +165,7 @@ impl Part<'_> {
             let share = step / larger(force, floor);
             change = larger(share, change);
             (watch.judged, watch.force) = (first + k, force);
-            if share > moves {
-                ground.mark(watch.blocks, first + k);
-            }
+            ground.mark(watch.blocks, first + k, share > moves);
         }
         change
     }

@@ -81,12 +81,7 @@ impl Row {
     /// Leaves force and state in its contact.
     #[inline(always)]
     pub fn finish(&self, contacts: &mut [VertexEdge]) {
-        let contact = &mut contacts[self.contact as usize];
-        if self.bears {
-            contact.decide(self.force[0], self.force[1]);
-        } else {
-            contact.open(self.torn);
-        }
+        contacts[self.contact as usize].bear(self.force, self.bears, self.torn);
     }
 
     /// What decides whether it is judged.
@@ -105,11 +100,9 @@ impl Row {
     /// Pushes with the forces so far.
     #[inline(always)]
     pub fn warm(&self, kick: f64, ground: &mut Ground) {
-        if self.force != [0.0; 2] {
-            let impulse = self.turned(self.force) * kick;
-            for (body, impulse) in self.bodies.iter().zip([impulse, -impulse]) {
-                body.push(impulse, &body.places(ground), ground);
-            }
+        let impulse = self.turned(self.force) * kick;
+        for (body, impulse) in self.bodies.iter().zip([impulse, -impulse]) {
+            body.push(impulse, &body.places(ground), ground);
         }
     }
 
@@ -129,12 +122,11 @@ impl Row {
         let (normal, limit) = (normal * bears, limit * bears);
         let force = [normal, smaller(larger(shear, -limit), limit)];
         let step = [force[0] - self.force[0], force[1] - self.force[1]];
-        if step != [0.0; 2] {
-            let impulse = self.turned(step) * kick;
-            self.bodies[0].push(impulse, &places[0], ground);
-            self.bodies[1].push(-impulse, &places[1], ground);
-            self.force = force;
-        }
+        // Nor does a branch depend on whether the force changes: it would be known too late.
+        let impulse = self.turned(step) * kick;
+        self.bodies[0].push(impulse, &places[0], ground);
+        self.bodies[1].push(-impulse, &places[1], ground);
+        self.force = force;
         [larger(step[0].abs(), step[1].abs()), self.largest()]
     }
 
