@@ -21,12 +21,14 @@ pub struct Pair {
 
 impl Pair {
     /// A cover field at the first point relative to the second.
+    #[inline(always)]
     pub fn difference(&self, field: &[Vector]) -> Vector {
         cover::sample(&self.covers[0], &self.weights[0], field)
             - cover::sample(&self.covers[1], &self.weights[1], field)
     }
 
     /// Sets z; returns the inverse effective mass (m/kg) of both bodies along each axis (Eq. 4).
+    #[inline(always)]
     pub fn weigh<const N: usize>(&mut self, metric: &Metric, axes: [Vector; N]) -> [f64; N] {
         let mut compliance = [0.0; N];
         for body in 0..2 {

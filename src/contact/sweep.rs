@@ -8,6 +8,7 @@ mod support;
 
 pub use body::BlockPush;
 
+use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::geometry::Vector;
@@ -92,6 +93,28 @@ pub struct OpenClose {
     roots: Vec<Vector>,
 }
 
+/// Rows of some contacts are made: compiled for every kind of lanes.
+struct Load<'a> {
+    rows: &'a mut [Row],
+    watch: &'a mut [Watch],
+    sequence: &'a [u32],
+    contacts: &'a [VertexEdge],
+    view: &'a SweepView<'a>,
+    options: &'a SweepOptions,
+}
+
+impl Kernel for Load<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        for ((row, watch), &k) in self.rows.iter_mut().zip(self.watch).zip(self.sequence) {
+            row.load(&self.contacts[k as usize], k, self.view, self.options);
+            *watch = row.watch();
+        }
+    }
+}
+
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
@@ -158,15 +181,15 @@ impl OpenClose {
         self.rows.resize(count, Row::default());
         self.watch.resize(count, Watch::default());
         self.list.resize(count, 0);
-        let fill = |((row, watch), &k): ((&mut Row, &mut Watch), &u32)| {
-            *row = Row::new(&contacts[k as usize], k, &view, options);
-            *watch = row.watch();
+        let load = |((rows, watch), sequence): ((&mut [Row], &mut [Watch]), &[u32])| {
+            dispatch(Load { rows, watch, sequence, contacts, view: &view, options });
         };
         if options.serial || count < part::GRAIN {
-            self.rows.iter_mut().zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+            load(((&mut self.rows, &mut self.watch), &self.sequence));
         } else {
-            let rows = self.rows.par_iter_mut().with_min_len(part::GRAIN / 2);
-            rows.zip(&mut self.watch).zip(&self.sequence).for_each(fill);
+            let (rows, grain) = (&mut self.rows, part::GRAIN / 2);
+            let rows = rows.par_chunks_mut(grain).zip(self.watch.par_chunks_mut(grain));
+            rows.zip(self.sequence.par_chunks(grain)).for_each(load);
         }
         self.own.clear();
         self.own.resize(self.roots.len(), Vector::zeros());
@@ -202,7 +225,7 @@ impl OpenClose {
         let any = !(self.rows.is_empty() && self.bearings.is_empty() && self.bolts.is_empty());
         while any && report.sweeps < options.sweeps_max {
             all |= report.sweeps + 1 == options.sweeps_max;
-            let largest = self.watch.iter().map(|w| w.force).fold(f64::MIN_POSITIVE, row::larger);
+            let largest = row::largest(&self.watch);
             let turn = report.sweeps * (self.rows.len() as u32 + 1) + 1;
             let swept = self.part(contacts, options, Work::Sweep { all, floor: LIGHT * largest, turn });
             let support_change = self.bearings.sweep(&mut self.own);
@@ -245,10 +268,7 @@ impl OpenClose {
 
     /// Forces and states of all that was judged.
     fn finish(&self, contacts: &mut [VertexEdge], others: &mut Others) {
-        for row in &self.rows {
-            let [normal, shear] = row.asked();
-            contacts[row.contact() as usize].decide(normal, shear);
-        }
+        self.rows.iter().for_each(|row| row.finish(contacts));
         self.bearings.finish(others.rows);
     }
 

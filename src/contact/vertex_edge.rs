@@ -19,7 +19,7 @@ pub enum ContactState {
 }
 
 /// What a contact remembers from step to step; identified by node and side.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactHistory {
     /// Boundary node that may enter.
     pub node: u32,
@@ -46,7 +46,7 @@ pub struct ContactHistory {
 }
 
 /// A contact during one step: geometry, compliance and forces.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct VertexEdge {
     /// What it remembers; forces are updated by the sweeps.
     pub history: ContactHistory,
@@ -84,6 +84,7 @@ pub struct VertexEdge {
 
 impl VertexEdge {
     /// Unit tangent of the edge.
+    #[inline(always)]
     pub fn tangent(&self) -> Vector {
         Vector::new(-self.normal.y, self.normal.x)
     }
@@ -120,17 +121,20 @@ impl VertexEdge {
     }
 
     /// Penetration (m) that the springs resist: without what was there at first sight.
+    #[inline(always)]
     pub fn loaded_penetration(&self) -> f64 {
         self.penetration - self.history.offset
     }
 
     /// Normal and shear component of a cover field at the node relative to the edge.
+    #[inline(always)]
     pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
         let relative = self.pair.difference(field);
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
     /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) (Eq. 15).
+    #[inline(always)]
     pub fn shear_after(&self, shear: f64) -> (f64, f64) {
         if self.history.state == ContactState::Open {
             return (0.0, 0.0);
@@ -141,14 +145,23 @@ impl VertexEdge {
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
 
-    /// Clamps the forces that the springs ask for to what the joint can carry.
-    pub fn decide(&mut self, normal: f64, shear: f64) {
+    /// Takes the forces away; `torn` when the joint was asked for more tension than it has.
+    #[inline(always)]
+    pub fn open(&mut self, torn: bool) {
         let history = &mut self.history;
-        self.torn = normal < -self.limits.tension;
-        if self.torn || (normal <= 0.0 && self.limits.tension == 0.0) {
-            (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
-            return;
+        self.torn = torn;
+        (history.normal_force, history.shear_force, history.state) = (0.0, 0.0, ContactState::Open);
+    }
+
+    /// Clamps the forces that the springs ask for to what the joint can carry.
+    #[inline(always)]
+    pub fn decide(&mut self, normal: f64, shear: f64) {
+        let torn = normal < -self.limits.tension;
+        if torn || (normal <= 0.0 && self.limits.tension == 0.0) {
+            return self.open(torn);
         }
+        self.torn = false;
+        let history = &mut self.history;
         let limit = self.limits.shear(normal);
         history.normal_force = normal;
         history.shear_force = shear.clamp(-limit, limit);

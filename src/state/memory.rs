@@ -88,7 +88,7 @@ impl Scratch {
             ("places", self.place.bytes() + self.frames.bytes()),
             ("judged pairs", self.admitted.bytes()),
             ("search", self.search.bytes()),
-            ("contacts", sum(&[&self.contacts, &self.sliding])),
+            ("contacts", sum(&[&self.contacts, &self.outcomes])),
             ("open–close iteration", self.open_close.bytes()),
             ("supports and bolts", sum(&[&self.rows, &self.bolts])),
             ("yielding", self.yielded.bytes()),

@@ -14,7 +14,7 @@ pub use implicit::{Implicit, ImplicitScratch, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use memory::Part;
-pub use scratch::{PatchSums, Scratch, Seconds};
+pub use scratch::{ContactOutcome, PatchSums, Scratch, Seconds};
 pub use slope::{
     BaseMotion, Fixity, FreeFieldPoint, MotionKind, Port, PortKind, QuietBoundary, Slope, TimedRecord, Water,
 };

@@ -36,8 +36,8 @@ pub struct Scratch {
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
-    /// Velocities (m/s) of those contacts before and after the forces of this step, each normal and shear.
-    pub sliding: Vec<[[f64; 2]; 2]>,
+    /// What they did in this step.
+    pub outcomes: Vec<ContactOutcome>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
     /// Velocities of free-field columns after this step (m/s).
@@ -66,6 +66,19 @@ pub struct Scratch {
     pub serial: bool,
     /// Seconds spent in each part of the step.
     pub seconds: Seconds,
+}
+
+/// What a contact did in a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactOutcome {
+    /// Work of its forces (J/m).
+    pub work: f64,
+    /// What friction took of it (J/m).
+    pub friction: f64,
+    /// Penetration (m) that its springs resist.
+    pub penetration: f64,
+    /// Depth (m) at which it was seen for the first time in this step; 0 for others.
+    pub deep: f64,
 }
 
 /// Sums over the covers of a patch.

@@ -10,19 +10,15 @@ use crate::state::{Ledger, Scratch};
 use super::blocks::{self, Finish, Finished, Totals};
 use super::{Regime, Step, StepReport, guard, report};
 
-/// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
-const OFFSET_FADE: f64 = 0.5;
-
 impl Step<'_> {
     /// Ends a sub-step of `dt` (s); returns the report of its start when one is wanted.
     pub(super) fn commit(&mut self, dt: f64) -> StepReport {
         let clock = Instant::now();
         let totals = self.finish(dt);
-        self.measure_contacts();
+        self.settle_contacts(dt);
         let works = self.works(dt, &totals);
         let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
-        self.record_contacts(dt);
         self.commit_columns(dt);
         if self.report {
             self.drift(dt);
@@ -139,32 +135,6 @@ impl Step<'_> {
         let scratch = &*self.scratch;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {
             *force = (scratch.predicted[i] - scratch.damped[i]) * (self.slope.metric.mass[i] / kick_dt);
-        }
-    }
-
-    /// Histories of this sub-step's contacts and supports.
-    pub(super) fn record_contacts(&mut self, dt: f64) {
-        let (state, scratch) = (&mut *self.state, &*self.scratch);
-        let fade = (-dt / OFFSET_FADE).exp();
-        state.contacts.clear();
-        for (contact, [_, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
-            let mut history = contact.history;
-            let (stored, slipped) = contact.shear_after(after[1] * dt);
-            let law = &state.laws[contact.law as usize];
-            history.shear_stored = stored;
-            history.rest += law.dilate(history.slip, history.slip + slipped);
-            history.slip += slipped;
-            history.intact &= !contact.torn && slipped == 0.0;
-            if contact.fresh && history.offset > 0.0 {
-                state.counters.deep_contacts += 1;
-                state.counters.deepest_contact = state.counters.deepest_contact.max(history.offset);
-            }
-            history.offset *= fade;
-            state.counters.penetration_max = state.counters.penetration_max.max(contact.loaded_penetration());
-            state.contacts.push(history);
-        }
-        for row in &scratch.rows {
-            state.support_force[row.support as usize] = row.force;
         }
     }
 }

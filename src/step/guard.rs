@@ -63,12 +63,13 @@ impl Step<'_> {
             self.guard_speeds()?;
         }
         let limit = slope.penetration_limit;
-        match self.scratch.contacts.iter().find(|c| c.loaded_penetration() > limit) {
-            Some(contact) => Err(StepError {
-                block: contact.pair.blocks[0],
-                place: self.scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize],
+        let scratch = &*self.scratch;
+        match scratch.outcomes.iter().position(|outcome| outcome.penetration > limit) {
+            Some(k) => Err(StepError {
+                block: scratch.contacts[k].pair.blocks[0],
+                place: scratch.place[slope.boundary.node_point[scratch.contacts[k].history.node as usize] as usize],
                 time: self.time,
-                failure: Failure::Penetration { depth: contact.loaded_penetration(), limit },
+                failure: Failure::Penetration { depth: scratch.outcomes[k].penetration, limit },
             }),
             None => Ok(()),
         }

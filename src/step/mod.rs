@@ -10,6 +10,7 @@ mod predict;
 mod prepare;
 mod quiet;
 mod report;
+mod settle;
 mod touch;
 mod works;
 mod yielding;

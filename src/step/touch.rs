@@ -2,12 +2,14 @@
 
 use std::time::Instant;
 
+use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport, VertexEdge};
 use crate::cover::Weights;
-use crate::geometry::Point;
-use crate::state::Scratch;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::Metric;
+use crate::state::{Scratch, State};
 
 use super::{Regime, Step};
 
@@ -21,7 +23,53 @@ const CELL: f64 = 0.5;
 pub(super) const REACH: f64 = 0.005;
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
-const CONTACTS: usize = 2048;
+pub(super) const CONTACTS: usize = 2048;
+
+/// What contacts come on with in a step of `dt` (s) whose forces act for `kick` (s).
+struct Approach<'a> {
+    state: &'a State,
+    metric: &'a Metric,
+    predicted: &'a [Vector],
+    dt: f64,
+    kick: f64,
+    /// Damping ratio of a dynamic stage.
+    damping: Option<f64>,
+}
+
+/// How some contacts answer: compiled for every kind of lanes.
+struct Answer<'a> {
+    contacts: &'a mut [VertexEdge],
+    view: &'a Approach<'a>,
+}
+
+impl Kernel for Answer<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        for contact in self.contacts {
+            contact.approach = contact.relative(self.view.predicted);
+            if let Some(ratio) = self.view.damping {
+                self.view.centre(contact, ratio);
+            }
+        }
+    }
+}
+
+impl Approach<'_> {
+    /// Centres the springs that are a joint's own.
+    #[inline(always)]
+    fn centre(&self, contact: &mut VertexEdge, ratio: f64) {
+        let Self { state, metric, dt, kick, .. } = *self;
+        let physical = state.laws[contact.law as usize].penalty.map(|penalty| !penalty);
+        if physical != [false; 2] {
+            let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
+            let inverse: f64 = contact.pair.blocks.map(|b| metric.inverse_total[b as usize]).iter().sum();
+            let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
+            contact.centre(physical, dt, kick, last, bouncing);
+        }
+    }
+}
 
 impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
@@ -112,25 +160,17 @@ impl Step<'_> {
         let clock = Instant::now();
         let (state, scratch) = (&*self.state, &mut *self.scratch);
         let kick = 0.5 * (state.dt_last + dt);
-        let (is_dynamic, ratio) = match self.regime {
-            Regime::Dynamic { damping } => (true, damping),
-            Regime::Static { .. } => (false, 0.0),
-        };
         let Scratch { contacts, predicted, metric, serial, .. } = scratch;
-        let approach = |contact: &mut VertexEdge| {
-            contact.approach = contact.relative(predicted);
-            let physical = state.laws[contact.law as usize].penalty.map(|penalty| is_dynamic && !penalty);
-            if physical != [false; 2] {
-                let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
-                let inverse: f64 = contact.pair.blocks.map(|b| metric.inverse_total[b as usize]).iter().sum();
-                let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
-                contact.centre(physical, dt, kick, last, bouncing);
-            }
+        let damping = match self.regime {
+            Regime::Dynamic { damping } => Some(damping),
+            Regime::Static { .. } => None,
         };
-        if *serial {
-            contacts.iter_mut().for_each(approach);
+        let view = Approach { state, metric, predicted, dt, kick, damping };
+        if *serial || contacts.len() <= CONTACTS {
+            dispatch(Answer { contacts, view: &view });
         } else {
-            contacts.par_iter_mut().with_min_len(CONTACTS).for_each(approach);
+            let parts = contacts.par_chunks_mut(CONTACTS);
+            parts.for_each(|contacts| dispatch(Answer { contacts, view: &view }));
         }
         self.load_supports(dt);
         self.load_bolts();
@@ -166,20 +206,5 @@ impl Step<'_> {
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
-    }
-
-    /// Velocities (m/s) normal and shear of all contacts before and after the forces of this sub-step.
-    pub(super) fn measure_contacts(&mut self) {
-        let Scratch { contacts, predicted, sliding, serial, .. } = &mut *self.scratch;
-        let velocity = &self.state.velocity;
-        let measure = |(both, contact): (&mut [[f64; 2]; 2], &VertexEdge)| {
-            *both = [contact.relative(velocity), contact.relative(predicted)];
-        };
-        sliding.resize(contacts.len(), Default::default());
-        if *serial {
-            sliding.iter_mut().zip(contacts.iter()).for_each(measure);
-        } else {
-            sliding.par_iter_mut().with_min_len(CONTACTS).zip(&*contacts).for_each(measure);
-        }
     }
 }

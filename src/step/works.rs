@@ -1,6 +1,5 @@
 //! Works of a sub-step: what the ledger of energies adds up.
 
-use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
@@ -27,15 +26,9 @@ impl Step<'_> {
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let mut works = Ledger { damping: finished.damping, ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
-        for (contact, [before, after]) in scratch.contacts.iter().zip(&scratch.sliding) {
-            let [normal, shear] = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick_dt);
-            works.contact_work += contact.history.normal_force * normal + contact.history.shear_force * shear;
-            if contact.history.state == ContactState::Slip {
-                let (stored, _) = contact.shear_after(after[1] * dt);
-                let old = contact.history.shear_stored;
-                works.friction -=
-                    contact.history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
-            }
+        for outcome in &scratch.outcomes {
+            works.contact_work += outcome.work;
+            works.friction -= outcome.friction;
         }
         for row in &scratch.rows {
             let support = &slope.supports[row.support as usize];

@@ -1,15 +1,50 @@
 //! Geometry, law, stiffness and history of an admitted contact.
 
+use enmm_lanes::{Kernel, Lanes, dispatch};
+use rayon::prelude::*;
+
 use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::{FIRST_SIGHT_DEPTH, Narrow, Pick, right_of};
+use super::{FIRST_SIGHT_DEPTH, GRAIN, Narrow, Pick, right_of};
+
+/// Contacts are made of what was admitted: compiled for every kind of lanes.
+struct Make<'a> {
+    narrow: &'a Narrow<'a>,
+    picks: &'a [Pick],
+    contacts: &'a mut [VertexEdge],
+}
+
+impl Kernel for Make<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
+            *contact = self.narrow.contact(pick);
+        }
+    }
+}
 
 impl Narrow<'_> {
+    /// Makes the contacts of some picks in place, from the contact `made` on; returns where they end.
+    pub(super) fn make(&self, picks: &[Pick], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
+        let end = made + picks.len();
+        contacts.resize(contacts.len().max(end), VertexEdge::default());
+        let contacts = &mut contacts[made..end];
+        if self.serial || picks.len() <= GRAIN {
+            dispatch(Make { narrow: self, picks, contacts });
+        } else {
+            let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
+            parts.for_each(|(contacts, picks)| dispatch(Make { narrow: self, picks, contacts }));
+        }
+        end
+    }
+
     #[inline(always)]
-    pub(super) fn contact(&self, node: usize, pick: &Pick) -> VertexEdge {
-        let boundary = self.boundary;
+    fn contact(&self, pick: &Pick) -> VertexEdge {
+        let (boundary, node) = (self.boundary, pick.node as usize);
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
         let normal = right_of(pick.tangent);
@@ -50,6 +85,7 @@ impl Narrow<'_> {
     }
 
     /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
+    #[inline(always)]
     pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
         let x = |k: usize| self.star[covers[k] as usize] + self.displacement[covers[k] as usize];
         let (x0, x1, x2) = (x(0), x(1), x(2));
@@ -60,11 +96,14 @@ impl Narrow<'_> {
     }
 
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
+    #[inline(always)]
     fn law(&self, node: usize, edge: usize) -> u32 {
         let law = |trace: u32| self.trace_law.get(trace as usize).copied();
         law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
     }
 
+    #[cold]
+    #[inline(never)]
     fn first_sight(&self, node: usize, pick: &Pick, length: f64, closure: Closure, normal: Vector) -> ContactHistory {
         let mut history = ContactHistory {
             node: node as u32,

@@ -124,15 +124,16 @@ pub fn entrance_edges(
     admitted: &mut Admitted,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    contacts.clear();
+    let mut made = 0;
     // In pieces: what is admitted of all candidates together would be as large as the contacts.
     let runs = if narrow.serial { 1 } else { RUNS };
     let mut rest = candidates;
     while !rest.is_empty() {
         let (piece, others) = rest.split_at(first_of_run(rest, runs));
-        narrow.enter(piece, admitted, contacts);
+        made = narrow.enter(piece, admitted, contacts, made);
         rest = others;
     }
+    contacts.truncate(made);
 }
 
 /// Where run `k` begins: at a multiple of its length, moved on to the next node.
@@ -145,14 +146,19 @@ fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
 }
 
 impl Narrow<'_> {
-    /// Judges some candidates and appends their contacts.
-    fn enter(&self, candidates: &[Candidate], admitted: &mut Admitted, contacts: &mut Vec<VertexEdge>) {
+    /// Judges some candidates and makes their contacts, from the contact `made` on; returns where they end.
+    fn enter(
+        &self,
+        candidates: &[Candidate],
+        admitted: &mut Admitted,
+        contacts: &mut Vec<VertexEdge>,
+        made: usize,
+    ) -> usize {
         let Admitted { runs, picks } = admitted;
         picks.clear();
         if self.serial || candidates.len() <= RUN {
             self.judge(candidates, picks);
-            contacts.extend(picks.iter().map(|pick| self.contact(pick.node as usize, pick)));
-            return;
+            return self.make(picks, contacts, made);
         }
         runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
         runs.par_iter_mut().enumerate().for_each(|(k, run)| {
@@ -160,8 +166,7 @@ impl Narrow<'_> {
             self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
         });
         runs.iter().for_each(|run| picks.extend_from_slice(run));
-        let picks = picks.par_iter().with_min_len(GRAIN);
-        contacts.par_extend(picks.map(|pick| self.contact(pick.node as usize, pick)));
+        self.make(picks, contacts, made)
     }
 
     /// Appends the picks that the vertex rule admits of some candidates.
@@ -246,6 +251,7 @@ impl Narrow<'_> {
         own && -pick.gap > FIRST_SIGHT_DEPTH * self.size || self.behind.binary_search(&[node as u32, pick.side]).is_ok()
     }
 
+    #[inline(always)]
     fn node_place(&self, node: usize) -> Point {
         self.frames.nodes[node].place
     }

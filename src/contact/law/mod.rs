@@ -60,17 +60,25 @@ pub struct RoughLimit {
     pub factor: f64,
 }
 
+impl RoughLimit {
+    /// Greatest shear force (N/m) under a normal force (N/m).
+    fn shear(&self, normal: f64) -> f64 {
+        if normal <= 0.0 { 0.0 } else { normal * self.roughness.friction(normal / self.length) * self.factor }
+    }
+}
+
 impl Limits {
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
+    #[inline(always)]
     pub fn shear(&self, normal: f64) -> f64 {
         match &self.rough {
             None => (normal * self.friction + self.cohesion).max(0.0),
-            Some(_) if normal <= 0.0 => 0.0,
-            Some(rough) => normal * rough.roughness.friction(normal / rough.length) * rough.factor,
+            Some(rough) => rough.shear(normal),
         }
     }
 
     /// Limits of joints whose strength is multiplied by `factor`.
+    #[inline(always)]
     pub fn times(self, factor: f64) -> Self {
         Self {
             friction: self.friction * factor,
@@ -83,6 +91,7 @@ impl Limits {
 
 impl JointLaw {
     /// Limits of a contact of tributary length `length` (m), peak while `intact`.
+    #[inline(always)]
     pub fn limits(&self, length: f64, intact: bool) -> Limits {
         let [friction, cohesion, tension] = if intact {
             [self.friction, self.cohesion, self.tension]
@@ -95,12 +104,14 @@ impl JointLaw {
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness
     /// acts over `penalty_length` (m).
+    #[inline(always)]
     pub fn stiffness(&self, length: f64, penalty_length: f64) -> [f64; 2] {
         let over = |penalty: bool| if penalty { penalty_length } else { length };
         [self.normal_stiffness * over(self.penalty[0]), self.shear_stiffness * over(self.penalty[1])]
     }
 
     /// Opening (m) by dilation between two values of accumulated slip (m).
+    #[inline(always)]
     pub fn dilate(&self, from: f64, to: f64) -> f64 {
         (to.min(self.dilation_slip) - from.min(self.dilation_slip)) * self.dilation
     }

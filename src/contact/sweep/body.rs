@@ -32,6 +32,7 @@ pub struct Ground<'a> {
 
 impl Ground<'_> {
     /// The whole run.
+    #[inline(always)]
     pub fn all(&mut self) -> Ground<'_> {
         let Self { own, first_cover, push, moved, first_block } = self;
         Ground { own, first_cover: *first_cover, push, moved, first_block: *first_block }
@@ -76,25 +77,32 @@ pub struct Body {
 }
 
 impl Body {
-    /// Body `k` of a pair.
+    /// Takes body `k` of a pair.
     #[inline(always)]
-    pub fn new(pair: &Pair, k: usize, view: &SweepView) -> Self {
+    pub fn load(&mut self, pair: &Pair, k: usize, view: &SweepView) {
         let SweepView { metric, roots } = view;
-        let weighted = |j: usize| roots[pair.covers[k][j] as usize] * pair.weights[k][j];
         let block = pair.blocks[k] as usize;
-        let inverse = metric.inverse_total[block];
-        Self {
-            covers: pair.covers[k],
-            block: if metric.is_free(block) { block as u32 } else { NONE },
-            weights: [weighted(0), weighted(1), weighted(2)],
-            lever: Vector::new(-pair.arms[k].y, pair.arms[k].x),
-            share: (1.0 + metric.square[block] * inverse - pair.z[k]) * inverse,
-            part: pair.z[k] * inverse,
-            spin: metric.spin[block],
+        let (inverse, square, spin) = (metric.inverse_total[block], metric.square[block], metric.spin[block]);
+        self.covers = pair.covers[k];
+        self.block = if metric.is_free(block) { block as u32 } else { NONE };
+        for j in 0..3 {
+            self.weights[j] = roots[pair.covers[k][j] as usize] * pair.weights[k][j];
         }
+        self.lever = Vector::new(-pair.arms[k].y, pair.arms[k].x);
+        self.share = (1.0 + square * inverse - pair.z[k]) * inverse;
+        self.part = pair.z[k] * inverse;
+        self.spin = spin;
+    }
+
+    /// Body `k` of a pair.
+    pub fn new(pair: &Pair, k: usize, view: &SweepView) -> Self {
+        let mut body = Self::default();
+        body.load(pair, k, view);
+        body
     }
 
     /// Block that carries it, unless that is held.
+    #[inline(always)]
     pub fn block(&self) -> u32 {
         self.block
     }

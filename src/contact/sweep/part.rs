@@ -1,5 +1,7 @@
 //! A part of the order: its halves, which share no block and may be swept at once, and then what lies between them.
 
+use enmm_lanes::{Kernel, Lanes, dispatch};
+
 use crate::contact::VertexEdge;
 
 use super::body::Ground;
@@ -59,11 +61,27 @@ pub struct Part<'a> {
     pub ground: Ground<'a>,
 }
 
+/// Work on the rows of a part from `from` on, which belong to no half: compiled for every kind of lanes.
+struct Own<'p, 'a, 'v> {
+    part: &'p mut Part<'a>,
+    from: usize,
+    pass: &'p Pass<'v>,
+}
+
+impl Kernel for Own<'_, '_, '_> {
+    type Output = Swept;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> Swept {
+        self.part.own(self.from, self.pass)
+    }
+}
+
 impl Part<'_> {
     /// Does the work of a pass.
     pub fn run(&mut self, pass: &Pass) -> Swept {
         if self.ends.len() < 2 {
-            return self.own(0, pass);
+            return dispatch(Own { part: self, from: 0, pass });
         }
         let between = (self.ends[self.ends.len() - 2] - self.first_row) as usize;
         let (mut first, mut second) = self.halves();
@@ -72,7 +90,7 @@ impl Part<'_> {
         } else {
             rayon::join(|| first.run(pass), || second.run(pass))
         };
-        a.and(b).and(self.own(between, pass))
+        a.and(b).and(dispatch(Own { part: self, from: between, pass }))
     }
 
     fn halves(&mut self) -> (Part<'_>, Part<'_>) {
@@ -106,6 +124,7 @@ impl Part<'_> {
     }
 
     /// Does the work on the rows from `from` on, which belong to no half.
+    #[inline(always)]
     fn own(&mut self, from: usize, pass: &Pass) -> Swept {
         match pass.work {
             Work::Warm => {
@@ -122,6 +141,7 @@ impl Part<'_> {
     }
 
     /// Lists the rows from `from` on that are judged in a sweep; returns their number.
+    #[inline(always)]
     fn list_due(&mut self, from: usize, all: bool) -> usize {
         let ground = self.ground.all();
         let mut count = 0;
@@ -134,6 +154,7 @@ impl Part<'_> {
 
     /// Judges the rows listed, the first row having its turn at `first`; returns the largest change of a force over
     /// its size.
+    #[inline(always)]
     fn judge(&mut self, due: usize, pass: &Pass, floor: f64, first: u32) -> f64 {
         let mut ground = self.ground.all();
         let moves = MOVES * pass.tolerance;

@@ -1,6 +1,6 @@
 //! A contact as the iteration judges it (Eqs. 14, 15, 17).
 
-use crate::contact::VertexEdge;
+use crate::contact::{Limits, VertexEdge};
 use crate::geometry::{NONE, Vector};
 
 use super::body::{Body, Ground};
@@ -15,16 +15,15 @@ struct Answer {
     kept: f64,
 }
 
-/// A contact in the iteration.
+/// A contact in the iteration: five cache lines.
 #[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
 pub struct Row {
     bodies: [Body; 2],
     normal: Vector,
     answers: [Answer; 2],
     /// Forces normal and shear (N/m).
     force: [f64; 2],
-    /// What the springs asked for last (N/m).
-    asked: [f64; 2],
     friction: f64,
     cohesion: f64,
     /// Normal force (N/m) at or below which it is open.
@@ -33,6 +32,10 @@ pub struct Row {
     contact: u32,
     /// Whether spring or strength follow a curve.
     curved: bool,
+    /// Whether it bore when it was judged last.
+    bears: bool,
+    /// Whether it was asked then for more tension than the joint has.
+    torn: bool,
 }
 
 /// What decides whether a row is judged in a sweep.
@@ -56,51 +59,51 @@ impl Watch {
 }
 
 impl Row {
-    /// The row of a contact with its forces of the last step.
-    pub fn new(contact: &VertexEdge, index: u32, view: &SweepView, options: &SweepOptions) -> Self {
-        let curved = contact.closure_max.is_finite() || contact.limits.rough.is_some();
-        let tension = contact.limits.tension;
+    /// Takes a contact with its forces of the last step.
+    #[inline(always)]
+    pub fn load(&mut self, contact: &VertexEdge, index: u32, view: &SweepView, options: &SweepOptions) {
         let closes = contact.closure_max.is_finite();
         let pressed = -contact.stiffness[0] * contact.gap;
-        Self {
-            bodies: [Body::new(&contact.pair, 0, view), Body::new(&contact.pair, 1, view)],
-            normal: contact.normal,
-            answers: [
-                if closes { closing(contact, options) } else { spring(contact, options, 0, pressed) },
-                spring(contact, options, 1, contact.history.shear_stored),
-            ],
-            force: [contact.history.normal_force, contact.history.shear_force],
-            asked: [0.0; 2],
-            friction: contact.limits.friction,
-            cohesion: contact.limits.cohesion,
-            open: if tension > 0.0 { (-tension).next_down() } else { 0.0 },
-            contact: index,
-            curved,
+        self.answers[0] = if closes { closing(contact, options) } else { spring(contact, options, 0, pressed) };
+        self.answers[1] = spring(contact, options, 1, contact.history.shear_stored);
+        self.bodies[0].load(&contact.pair, 0, view);
+        self.bodies[1].load(&contact.pair, 1, view);
+        self.normal = contact.normal;
+        self.force = [contact.history.normal_force, contact.history.shear_force];
+        let Limits { friction, cohesion, tension, rough } = &contact.limits;
+        (self.friction, self.cohesion) = (*friction, *cohesion);
+        self.open = if *tension > 0.0 { (-tension).next_down() } else { 0.0 };
+        self.contact = index;
+        self.curved = closes || rough.is_some();
+        (self.bears, self.torn) = (false, false);
+    }
+
+    /// Leaves force and state in its contact.
+    #[inline(always)]
+    pub fn finish(&self, contacts: &mut [VertexEdge]) {
+        let contact = &mut contacts[self.contact as usize];
+        if self.bears {
+            contact.decide(self.force[0], self.force[1]);
+        } else {
+            contact.open(self.torn);
         }
     }
 
-    /// Index of the contact.
-    pub fn contact(&self) -> u32 {
-        self.contact
-    }
-
     /// What decides whether it is judged.
+    #[inline(always)]
     pub fn watch(&self) -> Watch {
         let [a, b] = [0, 1].map(|k| self.bodies[k].block());
         let blocks = [if a == NONE { b } else { a }, if b == NONE { a } else { b }];
         Watch { blocks, judged: 0, force: self.largest() }
     }
 
-    /// What the springs asked for last (N/m).
-    pub fn asked(&self) -> [f64; 2] {
-        self.asked
-    }
-
+    #[inline(always)]
     fn largest(&self) -> f64 {
         larger(self.force[0].abs(), self.force[1].abs())
     }
 
     /// Pushes with the forces so far.
+    #[inline(always)]
     pub fn warm(&self, kick: f64, ground: &mut Ground) {
         if self.force != [0.0; 2] {
             let impulse = self.turned(self.force) * kick;
@@ -120,8 +123,9 @@ impl Row {
         if self.curved {
             (normal, limit) = self.follow(normal, &contacts[self.contact as usize]);
         }
-        self.asked = [normal, shear];
-        let bears = if normal > self.open { 1.0 } else { 0.0 };
+        self.bears = normal > self.open;
+        self.torn = !self.bears & (normal != 0.0);
+        let bears = if self.bears { 1.0 } else { 0.0 };
         let (normal, limit) = (normal * bears, limit * bears);
         let force = [normal, smaller(larger(shear, -limit), limit)];
         let step = [force[0] - self.force[0], force[1] - self.force[1]];
@@ -149,6 +153,7 @@ impl Row {
 
     /// Normal force and shear limit (N/m) of a joint whose spring or strength follows a curve.
     #[cold]
+    #[inline(never)]
     fn follow(&self, asked: f64, contact: &VertexEdge) -> (f64, f64) {
         let linear = contact.closure_max.is_infinite();
         let normal = if linear { asked } else { contact.closure().solve(asked, self.answers[0].kept) };
@@ -157,6 +162,7 @@ impl Row {
 }
 
 /// The linear spring along axis `k` that bears `stored` (N/m) at the step's start.
+#[inline(always)]
 fn spring(contact: &VertexEdge, options: &SweepOptions, k: usize, stored: f64) -> Answer {
     let a = contact.stiffness[k] * contact.forward[k] * options.dt;
     let aw = a * contact.compliance[k] * options.kick;
@@ -166,10 +172,23 @@ fn spring(contact: &VertexEdge, options: &SweepOptions, k: usize, stored: f64) -
 }
 
 /// A curved normal spring.
+#[inline(always)]
 fn closing(contact: &VertexEdge, options: &SweepOptions) -> Answer {
     let reach = contact.forward[0] * options.dt;
     let rest = -contact.gap - contact.lag[0] - reach * contact.approach[0];
     Answer { rest, rate: reach, kept: reach * contact.compliance[0] * options.kick }
+}
+
+/// The largest force (N/m) of some rows, or the least positive number: a few abreast, since none waits for another.
+pub fn largest(watch: &[Watch]) -> f64 {
+    let mut largest = [f64::MIN_POSITIVE; 8];
+    let mut eights = watch.chunks_exact(8);
+    for eight in &mut eights {
+        for (largest, watch) in largest.iter_mut().zip(eight) {
+            *largest = larger(watch.force, *largest);
+        }
+    }
+    largest.into_iter().chain(eights.remainder().iter().map(|w| w.force)).fold(f64::MIN_POSITIVE, larger)
 }
 
 /// The smaller of two numbers.

@@ -20,8 +20,7 @@ impl Step<'_> {
         for (mean, moved) in scratch.predicted.iter_mut().zip(&scratch.implicit.moved) {
             *mean = moved / inertia.dt;
         }
-        self.measure_contacts();
-        self.record_contacts(inertia.dt);
+        self.settle_contacts(inertia.dt);
         self.move_covers(implicit, inertia);
         if let Regime::Dynamic { damping } = self.regime {
             works.damping += self.implicit_damp(implicit, damping, inertia);

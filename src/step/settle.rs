@@ -1,0 +1,104 @@
+//! What contacts did in a sub-step: their works, and what they remember of it.
+
+use enmm_lanes::{Kernel, Lanes, dispatch};
+use rayon::prelude::*;
+
+use crate::contact::{ContactHistory, ContactState, JointLaw, VertexEdge};
+use crate::geometry::Vector;
+use crate::state::{ContactOutcome, Scratch};
+
+use super::Step;
+use super::touch::CONTACTS;
+
+/// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
+const OFFSET_FADE: f64 = 0.5;
+
+/// Some contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every kind
+/// of lanes.
+struct Settle<'a> {
+    contacts: &'a [VertexEdge],
+    histories: &'a mut [ContactHistory],
+    outcomes: &'a mut [ContactOutcome],
+    laws: &'a [JointLaw],
+    /// Velocities (m/s) of the covers before and after the forces.
+    velocities: [&'a [Vector]; 2],
+    dt: f64,
+    kick: f64,
+    /// Share of an allowance that the sub-step leaves.
+    fade: f64,
+}
+
+impl Kernel for Settle<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let Self { laws, velocities, dt, kick, fade, .. } = self;
+        for ((contact, history), outcome) in self.contacts.iter().zip(self.histories).zip(self.outcomes) {
+            let [before, after] = velocities.map(|velocity| contact.relative(velocity));
+            let (stored, slipped) = contact.shear_after(after[1] * dt);
+            *outcome = works(contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
+            *history = remembered(contact, &laws[contact.law as usize], stored, slipped);
+            history.offset *= fade;
+        }
+    }
+}
+
+/// What a contact did that has moved by `moved` (m), normal and shear, and stores the shear force `stored` (N/m) now.
+#[inline(always)]
+fn works(contact: &VertexEdge, moved: [f64; 2], stored: f64) -> ContactOutcome {
+    let history = &contact.history;
+    let [normal, shear] = moved;
+    let work = history.normal_force * normal + history.shear_force * shear;
+    let old = history.shear_stored;
+    let spent = history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
+    ContactOutcome {
+        work,
+        friction: if history.state == ContactState::Slip { spent } else { 0.0 },
+        penetration: contact.loaded_penetration(),
+        deep: if contact.fresh { history.offset } else { 0.0 },
+    }
+}
+
+/// What a contact remembers that stores a shear force (N/m) and has slipped (m).
+#[inline(always)]
+fn remembered(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
+    let mut history = contact.history;
+    history.shear_stored = stored;
+    history.rest += law.dilate(history.slip, history.slip + slipped);
+    history.slip += slipped;
+    history.intact &= !contact.torn && slipped == 0.0;
+    history
+}
+
+impl Step<'_> {
+    /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
+    pub(super) fn settle_contacts(&mut self, dt: f64) {
+        let state = &mut *self.state;
+        let Scratch { contacts, predicted, outcomes, serial, .. } = &mut *self.scratch;
+        state.contacts.resize(contacts.len(), ContactHistory::default());
+        outcomes.resize(contacts.len(), ContactOutcome::default());
+        let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
+        let (kick, fade) = (0.5 * (state.dt_last + dt), (-dt / OFFSET_FADE).exp());
+        let settle = |((contacts, histories), outcomes)| {
+            dispatch(Settle { contacts, histories, outcomes, laws, velocities, dt, kick, fade });
+        };
+        if *serial || contacts.len() <= CONTACTS {
+            settle(((contacts, &mut state.contacts), outcomes));
+        } else {
+            let parts = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
+            parts.zip(outcomes.par_chunks_mut(CONTACTS)).for_each(settle);
+        }
+        let counters = &mut state.counters;
+        for outcome in &*outcomes {
+            if outcome.deep > 0.0 {
+                counters.deep_contacts += 1;
+                counters.deepest_contact = counters.deepest_contact.max(outcome.deep);
+            }
+            counters.penetration_max = counters.penetration_max.max(outcome.penetration);
+        }
+        for row in &self.scratch.rows {
+            state.support_force[row.support as usize] = row.force;
+        }
+    }
+}
