@@ -98,6 +98,46 @@ fn add_two(_: Avx2, table: &mut Table, slots: [Slot; 2], lanes: __m256d) {
     }
 }
 
+/// The pairs 0–1, 2–3, 4–5 and 6–7 of a run.
+#[inline(always)]
+fn run_of(_: Avx2, pairs: &[Pair; LANES]) -> [__m256d; 4] {
+    let at = pairs.as_ptr().cast::<f64>();
+    // SAFETY: the token proves AVX2; eight pairs are sixteen f64 in a row.
+    unsafe {
+        [_mm256_loadu_pd(at), _mm256_loadu_pd(at.add(4)), _mm256_loadu_pd(at.add(8)), _mm256_loadu_pd(at.add(12))]
+    }
+}
+
+/// Adds to a run its pairs 0–1, 2–3, 4–5 and 6–7.
+#[inline(always)]
+fn add_run(_: Avx2, pairs: &mut [Pair; LANES], parts: [__m256d; 4]) {
+    let at = pairs.as_mut_ptr().cast::<f64>();
+    for (k, part) in parts.into_iter().enumerate() {
+        // SAFETY: the token proves AVX2; eight pairs are sixteen f64 in a row.
+        unsafe { _mm256_storeu_pd(at.add(4 * k), _mm256_add_pd(_mm256_loadu_pd(at.add(4 * k)), part)) }
+    }
+}
+
+/// Pairs less those of the first corners, as x and y.
+#[inline(always)]
+fn less(token: Avx2, [a, b, c, d]: [__m256d; 4], first: [__m256d; 4]) -> [Registers; 2] {
+    // SAFETY: the token proves AVX2.
+    let ([x, y], [z, w]) = unsafe {
+        (
+            split(token, _mm256_sub_pd(a, first[0]), _mm256_sub_pd(b, first[1])),
+            split(token, _mm256_sub_pd(c, first[2]), _mm256_sub_pd(d, first[3])),
+        )
+    };
+    [Registers([x, z]), Registers([y, w])]
+}
+
+/// Pairs −1–0, 1–2, … less the sum of the pairs 0–1, 2–3, … of two.
+#[inline(always)]
+fn balance(_: Avx2, before: __m256d, second: __m256d, third: __m256d) -> __m256d {
+    // SAFETY: the token proves AVX2.
+    unsafe { _mm256_sub_pd(_mm256_permute2f128_pd::<0x21>(before, second), _mm256_add_pd(second, third)) }
+}
+
 impl Lanes for Avx2 {
     type F = Registers;
 
@@ -126,11 +166,7 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Registers; 2] {
-        let at = pairs.as_ptr().cast::<f64>();
-        // SAFETY: the token proves AVX2; eight pairs are sixteen f64 in a row.
-        let [a, b, c, d] = unsafe {
-            [_mm256_loadu_pd(at), _mm256_loadu_pd(at.add(4)), _mm256_loadu_pd(at.add(8)), _mm256_loadu_pd(at.add(12))]
-        };
+        let [a, b, c, d] = run_of(self, pairs);
         let ([x, y], [z, w]) = (split(self, a, b), split(self, c, d));
         [Registers([x, z]), Registers([y, w])]
     }
@@ -184,6 +220,39 @@ impl Lanes for Avx2 {
             let [low, high] = join(self, x.0[k], y.0[k]);
             add_two(self, table, [slots[4 * k], slots[4 * k + 1]], low);
             add_two(self, table, [slots[4 * k + 2], slots[4 * k + 3]], high);
+        }
+    }
+
+    #[inline(always)]
+    fn gather_triangles(self, table: &Table, [first, third]: [Slot; 2]) -> [[Registers; 2]; 2] {
+        let low = run_of(self, table.run(first));
+        [less(self, run_of(self, table.run_beside(first)), low), less(self, run_of(self, table.run(third)), low)]
+    }
+
+    #[inline(always)]
+    fn scatter_triangles(
+        self,
+        table: &mut Table,
+        [first, third]: [Slot; 2],
+        [x, y]: [Registers; 2],
+        [z, w]: [Registers; 2],
+    ) {
+        let ([a, b], [c, d]) = (join(self, x.0[0], y.0[0]), join(self, x.0[1], y.0[1]));
+        let ([e, f], [g, h]) = (join(self, z.0[0], w.0[0]), join(self, z.0[1], w.0[1]));
+        // SAFETY: the token proves AVX2.
+        let zero = unsafe { _mm256_setzero_pd() };
+        let base = [balance(self, zero, a, e), balance(self, a, b, f), balance(self, b, c, g), balance(self, c, d, h)];
+        add_run(self, table.run_mut(first), base);
+        add_run(self, table.run_mut(third), [e, f, g, h]);
+    }
+
+    #[inline(always)]
+    fn scatter_last(self, table: &mut Table, first: Slot, [x, y]: [Registers; 2]) {
+        let at = table.run_beside_mut(first)[LANES - 1].as_mut_ptr();
+        // SAFETY: the token proves AVX2; a pair is two f64 in a row.
+        unsafe {
+            let (x, y) = (_mm256_extractf128_pd::<1>(x.0[1]), _mm256_extractf128_pd::<1>(y.0[1]));
+            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), _mm_unpackhi_pd(x, y)));
         }
     }
 }

@@ -120,6 +120,25 @@ fn add_four(_: Avx512, table: &mut Table, slots: [Slot; 4], lanes: __m512d) {
     }
 }
 
+/// The pairs 0–3 and 4–7 of a run.
+#[inline(always)]
+fn run_of(_: Avx512, pairs: &[Pair; LANES]) -> [__m512d; 2] {
+    let at = pairs.as_ptr().cast::<f64>();
+    // SAFETY: the token proves AVX-512F; eight pairs are sixteen f64 in a row.
+    unsafe { [_mm512_loadu_pd(at), _mm512_loadu_pd(at.add(LANES))] }
+}
+
+/// Adds to a run its pairs 0–3 and 4–7.
+#[inline(always)]
+fn add_run(_: Avx512, pairs: &mut [Pair; LANES], low: __m512d, high: __m512d) {
+    let at = pairs.as_mut_ptr().cast::<f64>();
+    // SAFETY: the token proves AVX-512F; eight pairs are sixteen f64 in a row.
+    unsafe {
+        _mm512_storeu_pd(at, _mm512_add_pd(_mm512_loadu_pd(at), low));
+        _mm512_storeu_pd(at.add(LANES), _mm512_add_pd(_mm512_loadu_pd(at.add(LANES)), high));
+    }
+}
+
 impl Lanes for Avx512 {
     type F = Register;
 
@@ -143,9 +162,7 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Register; 2] {
-        let at = pairs.as_ptr().cast::<f64>();
-        // SAFETY: the token proves AVX-512F; eight pairs are sixteen f64 in a row.
-        let (low, high) = unsafe { (_mm512_loadu_pd(at), _mm512_loadu_pd(at.add(LANES))) };
+        let [low, high] = run_of(self, pairs);
         split(self, low, high)
     }
 
@@ -236,5 +253,50 @@ impl Lanes for Avx512 {
         let [low, high] = join(self, lanes);
         add_four(self, table, [a, b, c, d], low);
         add_four(self, table, [e, f, g, h], high);
+    }
+
+    #[inline(always)]
+    fn gather_triangles(self, table: &Table, [first, third]: [Slot; 2]) -> [[Register; 2]; 2] {
+        let [low, high] = run_of(self, table.run(first));
+        let [a, b] = run_of(self, table.run_beside(first));
+        let [c, d] = run_of(self, table.run(third));
+        // SAFETY: the token proves AVX-512F.
+        unsafe {
+            [
+                split(self, _mm512_sub_pd(a, low), _mm512_sub_pd(b, high)),
+                split(self, _mm512_sub_pd(c, low), _mm512_sub_pd(d, high)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn scatter_triangles(
+        self,
+        table: &mut Table,
+        [first, third]: [Slot; 2],
+        second: [Register; 2],
+        other: [Register; 2],
+    ) {
+        let ([a, b], [c, d]) = (join(self, second), join(self, other));
+        // SAFETY: the token proves AVX-512F.
+        let [low, high] = unsafe {
+            let (p, q) = (_mm512_castpd_si512(a), _mm512_castpd_si512(b));
+            let p_before = _mm512_castsi512_pd(_mm512_alignr_epi64::<6>(p, _mm512_setzero_si512()));
+            let q_before = _mm512_castsi512_pd(_mm512_alignr_epi64::<6>(q, p));
+            [_mm512_sub_pd(p_before, _mm512_add_pd(a, c)), _mm512_sub_pd(q_before, _mm512_add_pd(b, d))]
+        };
+        add_run(self, table.run_mut(first), low, high);
+        add_run(self, table.run_mut(third), c, d);
+    }
+
+    #[inline(always)]
+    fn scatter_last(self, table: &mut Table, first: Slot, [x, y]: [Register; 2]) {
+        let at = table.run_beside_mut(first)[LANES - 1].as_mut_ptr();
+        // SAFETY: the token proves AVX-512F; a pair is two f64 in a row.
+        unsafe {
+            let x = _mm256_extractf128_pd::<1>(_mm512_extractf64x4_pd::<1>(x.0));
+            let y = _mm256_extractf128_pd::<1>(_mm512_extractf64x4_pd::<1>(y.0));
+            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), _mm_unpackhi_pd(x, y)));
+        }
     }
 }

@@ -64,18 +64,43 @@ pub trait Lanes: Copy {
     /// Adds to pairs of a table, lane after lane.
     fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Self::F; 2]);
 
-    /// Eight pairs of a table in a row from a slot on.
+    /// Of eight triangles in a row, with first corners in a run of slots, second ones in the run beside it and third
+    /// ones in a run elsewhere: pairs of the second and of the third corners less those of the first.
     #[inline(always)]
-    fn gather_run(self, table: &Table, first: Slot) -> [Self::F; 2] {
-        self.load_pairs(table.run(first))
+    fn gather_triangles(self, table: &Table, [first, third]: [Slot; 2]) -> [[Self::F; 2]; 2] {
+        let a = self.load_pairs(table.run(first));
+        let b = self.load_pairs(table.run_beside(first));
+        let c = self.load_pairs(table.run(third));
+        [[b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]]
     }
 
-    /// Adds to eight pairs of a table in a row from a slot on.
+    /// Adds pairs to the second and third corners of such triangles, and what holds them in balance to the first. The
+    /// last second corner waits for [`Lanes::scatter_last`], so that no run is read that has been written in part.
     #[inline(always)]
-    fn scatter_run(self, table: &mut Table, first: Slot, lanes: [Self::F; 2]) {
-        let run = table.run_mut(first);
-        let [x, y] = self.load_pairs(run);
-        self.store_pairs([x + lanes[0], y + lanes[1]], run);
+    fn scatter_triangles(
+        self,
+        table: &mut Table,
+        [first, third]: [Slot; 2],
+        second: [Self::F; 2],
+        other: [Self::F; 2],
+    ) {
+        let mut pairs = [[Pair::zeros(); LANES]; 2];
+        self.store_pairs(second, &mut pairs[0]);
+        self.store_pairs(other, &mut pairs[1]);
+        let mut before = Pair::zeros();
+        for ((at, b), c) in table.run_mut(first).iter_mut().zip(&pairs[0]).zip(&pairs[1]) {
+            *at += before - (b + c);
+            before = *b;
+        }
+        table.run_mut(third).iter_mut().zip(&pairs[1]).for_each(|(at, c)| *at += c);
+    }
+
+    /// Adds the last of the pairs to the second corner of the last triangle.
+    #[inline(always)]
+    fn scatter_last(self, table: &mut Table, first: Slot, second: [Self::F; 2]) {
+        let mut pairs = [Pair::zeros(); LANES];
+        self.store_pairs(second, &mut pairs);
+        table.run_beside_mut(first)[LANES - 1] += pairs[LANES - 1];
     }
 
     /// Up to eight values in a row; lanes beyond the end take `fill`.

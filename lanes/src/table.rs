@@ -26,16 +26,20 @@ impl Slot {
     }
 }
 
+/// All pairs of a table, where eight values in a row from every fourth slot on share a line of the cache.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+struct Pairs([Pair; SLOTS + LANES]);
+
 /// Pairs in slots, with room for a run of lanes behind the last slot.
 #[derive(Debug, Clone)]
 pub struct Table {
-    pairs: Box<[Pair; SLOTS + LANES]>,
+    pairs: Box<Pairs>,
 }
 
 impl Default for Table {
     fn default() -> Self {
-        let pairs = vec![Pair::zeros(); SLOTS + LANES].into_boxed_slice();
-        Self { pairs: pairs.try_into().unwrap_or_else(|_| unreachable!("a boxed slice of that length")) }
+        Self { pairs: Box::new(Pairs([Pair::zeros(); SLOTS + LANES])) }
     }
 }
 
@@ -43,27 +47,27 @@ impl Table {
     /// The first `count` pairs.
     #[inline(always)]
     pub fn first(&self, count: usize) -> &[Pair] {
-        &self.pairs[..count]
+        &self.pairs.0[..count]
     }
 
     /// The first `count` pairs.
     #[inline(always)]
     pub fn first_mut(&mut self, count: usize) -> &mut [Pair] {
-        &mut self.pairs[..count]
+        &mut self.pairs.0[..count]
     }
 
     /// The pair of a slot.
     #[inline(always)]
     pub fn at(&self, slot: Slot) -> &Pair {
         // SAFETY: a slot is below SLOTS, which is below the length.
-        unsafe { self.pairs.get_unchecked(slot.index()) }
+        unsafe { self.pairs.0.get_unchecked(slot.index()) }
     }
 
     /// The pair of a slot.
     #[inline(always)]
     pub fn at_mut(&mut self, slot: Slot) -> &mut Pair {
         // SAFETY: a slot is below SLOTS, which is below the length.
-        unsafe { self.pairs.get_unchecked_mut(slot.index()) }
+        unsafe { self.pairs.0.get_unchecked_mut(slot.index()) }
     }
 
     /// Address of the two values of a slot.
@@ -82,13 +86,27 @@ impl Table {
     #[inline(always)]
     pub(crate) fn run(&self, first: Slot) -> &[Pair; LANES] {
         // SAFETY: a slot is below SLOTS, and LANES pairs stand behind the last one; arrays align as their elements.
-        unsafe { &*self.pairs.as_ptr().add(first.index()).cast() }
+        unsafe { &*self.pairs.0.as_ptr().add(first.index()).cast() }
     }
 
     /// Eight pairs from a slot on.
     #[inline(always)]
     pub(crate) fn run_mut(&mut self, first: Slot) -> &mut [Pair; LANES] {
         // SAFETY: as for `run`; the table is borrowed alone.
-        unsafe { &mut *self.pairs.as_mut_ptr().add(first.index()).cast() }
+        unsafe { &mut *self.pairs.0.as_mut_ptr().add(first.index()).cast() }
+    }
+
+    /// Eight pairs after a slot.
+    #[inline(always)]
+    pub(crate) fn run_beside(&self, first: Slot) -> &[Pair; LANES] {
+        // SAFETY: as for `run`: the pair of the slot is followed by LANES pairs.
+        unsafe { &*self.pairs.0.as_ptr().add(first.index() + 1).cast() }
+    }
+
+    /// Eight pairs after a slot.
+    #[inline(always)]
+    pub(crate) fn run_beside_mut(&mut self, first: Slot) -> &mut [Pair; LANES] {
+        // SAFETY: as for `run_beside`; the table is borrowed alone.
+        unsafe { &mut *self.pairs.0.as_mut_ptr().add(first.index() + 1).cast() }
     }
 }

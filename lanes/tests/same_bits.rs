@@ -35,9 +35,12 @@ impl Kernel for Everything {
         }
         let slots = [3, 1, 4, 1, 5, 39, 2, 6].map(Slot::new);
         lanes.scatter_add(&mut table, &slots, [x, b]);
-        lanes.scatter_run(&mut table, Slot::new(SLOTS - 1), [a, y]);
+        for run in [[SLOTS - 1, 3], [4, SLOTS - 1], [9, 13]] {
+            lanes.scatter_triangles(&mut table, run.map(Slot::new), [a, y], [b, x]);
+            lanes.scatter_last(&mut table, Slot::new(run[0]), [a, y]);
+        }
         let [g, h] = lanes.gather(&table, &slots);
-        let [i, j] = lanes.gather_run(&table, Slot::new(7));
+        let [[i, j], [k, l]] = lanes.gather_triangles(&table, [7, SLOTS - 1].map(Slot::new));
         let mut stored = [Pair::zeros(); 6];
         lanes.store_some_pairs([z, w], &mut stored);
         let one = lanes.splat(1.0);
@@ -58,6 +61,8 @@ impl Kernel for Everything {
             h,
             i,
             j,
+            k,
+            l,
         ];
         let mut bits = Vec::new();
         for value in list {

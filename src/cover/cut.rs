@@ -5,7 +5,7 @@ use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 use super::Weights;
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
-use super::order::{hilbert, morton};
+use super::order::{self, hilbert, morton};
 use super::outlines::{Outlines, mesh_only};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
@@ -132,6 +132,19 @@ impl Covers {
             let near = self.around(p, reach).map(|e| (distance(e), e)).min_by(nearest)?;
             (near.0 <= reach).then_some(near.1)
         })
+    }
+
+    /// Lattice nodes of a tile.
+    pub const TILE: usize = order::TILE;
+
+    /// Whether the covers of a block go tile by tile, and row by row within each.
+    pub fn is_tiled(&self, block: usize) -> bool {
+        self.covers_of(block).len() >= order::TILED
+    }
+
+    /// Tile of the lattice that a cover stands in.
+    pub fn tile(&self, cover: usize) -> [i32; 2] {
+        order::tile(self.star[cover])
     }
 
     /// Number of physical covers of each star, as (star, number), ordered by star.
@@ -407,9 +420,14 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
     let star_of = |slot: u32| raw.triangle[slot as usize / 3].nodes()[slot as usize % 3];
     let mut roots: Vec<u32> =
         (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
-    roots.sort_by_key(|&s| {
-        let place = hilbert(covers.mesh.node(star_of(s)), blocks.low, blocks.high);
-        (blocks.block[s as usize / 3], place, star_of(s), s)
+    let mut counts = vec![0; blocks.count];
+    roots.iter().for_each(|&s| counts[blocks.block[s as usize / 3] as usize] += 1);
+    roots.sort_by_cached_key(|&s| {
+        let (block, [i, j]) = (blocks.block[s as usize / 3], star_of(s));
+        let tile = (counts[block as usize] >= order::TILED).then(|| order::tile([i, j]));
+        let node = tile.map_or([i, j], order::tile_centre);
+        let place = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
+        (block, place, tile, [j, i], s)
     });
     let mut cover_of_root = vec![NONE; joined.slot_root.len()];
     for (k, &s) in roots.iter().enumerate() {

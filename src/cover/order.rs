@@ -1,7 +1,26 @@
 //! Order in space: neighbours in the plane are neighbours in memory. Blocks, whose numbers users know, go by Morton
-//! codes; within a block a Hilbert curve makes any run of elements or covers one compact patch of the plane.
+//! codes; within a block a Hilbert curve makes any run of elements or covers one compact patch of the plane. Covers of
+//! a large block go row by row within square tiles of the lattice, and the curve goes from tile to tile: so elements in
+//! a row of the lattice have their covers in a row in memory.
 
 use crate::geometry::Point;
+
+/// Lattice nodes along a side of a tile.
+const TILE_SIDE: i32 = 32;
+/// Lattice nodes of a tile.
+pub const TILE: usize = (TILE_SIDE * TILE_SIDE) as usize;
+/// Covers from which on those of one block go by tiles: smaller blocks have few whole ones.
+pub const TILED: usize = 4 * TILE;
+
+/// Tile of a lattice node.
+pub fn tile(star: [i32; 2]) -> [i32; 2] {
+    star.map(|v| v.div_euclid(TILE_SIDE))
+}
+
+/// Node in the middle of a tile.
+pub fn tile_centre(tile: [i32; 2]) -> [i32; 2] {
+    tile.map(|v| v * TILE_SIDE + TILE_SIDE / 2)
+}
 
 /// Halvings of the box: 2⁻²⁶ of its side is far below any mesh size.
 const LEVELS: u32 = 26;

@@ -224,8 +224,9 @@ pub struct Own<'a> {
     pub dt: f64,
     /// Body loads (m/s²) on a held block.
     pub acceleration: Vector,
-    /// Row-sum masses and 1/m along x and y of a held block's covers; none for a free block.
-    pub held: Option<(&'a [f64], &'a [Vector])>,
+    /// Row-sum masses and 1/m along x and y of a held block's covers, the latter unless all can move; none for a free
+    /// block.
+    pub held: Option<(&'a [f64], Option<&'a [Vector]>)>,
     /// Whether damping sets held axes to rest.
     pub masked: bool,
 }
@@ -267,11 +268,17 @@ impl Span<'_> {
                 }
                 Some((row_sum, inverse)) => {
                     let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
-                    let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
+                    let inverse = match inverse {
+                        None => [lanes.splat(1.0) / lanes.load_some(&self.mass[range.clone()], 1.0); 2],
+                        Some(inverse) => {
+                            let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
+                            if own.masked {
+                                out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
+                            }
+                            inverse
+                        }
+                    };
                     let body = splat(lanes, own.acceleration);
-                    if own.masked {
-                        out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
-                    }
                     out[0] = out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt;
                     out[1] = out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt;
                 }

@@ -1,17 +1,83 @@
 //! Corotated forces of elements, eight side by side (Eqs. 6, 7).
 
-use enmm_lanes::{LANES, Lanes, Table};
+use enmm_lanes::{Eight, LANES, Lanes, Table};
 
 use crate::geometry::Vector;
 
 use super::Elasticity;
-use super::patch::Group;
+use super::patch::{Group, PreStresses, Row};
+
+/// Eight elements: where their displacements come from and their forces go to.
+pub trait Elements: Sized {
+    /// Cut areas (m²).
+    fn area(&self) -> &[f64; LANES];
+
+    /// Displacements (m) of the second and of the third covers less those of the first.
+    fn gather<L: Lanes>(&self, lanes: L, displacement: &Table) -> [[L::F; 2]; 2];
+
+    /// Adds forces x, y on the second and x, y on the third covers (N/m); the first bear what holds them in balance.
+    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table);
+}
+
+/// The force on the first cover.
+#[inline(always)]
+fn balance<F: Eight>([x2, y2, x3, y3]: [F; 4]) -> [F; 2] {
+    [-(x2 + x3), -(y2 + y3)]
+}
+
+impl Elements for Group {
+    #[inline(always)]
+    fn area(&self) -> &[f64; LANES] {
+        &self.area
+    }
+
+    #[inline(always)]
+    fn gather<L: Lanes>(&self, lanes: L, displacement: &Table) -> [[L::F; 2]; 2] {
+        let u0 = lanes.gather(displacement, &self.slots[0]);
+        let u1 = lanes.gather(displacement, &self.slots[1]);
+        let u2 = lanes.gather(displacement, &self.slots[2]);
+        [[u1[0] - u0[0], u1[1] - u0[1]], [u2[0] - u0[0], u2[1] - u0[1]]]
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table) {
+        for (group, &values) in some.iter().zip(forces) {
+            let [x2, y2, x3, y3] = values;
+            lanes.scatter_add(force, &group.slots[0], balance(values));
+            lanes.scatter_add(force, &group.slots[1], [x2, y2]);
+            lanes.scatter_add(force, &group.slots[2], [x3, y3]);
+        }
+    }
+}
+
+impl Elements for Row {
+    #[inline(always)]
+    fn area(&self) -> &[f64; LANES] {
+        &self.area
+    }
+
+    #[inline(always)]
+    fn gather<L: Lanes>(&self, lanes: L, displacement: &Table) -> [[L::F; 2]; 2] {
+        lanes.gather_triangles(displacement, self.first)
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table) {
+        for (row, &[x2, y2, x3, y3]) in some.iter().zip(forces) {
+            lanes.scatter_triangles(force, row.first, [x2, y2], [x3, y3]);
+        }
+        for (row, &[x2, y2, ..]) in some.iter().zip(forces) {
+            lanes.scatter_last(force, row.first[0], [x2, y2]);
+        }
+    }
+}
 
 /// What the elements of a batch share.
 #[derive(Clone, Copy)]
 struct Constants<F> {
     one: F,
     two: F,
+    least: F,
     two_mu: F,
     lambda: F,
     /// Gradients of the second and the third weight.
@@ -20,13 +86,14 @@ struct Constants<F> {
 
 impl<F: Copy> Constants<F> {
     #[inline(always)]
-    fn new<L: Lanes<F = F>>(lanes: L, rock: &Elasticity, g: &[Vector; 3]) -> Self {
+    fn new<L: Lanes<F = F>>(lanes: L, rock: &Elasticity, [g, h]: [Vector; 2]) -> Self {
         Self {
             one: lanes.splat(1.0),
             two: lanes.splat(2.0),
+            least: lanes.splat(f64::MIN_POSITIVE),
             two_mu: lanes.splat(2.0 * rock.mu),
             lambda: lanes.splat(rock.lambda),
-            g: [[lanes.splat(g[1].x), lanes.splat(g[1].y)], [lanes.splat(g[2].x), lanes.splat(g[2].y)]],
+            g: [[lanes.splat(g.x), lanes.splat(g.y)], [lanes.splat(h.x), lanes.splat(h.y)]],
         }
     }
 }
@@ -34,49 +101,48 @@ impl<F: Copy> Constants<F> {
 /// Groups in hand at once: the stages of one wait for each other, those of several side by side do not.
 const AHEAD: usize = 8;
 
-/// Adds the forces (N/m) of the elements of a batch; `pre_stress` holds xx, yy, xy (Pa) of each group or nothing.
+/// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m);
+/// `pre_stress` holds that of each eight or nothing.
 #[inline(always)]
-pub fn push_forces<L: Lanes>(
+pub fn push_forces<L: Lanes, E: Elements>(
     lanes: L,
-    (groups, pre_stress): (&[Group], &[[[f64; LANES]; 3]]),
-    (rock, g): (&Elasticity, &[Vector; 3]),
+    (elements, pre_stress): (&[E], &[PreStresses]),
+    (rock, g): (&Elasticity, [Vector; 2]),
     displacement: &Table,
     force: &mut Table,
 ) {
     let constants = Constants::new(lanes, rock, g);
     let mut in_hand = [[constants.one; 4]; AHEAD];
     let mut pre_stress = pre_stress.chunks(AHEAD);
-    for some in groups.chunks(AHEAD) {
-        for (group, values) in some.iter().zip(&mut in_hand) {
-            *values = deformation(lanes, &constants, group, displacement);
+    for some in elements.chunks(AHEAD) {
+        for (eight, values) in some.iter().zip(&mut in_hand) {
+            *values = deformation(lanes, &constants, eight, displacement);
         }
         match pre_stress.next() {
             None => {
-                for (group, values) in some.iter().zip(&mut in_hand) {
-                    *values = corner_forces(lanes, &constants, &group.area, *values, None);
+                for (eight, values) in some.iter().zip(&mut in_hand) {
+                    *values = corner_forces(lanes, &constants, eight.area(), *values, None);
                 }
             }
             Some(pre_stress) => {
-                for ((group, pre), values) in some.iter().zip(pre_stress).zip(&mut in_hand) {
-                    *values = corner_forces(lanes, &constants, &group.area, *values, Some(pre));
+                for ((eight, pre), values) in some.iter().zip(pre_stress).zip(&mut in_hand) {
+                    *values = corner_forces(lanes, &constants, eight.area(), *values, Some(pre));
                 }
             }
         }
-        for (group, &[x2, y2, x3, y3]) in some.iter().zip(&in_hand) {
-            lanes.scatter_add(force, &group.slots[0], [-(x2 + x3), -(y2 + y3)]);
-            lanes.scatter_add(force, &group.slots[1], [x2, y2]);
-            lanes.scatter_add(force, &group.slots[2], [x3, y3]);
-        }
+        E::add(lanes, some, &in_hand, force);
     }
 }
 
 /// Deformation gradients 11, 12, 21, 22.
 #[inline(always)]
-fn deformation<L: Lanes>(lanes: L, constants: &Constants<L::F>, group: &Group, displacement: &Table) -> [L::F; 4] {
-    let u0 = lanes.gather(displacement, &group.slots[0]);
-    let u1 = lanes.gather(displacement, &group.slots[1]);
-    let u2 = lanes.gather(displacement, &group.slots[2]);
-    let [a, b] = [[u1[0] - u0[0], u1[1] - u0[1]], [u2[0] - u0[0], u2[1] - u0[1]]];
+fn deformation<L: Lanes, E: Elements>(
+    lanes: L,
+    constants: &Constants<L::F>,
+    eight: &E,
+    displacement: &Table,
+) -> [L::F; 4] {
+    let [a, b] = eight.gather(lanes, displacement);
     let [g, h] = constants.g;
     [
         constants.one + (a[0] * g[0] + b[0] * h[0]),
@@ -93,11 +159,12 @@ fn corner_forces<L: Lanes>(
     constants: &Constants<L::F>,
     area: &[f64; LANES],
     [f11, f12, f21, f22]: [L::F; 4],
-    pre: Option<&[[f64; LANES]; 3]>,
+    pre: Option<&PreStresses>,
 ) -> [L::F; 4] {
     let [g, h] = constants.g;
     let (c, s) = (f11 + f22, f21 - f12);
-    let trace = lanes.sqrt(c * c + s * s);
+    // A missing element takes displacements of any covers: its forces must be zero, never 0 times infinity.
+    let trace = lanes.max(constants.least, lanes.sqrt(c * c + s * s));
     let inverse = constants.one / trace;
     let (c, s) = (c * inverse, s * inverse);
     let area = -lanes.load(area);

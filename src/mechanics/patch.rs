@@ -1,6 +1,9 @@
 //! Patches: runs of whole small blocks, or parts of a large one, whose covers fit into the fastest cache, with their
 //! elements in groups of eight of one gradient set and one rock.
 //!
+//! In parts of a large block, which are tiles of the lattice, most elements stand in rows: the covers at the bases of
+//! eight in a row and those at their tips are runs of slots. Such a group needs no gather and no scatter.
+//!
 //! Elements that touch covers of two parts of a block belong to both, so that every part finds the whole force on its
 //! own covers and no two threads write to the same place.
 
@@ -9,13 +12,16 @@ use std::ops::Range;
 use enmm_lanes::{LANES, SLOTS, Slot};
 
 use crate::cover::Covers;
+use crate::geometry::Vector;
 
 use super::PreStress;
 
 /// Covers after which a patch of whole blocks takes no further one.
 const PATCH: usize = 512;
 /// Most covers of a patch; a larger block is cut into parts.
-const PART: usize = 1024;
+const PART: usize = Covers::TILE;
+/// Fewest elements of a row of eight: fewer are quicker by gather and scatter.
+const ROW_MIN: usize = 4;
 /// Element of a lane that stands for none.
 const NO_ELEMENT: u32 = u32::MAX;
 
@@ -32,17 +38,18 @@ pub struct Patch {
     batches: Range<usize>,
 }
 
-/// Groups of elements of one gradient set and one rock.
+/// Elements of one gradient set and one rock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
     /// Gradient set.
     pub set: u8,
     /// Rock.
     pub rock: u16,
+    rows: Range<usize>,
     groups: Range<usize>,
 }
 
-/// Eight elements; missing ones have no area.
+/// Eight elements anywhere; missing ones have no area.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Group {
     /// Slots of the first, second and third covers.
@@ -51,17 +58,67 @@ pub struct Group {
     pub area: [f64; LANES],
 }
 
+/// Corners of an up and of a down triangle as a row has them: left and right end of the base, tip.
+const ROW_CORNERS: [[usize; 3]; 2] = [[0, 1, 2], [1, 0, 2]];
+
+/// Eight elements in a row of the lattice; missing ones have no area, and slots of whatever covers.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Row {
+    /// Slots of the first lane's covers at the left end of its base and at its tip; that at the right end is beside.
+    pub first: [Slot; 2],
+    /// Cut areas (m²).
+    pub area: [f64; LANES],
+}
+
+/// In-situ stress xx, yy, xy (Pa) of eight elements.
+pub type PreStresses = [[f64; LANES]; 3];
+
+/// Eights of elements of one kind, with what few of them or few models need beside.
+#[derive(Debug, Clone, PartialEq)]
+struct Eights<E> {
+    list: Vec<E>,
+    /// In-situ stress of each; empty when there is none.
+    pre_stress: Vec<PreStresses>,
+    /// Elements of the lanes.
+    elements: Vec<[u32; LANES]>,
+}
+
+impl<E> Default for Eights<E> {
+    fn default() -> Self {
+        Self { list: Vec::new(), pre_stress: Vec::new(), elements: Vec::new() }
+    }
+}
+
+impl<E> Eights<E> {
+    fn bytes(&self) -> usize {
+        size_of_val(&*self.list) + size_of_val(&*self.pre_stress) + size_of_val(&*self.elements)
+    }
+
+    fn get(&self, range: &Range<usize>) -> (&[E], &[PreStresses]) {
+        (&self.list[range.clone()], self.pre_stress.get(range.clone()).unwrap_or_default())
+    }
+
+    /// Elements with their slots.
+    fn elements(
+        &self,
+        range: &Range<usize>,
+        slots: impl Fn(&E, usize) -> [Slot; 3] + Copy,
+    ) -> impl Iterator<Item = (usize, [Slot; 3])> {
+        self.list[range.clone()].iter().zip(&self.elements[range.clone()]).flat_map(move |(eight, ids)| {
+            let there = ids.iter().enumerate().filter(|(_, id)| **id != NO_ELEMENT);
+            there.map(move |(lane, id)| (*id as usize, slots(eight, lane)))
+        })
+    }
+}
+
 /// All patches of a model.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Patches {
     list: Vec<Patch>,
     halo: Vec<u32>,
     batches: Vec<Batch>,
-    groups: Vec<Group>,
-    /// In-situ stress xx, yy, xy (Pa) of each group's lanes; empty when there is none.
-    pre_stress: Vec<[[f64; LANES]; 3]>,
-    /// Elements of each group's lanes.
-    elements: Vec<[u32; LANES]>,
+    rows: Eights<Row>,
+    groups: Eights<Group>,
 }
 
 impl Patches {
@@ -105,9 +162,13 @@ impl Patches {
         size_of_val(&*self.list)
             + size_of_val(&*self.halo)
             + size_of_val(&*self.batches)
-            + size_of_val(&*self.groups)
-            + size_of_val(&*self.pre_stress)
-            + size_of_val(&*self.elements)
+            + self.rows.bytes()
+            + self.groups.bytes()
+    }
+
+    /// All patches.
+    pub fn iter(&self) -> impl Iterator<Item = &Patch> {
+        self.list.iter()
     }
 
     /// A patch.
@@ -125,23 +186,31 @@ impl Patches {
         &self.batches[patch.batches.clone()]
     }
 
-    /// Groups of a batch.
-    pub fn groups(&self, batch: &Batch) -> &[Group] {
-        &self.groups[batch.groups.clone()]
+    /// Rows of a batch with their in-situ stress, which is empty when the model has none.
+    pub fn rows(&self, batch: &Batch) -> (&[Row], &[PreStresses]) {
+        self.rows.get(&batch.rows)
     }
 
-    /// In-situ stress (Pa) of the groups of a batch; empty when the model has none.
-    pub fn pre_stress(&self, batch: &Batch) -> &[[[f64; LANES]; 3]] {
-        self.pre_stress.get(batch.groups.clone()).unwrap_or_default()
+    /// Groups of a batch with their in-situ stress, which is empty when the model has none.
+    pub fn groups(&self, batch: &Batch) -> (&[Group], &[PreStresses]) {
+        self.groups.get(&batch.groups)
+    }
+
+    /// Gradients of the second and the third weight of the rows of a batch, and of its groups.
+    pub fn gradients(&self, batch: &Batch, g: &[Vector; 3]) -> [[Vector; 2]; 2] {
+        let [_, second, third] = ROW_CORNERS[batch.set as usize];
+        [[g[second], g[third]], [g[1], g[2]]]
     }
 
     /// Elements of a batch with their slots.
     pub fn elements(&self, batch: &Batch) -> impl Iterator<Item = (usize, [Slot; 3])> {
-        let ids = &self.elements[batch.groups.clone()];
-        self.groups(batch).iter().zip(ids).flat_map(|(group, ids)| {
-            let there = ids.iter().enumerate().filter(|(_, id)| **id != NO_ELEMENT);
-            there.map(|(lane, id)| (*id as usize, group.slots.map(|corner| corner[lane])))
-        })
+        let corners = ROW_CORNERS[batch.set as usize];
+        let in_row = move |row: &Row, lane: usize| {
+            let [base, tip] = row.first.map(|first| first.index() + lane);
+            corners.map(|k| Slot::new([base, base + 1, tip][k]))
+        };
+        let anywhere = |group: &Group, lane: usize| group.slots.map(|corner| corner[lane]);
+        self.rows.elements(&batch.rows, in_row).chain(self.groups.elements(&batch.groups, anywhere))
     }
 
     /// Patches that are parts of one block, from `first` on.
@@ -174,83 +243,165 @@ impl Cutter<'_> {
         self.push(Patch { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
     }
 
-    /// Equal parts in the order of the covers.
-    fn push_large(&mut self, block: usize) {
+    /// Runs of whole tiles, in the order of the covers, where a tile with more covers than fit is cut; equal parts of a
+    /// block without tiles.
+    fn parts_of(&self, block: usize) -> Vec<Range<usize>> {
         let own = self.covers.covers_of(block);
-        let count = own.len().div_ceil(PART);
-        let start = |part: usize| own.start + own.len() * part / count;
-        let part_of = |cover: u32| (1..count).take_while(|&p| start(p) <= cover as usize).count();
-        let part_of_cover: Vec<usize> = own.clone().map(|i| part_of(i as u32)).collect();
-        let mut elements = vec![Vec::new(); count];
-        for e in self.covers.elements_of(block) {
-            let mut parts = self.covers.element_covers[e].map(|i| part_of_cover[i as usize - own.start]);
-            parts.sort_unstable();
-            elements[parts[0]].push(e as u32);
-            (1..3).filter(|&k| parts[k] != parts[k - 1]).for_each(|k| elements[parts[k]].push(e as u32));
+        if !self.covers.is_tiled(block) {
+            let count = own.len().div_ceil(PART);
+            let start = |part: usize| own.start + own.len() * part / count;
+            return (0..count).map(|part| start(part)..start(part + 1)).collect();
         }
-        for (part, elements) in elements.into_iter().enumerate() {
+        let own: Vec<usize> = own.collect();
+        let mut parts: Vec<Range<usize>> = Vec::new();
+        for tile in own.chunk_by(|&a, &b| self.covers.tile(a) == self.covers.tile(b)) {
+            for piece in tile.chunks(PART) {
+                match parts.last_mut() {
+                    Some(last) if last.len() + piece.len() <= PART => last.end += piece.len(),
+                    _ => parts.push(piece[0]..piece[0] + piece.len()),
+                }
+            }
+        }
+        parts
+    }
+
+    fn push_large(&mut self, block: usize) {
+        let parts = self.parts_of(block);
+        let first = self.covers.covers_of(block).start;
+        let part_of_cover: Vec<usize> =
+            parts.iter().enumerate().flat_map(|(k, part)| part.clone().map(move |_| k)).collect();
+        let mut elements = vec![Vec::new(); parts.len()];
+        for e in self.covers.elements_of(block) {
+            let mut touched = self.covers.element_covers[e].map(|i| part_of_cover[i as usize - first]);
+            touched.sort_unstable();
+            elements[touched[0]].push(e as u32);
+            (1..3).filter(|&k| touched[k] != touched[k - 1]).for_each(|k| elements[touched[k]].push(e as u32));
+        }
+        for (part, (covers, elements)) in parts.into_iter().zip(elements).enumerate() {
             let blocks = if part == 0 { block..block + 1 } else { block + 1..block + 1 };
-            let covers = start(part)..start(part + 1);
             let patch = Patch { blocks, part_of: Some(block as u32), covers, halo: 0..0, batches: 0..0 };
             self.push(patch, elements);
         }
     }
 
-    fn push(&mut self, mut patch: Patch, mut elements: Vec<u32>) {
-        let first_halo = self.patches.halo.len();
-        let own = patch.covers.len();
-        for (slot, cover) in patch.covers.clone().enumerate() {
+    /// Covers of other patches that elements touch, row by row.
+    fn find_halo(&mut self, patch: &mut Patch, elements: &[u32]) {
+        let is_own = |i: &u32| patch.covers.contains(&(*i as usize));
+        let touched = elements.iter().flat_map(|&e| self.covers.element_covers[e as usize]);
+        let mut halo: Vec<u32> = touched.filter(|i| !is_own(i)).collect();
+        halo.sort_unstable_by_key(|&i| {
+            let [column, row] = self.covers.star[i as usize];
+            (row, column, i)
+        });
+        halo.dedup();
+        patch.halo = self.patches.halo.len()..self.patches.halo.len() + halo.len();
+        for (slot, cover) in patch.covers.clone().chain(halo.iter().map(|&i| i as usize)).enumerate() {
             self.slot_of[cover] = slot as u32;
         }
-        for &e in &elements {
-            for cover in self.covers.element_covers[e as usize] {
-                let slot = &mut self.slot_of[cover as usize];
-                if *slot == NO_ELEMENT {
-                    *slot = (own + self.patches.halo.len() - first_halo) as u32;
-                    self.patches.halo.push(cover);
-                }
-            }
-        }
-        patch.halo = first_halo..self.patches.halo.len();
+        self.patches.halo.append(&mut halo);
+    }
+
+    fn push(&mut self, mut patch: Patch, mut elements: Vec<u32>) {
+        self.find_halo(&mut patch, &elements);
         let first_batch = self.patches.batches.len();
         let (covers, element_rock) = (self.covers, self.element_rock);
         let kind = |e: u32| (covers.element_triangle[e as usize].set, element_rock[e as usize]);
         elements.sort_by_key(|&e| (kind(e), e));
+        let in_rows = patch.part_of.is_some_and(|block| covers.is_tiled(block as usize));
         for batch in elements.chunk_by(|&a, &b| kind(a) == kind(b)) {
-            self.push_batch(kind(batch[0]), batch);
+            self.push_batch(kind(batch[0]), batch, in_rows);
         }
         patch.batches = first_batch..self.patches.batches.len();
-        for cover in patch.covers.clone() {
-            self.slot_of[cover] = NO_ELEMENT;
-        }
-        for k in patch.halo.clone() {
-            self.slot_of[self.patches.halo[k] as usize] = NO_ELEMENT;
-        }
         self.patches.list.push(patch);
     }
 
-    fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[u32]) {
-        let first = self.patches.groups.len();
-        for eight in elements.chunks(LANES) {
-            let (mut group, mut pre, mut ids) = (Group::default(), [[0.0; LANES]; 3], [NO_ELEMENT; LANES]);
-            for (lane, &e) in eight.iter().enumerate() {
-                for (slots, cover) in group.slots.iter_mut().zip(self.covers.element_covers[e as usize]) {
-                    slots[lane] = Slot::new(self.slot_of[cover as usize] as usize);
-                }
-                group.area[lane] = self.covers.element_area[e as usize];
-                ids[lane] = e;
-                if let Some(stress) = self.pre_stress.get(e as usize) {
-                    (0..3).for_each(|k| pre[k][lane] = stress[k]);
+    fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[u32], in_rows: bool) {
+        let [first_row, first_group] = [self.patches.rows.list.len(), self.patches.groups.list.len()];
+        let others = if in_rows { self.push_rows(set, elements) } else { elements.to_vec() };
+        for eight in others.chunks(LANES) {
+            let mut ids = [NO_ELEMENT; LANES];
+            ids[..eight.len()].copy_from_slice(eight);
+            self.push_group(ids);
+        }
+        let (rows, groups) = (first_row..self.patches.rows.list.len(), first_group..self.patches.groups.list.len());
+        self.patches.batches.push(Batch { set, rock, rows, groups });
+    }
+
+    fn slots(&self, e: u32) -> [u32; 3] {
+        self.covers.element_covers[e as usize].map(|cover| self.slot_of[cover as usize])
+    }
+
+    /// Slots of an element's covers at the left end of its base, at its right end and at the tip.
+    fn row_slots(&self, set: u8, e: u32) -> [u32; 3] {
+        let slots = self.slots(e);
+        ROW_CORNERS[set as usize].map(|k| slots[k])
+    }
+
+    /// Rows of elements whose covers are in runs of slots; returns the other elements.
+    fn push_rows(&mut self, set: u8, elements: &[u32]) -> Vec<u32> {
+        let place = |&e: &u32| {
+            let [left, right, tip] = self.row_slots(set, e);
+            (right == left + 1, tip.wrapping_sub(left), left, e)
+        };
+        let mut sorted: Vec<_> = elements.iter().map(place).collect();
+        sorted.sort_unstable();
+        let (apart, mut rest) = sorted.split_at(sorted.partition_point(|s| !s.0));
+        let mut others: Vec<u32> = apart.iter().map(|s| s.3).collect();
+        while let Some(&(_, line, first, e)) = rest.first() {
+            let within = rest.partition_point(|s| (s.1, s.2) < (line, first + LANES as u32));
+            let mut ids = [NO_ELEMENT; LANES];
+            let mut doubles = Vec::new();
+            for &(.., slot, e) in &rest[..within] {
+                match &mut ids[(slot - first) as usize] {
+                    id if *id == NO_ELEMENT => *id = e,
+                    _ => doubles.push(e),
                 }
             }
-            self.patches.groups.push(group);
-            self.patches.elements.push(ids);
-            if !self.pre_stress.is_empty() {
-                self.patches.pre_stress.push(pre);
+            let is_row = within - doubles.len() >= ROW_MIN;
+            if is_row {
+                self.push_row(set, ids);
+                others.append(&mut doubles);
+            } else {
+                others.push(e);
+            }
+            rest = &rest[if is_row { within } else { 1 }..];
+        }
+        others.sort_unstable();
+        others
+    }
+
+    fn push_row(&mut self, set: u8, ids: [u32; LANES]) {
+        let [left, _, tip] = self.row_slots(set, ids[0]).map(|slot| Slot::new(slot as usize));
+        let (area, pre) = self.lanes(&ids);
+        push_eight(&mut self.patches.rows, Row { first: [left, tip], area }, pre, ids);
+    }
+
+    fn push_group(&mut self, ids: [u32; LANES]) {
+        let mut slots = <[[Slot; LANES]; 3]>::default();
+        for (lane, &e) in ids.iter().enumerate().filter(|(_, e)| **e != NO_ELEMENT) {
+            (0..3).for_each(|k| slots[k][lane] = Slot::new(self.slots(e)[k] as usize));
+        }
+        let (area, pre) = self.lanes(&ids);
+        push_eight(&mut self.patches.groups, Group { slots, area }, pre, ids);
+    }
+
+    /// Areas (m²) of eight elements, and their in-situ stress when the model has any.
+    fn lanes(&self, ids: &[u32; LANES]) -> ([f64; LANES], Option<PreStresses>) {
+        let (mut area, mut pre) = ([0.0; LANES], [[0.0; LANES]; 3]);
+        for (lane, &e) in ids.iter().enumerate().filter(|(_, e)| **e != NO_ELEMENT) {
+            area[lane] = self.covers.element_area[e as usize];
+            if let Some(stress) = self.pre_stress.get(e as usize) {
+                (0..3).for_each(|k| pre[k][lane] = stress[k]);
             }
         }
-        self.patches.batches.push(Batch { set, rock, groups: first..self.patches.groups.len() });
+        (area, (!self.pre_stress.is_empty()).then_some(pre))
     }
+}
+
+fn push_eight<E>(eights: &mut Eights<E>, eight: E, pre: Option<PreStresses>, ids: [u32; LANES]) {
+    eights.list.push(eight);
+    eights.pre_stress.extend(pre);
+    eights.elements.push(ids);
 }
 
 const _: () = assert!(PART + PATCH < SLOTS);

@@ -3,7 +3,7 @@
 use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
-use crate::mechanics::{BlockMotion, BlockStart, Metric, YieldSurface};
+use crate::mechanics::{BlockMotion, BlockStart, Damping, Metric, YieldSurface};
 
 use super::ImplicitScratch;
 
@@ -24,6 +24,12 @@ pub struct Scratch {
     pub motion: Vec<BlockMotion>,
     /// How each block moved at the start of the step.
     pub start: Vec<BlockStart>,
+    /// Damping of each block.
+    pub damping: Vec<Damping>,
+    /// What the damping of all blocks follows from; none when it must be found anew.
+    pub damping_of: Option<Damping>,
+    /// Whether all covers of each patch can move along both axes.
+    pub movable: Vec<bool>,
     /// Sums over patches.
     pub sums: Vec<PatchSums>,
     /// Current places of boundary points (m).

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use enmm_lanes::{Kernel, Lanes, Table, dispatch};
+use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch};
 
 use crate::contact::BlockPush;
 use crate::geometry::Vector;
@@ -102,8 +102,10 @@ pub(super) struct Pass<'a> {
     pub acceleration: Vector,
     /// Covers below which a run of patches is not split between threads.
     pub grain: usize,
-    /// Deformation damping carries ξ·dt here; each block turns it into its own factor.
-    pub damping: Damping,
+    /// Damping of each block.
+    pub damping: &'a [Damping],
+    /// Whether all covers of each patch can move along both axes.
+    pub movable: &'a [bool],
     /// Time (s) over which forces act.
     pub dt: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
@@ -112,29 +114,30 @@ pub(super) struct Pass<'a> {
 
 impl Pass<'_> {
     fn step(&self, block: usize) -> KickStep {
-        KickStep {
-            acceleration: self.acceleration,
-            damping: block_damping(self.slope, self.metric, self.damping, block),
-            dt: self.dt,
-        }
+        KickStep { acceleration: self.acceleration, damping: self.damping[block], dt: self.dt }
     }
 
-    fn span(&self, covers: Range<usize>) -> Span<'_> {
+    fn span(&self, block: usize, covers: Range<usize>) -> Span<'_> {
         Span {
             star: &self.slope.covers.star_position[covers.clone()],
             displacement: &self.state.displacement[covers.clone()],
             velocity: &self.state.velocity[covers.clone()],
             mass: &self.metric.mass[covers.clone()],
-            inertial: &self.metric.inertial[covers],
+            inertial: &inertial(self.metric, block)[covers],
         }
     }
 
     fn reference(&self, block: usize) -> Reference {
-        self.span(self.slope.covers.covers_of(block)).reference()
+        self.span(block, self.slope.covers.covers_of(block)).reference()
     }
 
-    /// How the covers of a block are written.
-    fn own(&self, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+    /// 1/m of the covers of a held block, unless they are in a patch where nothing else is held.
+    fn inverse(&self, patch: usize, covers: Range<usize>) -> Option<&[Vector]> {
+        (!self.movable[patch]).then(|| &self.metric.inverse[covers])
+    }
+
+    /// How the covers of a block in a patch are written.
+    fn own(&self, patch: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
         let held = !self.metric.is_free(block);
         let (factor, masked) = match step.damping {
             Damping::Deformation(factor) => (factor, factor < 1.0),
@@ -144,7 +147,7 @@ impl Pass<'_> {
             factor,
             dt: self.dt,
             acceleration: self.acceleration,
-            held: held.then(|| (&self.metric.row_sum[covers.clone()], &self.metric.inverse[covers])),
+            held: held.then(|| (&self.metric.row_sum[covers.clone()], self.inverse(patch, covers))),
             masked,
         }
     }
@@ -155,11 +158,14 @@ impl Pass<'_> {
         let (slope, u) = (self.slope, &self.state.displacement);
         let patches = &slope.patches;
         let (own, halo) = (patch.covers.len(), patches.halo(patch));
-        let local = displacement.first_mut(own + halo.len());
+        let local = displacement.first_mut(own + halo.len() + LANES);
+        let (local, behind) = local.split_at_mut(own + halo.len());
         local[..own].copy_from_slice(&u[patch.covers.clone()]);
         for (pair, &cover) in local[own..].iter_mut().zip(halo) {
             *pair = u[cover as usize];
         }
+        // Missing elements of a row may reach beyond the last slot.
+        behind.fill(Vector::zeros());
         let local = force.first_mut(own + halo.len());
         local.fill(Vector::zeros());
         if let Some(load) = self.load_force.get(patch.covers.clone()) {
@@ -167,9 +173,9 @@ impl Pass<'_> {
         }
         for batch in patches.batches(patch) {
             let rock = &slope.rocks[batch.rock as usize];
-            let g = &slope.covers.gradients[batch.set as usize];
-            let elements = (patches.groups(batch), patches.pre_stress(batch));
-            element_lanes::push_forces(lanes, elements, (rock, g), displacement, force);
+            let [in_row, in_group] = patches.gradients(batch, &slope.covers.gradients[batch.set as usize]);
+            element_lanes::push_forces(lanes, patches.rows(batch), (rock, in_row), displacement, force);
+            element_lanes::push_forces(lanes, patches.groups(batch), (rock, in_group), displacement, force);
         }
         if !self.state.plastic.is_empty() {
             self.relieve(patch, force);
@@ -220,8 +226,8 @@ impl Work for Pass<'_> {
 
     /// Forces and kick of the blocks of a patch; of a part of a block all but what is common to the block.
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Kicked, tables: &mut [Table; 2]) {
-        let patch = self.slope.patches.get(patch);
+    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, tables: &mut [Table; 2]) {
+        let patch = self.slope.patches.get(number);
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
         let fixed = match patch.part_of {
@@ -238,14 +244,14 @@ impl Work for Pass<'_> {
         self.push_elements(lanes, patch, tables);
         let force = tables[1].first(patch.covers.len());
         if let Some(block) = patch.part_of {
-            self.kick_part(lanes, (patch, block as usize), force, predicted, sums);
+            self.kick_part(lanes, (number, block as usize), force, predicted, sums);
             return;
         }
         for (k, block) in patch.blocks.clone().enumerate() {
             let covers = self.slope.covers.covers_of(block);
             let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
             let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
-            (motion[k], start[k]) = self.kick_block(lanes, block, force, predicted, &mut sums.fastest);
+            (motion[k], start[k]) = self.kick_block(lanes, (number, block), force, predicted, &mut sums.fastest);
         }
     }
 }
@@ -255,7 +261,7 @@ impl Pass<'_> {
     fn kick_block<L: Lanes>(
         &self,
         lanes: L,
-        block: usize,
+        (patch, block): (usize, usize),
         force: &[Vector],
         predicted: &mut [Vector],
         fastest: &mut f64,
@@ -267,12 +273,12 @@ impl Pass<'_> {
             predicted.fill(Vector::zeros());
             return Default::default();
         }
-        let (span, step) = (self.span(covers.clone()), self.step(block));
+        let (span, step) = (self.span(block, covers.clone()), self.step(block));
         let from = span.reference();
         let sums = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
         let start = BlockStart::new(self.metric, block, from, &sums);
         let common = start.common(self.metric, block, &sums, &step);
-        let own = self.own(block, covers, &step);
+        let own = self.own(patch, block, covers, &step);
         *fastest = fastest.max(span.kick(lanes, &from, &own, &common, (force, predicted)));
         (start.motion(self.metric, block), start)
     }
@@ -281,13 +287,14 @@ impl Pass<'_> {
     fn kick_part<L: Lanes>(
         &self,
         lanes: L,
-        (patch, block): (&Patch, usize),
+        (patch, block): (usize, usize),
         force: &[Vector],
         predicted: &mut [Vector],
         sums: &mut PatchSums,
     ) {
-        let (span, step, from) = (self.span(patch.covers.clone()), self.step(block), self.reference(block));
-        let own = self.own(block, patch.covers.clone(), &step);
+        let covers = self.slope.patches.get(patch).covers.clone();
+        let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
+        let own = self.own(patch, block, covers, &step);
         sums.block = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
         sums.fastest = span.kick(lanes, &from, &own, &Common::default(), (force, predicted));
     }
@@ -361,9 +368,10 @@ impl Work for Spread<'_> {
         if *common == Common::default() {
             return;
         }
-        let inverse = (!metric.is_free(block)).then(|| &metric.inverse[patch.covers.clone()]);
+        let covers = patch.covers.clone();
+        let inverse = self.pass.inverse(k, covers.clone()).filter(|_| !metric.is_free(block));
         let from = &self.start[block].from;
-        self.pass.span(patch.covers.clone()).add_common(lanes, from, common, inverse, predicted);
+        self.pass.span(block, covers).add_common(lanes, from, common, inverse, predicted);
     }
 }
 
@@ -378,7 +386,8 @@ pub(super) struct Finish<'a> {
     pub push: &'a [BlockPush],
     /// Velocity increments of covers by contacts and supports (m/s).
     pub increment: &'a [Vector],
-    pub damping: Damping,
+    /// Damping of each block.
+    pub damping: &'a [Damping],
     /// Time (s) by which places move.
     pub dt: f64,
     /// Whether the work of body loads is asked for.
@@ -420,7 +429,7 @@ impl Work for Finish<'_> {
             let mut end = End {
                 star: &self.slope.covers.star_position[covers.clone()],
                 mass: &self.metric.mass[covers.clone()],
-                inertial: &self.metric.inertial[covers.clone()],
+                inertial: &inertial(self.metric, block)[covers.clone()],
                 row_sum: &self.metric.row_sum[covers.clone()],
                 before: &self.before[covers.clone()],
                 increment: &self.increment[covers],
@@ -452,18 +461,14 @@ impl Finish<'_> {
             common = Common::about(velocity, metric.spin[block] * push.moment, centre);
             common.weighted = push.impulse * -share;
         }
-        let is_damped = is_damping(self.block_damping(block));
+        let is_damped = is_damping(self.damping[block]);
         let bits = end.increment.iter().fold(0, |bits, v| bits | v.x.to_bits() | v.y.to_bits());
         let wants = Wants { dt: self.dt, is_pushed, is_touched: bits != 0, is_damped, is_loaded: self.is_loaded };
         end.finish(lanes, from, &common, wants)
     }
 
-    fn block_damping(&self, block: usize) -> Damping {
-        block_damping(self.slope, self.metric, self.damping, block)
-    }
-
     fn damping_work(&self, block: usize, works: &WorkSums) -> f64 {
-        let damping = self.block_damping(block);
+        let damping = self.damping[block];
         if !is_damping(damping) {
             return 0.0;
         }
@@ -506,6 +511,11 @@ pub(super) struct Totals {
     pub fastest: f64,
     /// Sum of the squares of speeds (m²/s²): not finite when any is not.
     pub squares: f64,
+}
+
+/// Masses by which covers count in the centroid of a block: those of a held one are its lumped ones, read once.
+fn inertial(metric: &Metric, block: usize) -> &[f64] {
+    if metric.is_free(block) { &metric.inertial } else { &metric.mass }
 }
 
 /// Whether damping takes anything.

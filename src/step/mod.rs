@@ -189,6 +189,7 @@ impl Step<'_> {
         if let Some(implicit) = &slope.implicit {
             return self.implicit_interval(implicit, dt);
         }
+        self.locate();
         self.search();
         self.yield_rock();
         self.predict(dt);
@@ -208,6 +209,7 @@ impl Step<'_> {
 
     /// Near pairs, yielding and predicted velocities of a step of `dt` (s).
     fn set_out(&mut self, dt: f64) {
+        self.locate();
         self.search();
         self.yield_rock();
         self.predict(dt);

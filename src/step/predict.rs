@@ -25,13 +25,15 @@ impl Step<'_> {
         self.damping = self.damping_of(dt);
         let (acceleration, grain, is_loaded) =
             (self.acceleration(dt), blocks::grain(self.scratch.serial), self.scratch.is_loaded);
-        let Scratch { metric, predicted, motion, start, sums, load_force, .. } = &mut *self.scratch;
+        self.damp_blocks();
+        let Scratch { metric, predicted, motion, start, sums, load_force, damping, movable, .. } = &mut *self.scratch;
         let pass = blocks::Pass {
             slope: self.slope,
             state: &*self.state,
             metric,
             acceleration,
-            damping: self.damping,
+            damping,
+            movable,
             dt: kick_dt,
             grain,
             load_force: if is_loaded { load_force } else { &[] },
@@ -43,6 +45,18 @@ impl Step<'_> {
             *spin = motion.spin;
         }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+    }
+
+    /// Damping of every block, when the step or the masses are no longer those of the step before.
+    fn damp_blocks(&mut self) {
+        let (slope, damping) = (self.slope, self.damping);
+        let Scratch { metric, damping: of_blocks, damping_of, .. } = &mut *self.scratch;
+        if *damping_of != Some(damping) {
+            *damping_of = Some(damping);
+            let blocks = 0..slope.covers.block_count();
+            of_blocks.clear();
+            of_blocks.extend(blocks.map(|block| blocks::block_damping(slope, metric, damping, block)));
+        }
     }
 
     /// Forces of loads, when there are any.

@@ -60,6 +60,10 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
         metric.lighten(slope.mass_scaling);
     }
     metric.mark_fixed(&slope.covers);
+    scratch.damping_of = None;
+    let is_movable = |i: usize| metric.inverse[i].x > 0.0 && metric.inverse[i].y > 0.0;
+    scratch.movable.clear();
+    scratch.movable.extend(slope.patches.iter().map(|patch| patch.covers.clone().all(is_movable)));
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.

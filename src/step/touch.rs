@@ -6,6 +6,7 @@ use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport, VertexEdge};
+use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Metric;
 use crate::state::{Scratch, State};
@@ -21,7 +22,7 @@ const CELL: f64 = 0.5;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
 
-/// Contacts below which a loop over them is not split between threads.
+/// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
 
 /// What contacts come on with in a step of `dt` (s) whose forces act for `kick` (s).
@@ -71,18 +72,32 @@ impl Approach<'_> {
 }
 
 impl Step<'_> {
-    /// Current places of boundary points, and near pairs when nodes have moved.
-    pub(super) fn search(&mut self) {
+    /// Current places of boundary points, and edges and nodes at them.
+    pub(super) fn locate(&mut self) {
         let clock = Instant::now();
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         let boundary = &slope.boundary;
         let star = &slope.covers.star_position;
         let displacement = &self.state.displacement;
-        scratch.place.clear();
-        scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(|(covers, weights)| {
-            (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum::<Point>()
-        }));
+        let place = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
+            (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum()
+        };
+        if scratch.serial {
+            scratch.place.clear();
+            scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(place));
+        } else {
+            let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
+            points.map(place).collect_into_vec(&mut scratch.place);
+        }
         scratch.frames.update(boundary, &scratch.place, scratch.serial);
+        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// Near pairs, when nodes have moved.
+    pub(super) fn search(&mut self) {
+        let clock = Instant::now();
+        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        let boundary = &slope.boundary;
         let size = slope.covers.mesh.size;
         if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {

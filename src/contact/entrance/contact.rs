@@ -12,7 +12,7 @@ use super::{FIRST_SIGHT_DEPTH, GRAIN, Narrow, Pick, right_of};
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
     narrow: &'a Narrow<'a>,
-    picks: &'a [(u32, Pick)],
+    picks: &'a [Pick],
     contacts: &'a mut [VertexEdge],
 }
 
@@ -21,15 +21,15 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        for (contact, (node, pick)) in self.contacts.iter_mut().zip(self.picks) {
-            *contact = self.narrow.contact(*node as usize, pick);
+        for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
+            *contact = self.narrow.contact(pick);
         }
     }
 }
 
 impl Narrow<'_> {
     /// Makes the contacts of some picks in place, from the contact `made` on; returns where they end.
-    pub(super) fn make(&self, picks: &[(u32, Pick)], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
+    pub(super) fn make(&self, picks: &[Pick], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
         let end = made + picks.len();
         contacts.resize(contacts.len().max(end), VertexEdge::default());
         let contacts = &mut contacts[made..end];
@@ -43,8 +43,8 @@ impl Narrow<'_> {
     }
 
     #[inline(always)]
-    fn contact(&self, node: usize, pick: &Pick) -> VertexEdge {
-        let boundary = self.boundary;
+    fn contact(&self, pick: &Pick) -> VertexEdge {
+        let (boundary, node) = (self.boundary, pick.node as usize);
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
         let normal = right_of(pick.tangent);

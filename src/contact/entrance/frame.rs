@@ -9,6 +9,8 @@ use super::{is_convex, right_of};
 
 /// Edges or nodes that a thread takes at least.
 const GRAIN: usize = 2048;
+/// Relative difference of squared distances above which rounding does not decide which is the larger.
+const ROUNDING: f64 = 1e-12;
 
 /// An edge at its current place.
 #[derive(Debug, Clone, Copy)]
@@ -58,9 +60,11 @@ impl Over {
         if self.beyond > 0.0 { self.beyond.hypot(self.gap) } else { self.gap.abs() }
     }
 
-    /// Whether the distance from the edge is less than `distance` (m).
-    pub fn is_nearer_than(&self, distance: f64) -> bool {
-        self.beyond.max(self.gap.abs()) < distance && self.distance() < distance
+    /// Whether this edge is the nearer one. Equal to the comparison of both distances, which costs more.
+    #[inline(always)]
+    pub fn is_nearer_than(&self, other: &Self) -> bool {
+        let [own, others] = [self, other].map(|over| over.beyond * over.beyond + over.gap * over.gap);
+        if (own - others).abs() > ROUNDING * others { own < others } else { self.distance() < other.distance() }
     }
 }
 

@@ -87,10 +87,12 @@ pub struct Narrow<'a> {
 /// A node over an edge of one side.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pick {
+    node: u32,
     side: u32,
     edge: u32,
     gap: f64,
     along: f64,
+    beyond: f64,
     length: f64,
     tangent: Vector,
     /// The contact of the last step, by its index.
@@ -103,8 +105,8 @@ struct Pick {
 /// What the vertex rule admits in one step: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
 pub struct Admitted {
-    runs: Vec<Vec<(u32, Pick)>>,
-    picks: Vec<(u32, Pick)>,
+    runs: Vec<Vec<Pick>>,
+    picks: Vec<Pick>,
 }
 
 impl Admitted {
@@ -167,91 +169,86 @@ impl Narrow<'_> {
         self.make(picks, contacts, made)
     }
 
-    /// Appends the picks that the vertex rule admits of some candidates, with their nodes.
-    fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<(u32, Pick)>) {
+    /// Appends the picks that the vertex rule admits of some candidates.
+    fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<Pick>) {
         let Some(first) = candidates.first() else { return };
-        let mut picks = [Pick::default(); SIDES_MAX];
+        let mut picks = [Pick::default(); SIDES_MAX + 1];
         let mut known = self.history.partition_point(|h| h.node < first.node);
         for group in candidates.chunk_by(|a, b| a.node == b.node) {
-            let node = group[0].node;
-            let picks = self.pick_edges(node as usize, group, &mut known, &mut picks);
-            if picks.iter().any(|p| p.admitted) {
-                self.choose_sides(node as usize, picks);
-                admitted.extend(picks.iter().filter(|p| p.admitted).map(|p| (node, *p)));
+            let node = group[0].node as usize;
+            let picks = self.pick_edges(node, group, &mut known, &mut picks);
+            let mut contested = false;
+            for pick in picks.iter_mut().filter(|pick| pick.admitted) {
+                pick.admitted = !self.is_false_sight(node, pick) && self.within(node, pick);
+                contested |= pick.admitted & !pick.is_held & (pick.gap < -TIE_TOLERANCE * self.size);
+            }
+            // Only where a deep one without force is admitted do those matter that are not.
+            if contested {
+                self.choose_sides(node, picks);
+            }
+            let start = admitted.len();
+            admitted.extend(picks.iter().filter(|p| p.admitted));
+            if !contested && self.choose_sides(node, &mut admitted[start..]) {
+                let kept = keep_admitted(&mut admitted[start..]);
+                admitted.truncate(start + kept);
             }
         }
     }
 
-    /// The nearest edge of each side that the node is over, and whether the vertex rule admits it so far; `known` is
-    /// the first contact of the last step that belongs to no earlier pair of node and side.
+    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; `known`
+    /// is the first contact of the last step that belongs to no earlier pair of node and side.
     fn pick_edges<'p>(
         &self,
         node: usize,
         group: &[Candidate],
         known: &mut usize,
-        picks: &'p mut [Pick; SIDES_MAX],
+        picks: &'p mut [Pick; SIDES_MAX + 1],
     ) -> &'p mut [Pick] {
-        let (mut count, p) = (0, self.node_place(node));
+        let mut count = 0;
         for edges in group.chunk_by(|a, b| a.side == b.side) {
             let key = (node as u32, edges[0].side);
             while self.history.get(*known).is_some_and(|h| (h.node, h.side) < key) {
                 *known += 1;
             }
             let held = self.history.get(*known).filter(|h| (h.node, h.side) == key);
-            if let Some(pick) = picks.get_mut(count) {
-                count += usize::from(self.pick(node, p, edges, held.map(|_| *known as u32), pick));
-            }
+            // Whether it counts is seldom the same twice: no branch depends on it.
+            let is_over = self.pick(node, edges, held.map(|_| *known as u32), &mut picks[count]);
+            count = (count + usize::from(is_over)).min(SIDES_MAX);
         }
         &mut picks[..count]
     }
 
-    /// Fills the pick of one side in place; returns whether the node is over that side.
+    /// Fills the pick of one side; returns whether the node is over that side.
     #[inline(always)]
-    fn pick(&self, node: usize, p: Point, edges: &[Candidate], held: Option<u32>, pick: &mut Pick) -> bool {
-        let (edge, over) = self.nearest(p, edges);
+    fn pick(&self, node: usize, edges: &[Candidate], held: Option<u32>, pick: &mut Pick) -> bool {
+        let (edge, over) = self.nearest(self.node_place(node), edges);
         let Over { along, gap, beyond } = over;
-        if beyond > WEDGE_RATIO * gap.abs() + HELD_BEYOND * self.size {
-            return false;
-        }
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
         let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
-        *pick = Pick { side: edges[0].side, edge, gap, along, length, tangent, held, is_held, admitted: false };
+        let Candidate { node: own, side, .. } = edges[0];
+        *pick = Pick { node: own, side, edge, gap, along, beyond, length, tangent, held, is_held, admitted: false };
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
-        let near = bonded || gap - self.allowance(pick) < self.reach;
-        pick.admitted = near
-            && !(held.is_none() && self.is_false_sight(node, pick))
-            && self.enters(node, pick)
-            && self.within(node, pick, p, beyond);
-        true
+        let near = bonded | (gap - known.map_or(0.0, |h| h.rest - h.offset) < self.reach);
+        pick.admitted = near & self.enters(node, pick);
+        beyond <= WEDGE_RATIO * gap.abs() + HELD_BEYOND * self.size
     }
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.
+    #[inline(always)]
     fn nearest(&self, p: Point, edges: &[Candidate]) -> (u32, Over) {
         let over = |c: &Candidate| (c.edge, self.frames.edges[c.edge as usize].over(p));
-        let mut nearest = over(&edges[0]);
-        if edges.len() > 1 {
-            let mut distance = nearest.1.distance();
-            for other in edges[1..].iter().map(over) {
-                if other.1.is_nearer_than(distance) {
-                    (nearest, distance) = (other, other.1.distance());
-                }
-            }
-        }
-        nearest
+        edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 
-    /// Whether a deep first sight cannot be a contact: within one block, or of a side with rock before it.
+    /// Whether it is a first sight that cannot be a contact: deep within one block, or of a side with rock before it.
     fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
+        if pick.held.is_some() || pick.gap >= -TIE_TOLERANCE * self.size {
+            return false;
+        }
         let boundary = self.boundary;
         let own = boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize];
-        own && -pick.gap > FIRST_SIGHT_DEPTH * self.size
-            || pick.gap < -TIE_TOLERANCE * self.size && self.behind.binary_search(&[node as u32, pick.side]).is_ok()
-    }
-
-    /// Closure that the contact's springs do not see (m).
-    fn allowance(&self, pick: &Pick) -> f64 {
-        pick.held.map_or(0.0, |k| self.history[k as usize].rest - self.history[k as usize].offset)
+        own && -pick.gap > FIRST_SIGHT_DEPTH * self.size || self.behind.binary_search(&[node as u32, pick.side]).is_ok()
     }
 
     #[inline(always)]
@@ -263,6 +260,18 @@ impl Narrow<'_> {
     fn corner_tolerance(&self, pick: &Pick) -> f64 {
         self.size * if pick.is_held { HELD_BEYOND } else { CORNER_TOLERANCE }
     }
+}
+
+/// Moves those that are admitted to the front, in their order; returns how many they are.
+fn keep_admitted(picks: &mut [Pick]) -> usize {
+    let mut kept = 0;
+    for k in 0..picks.len() {
+        if picks[k].admitted {
+            picks[kept] = picks[k];
+            kept += 1;
+        }
+    }
+    kept
 }
 
 /// The direction a quarter turn to the right: outward where rock is on the left.

@@ -24,7 +24,8 @@ enum End {
 
 impl Narrow<'_> {
     /// Rule (ii): at a convex end of the side the node is not beyond the end, and not past the facet round it.
-    pub(super) fn within(&self, node: usize, pick: &Pick, p: Point, beyond: f64) -> bool {
+    pub(super) fn within(&self, node: usize, pick: &Pick) -> bool {
+        let p = self.node_place(node);
         let tolerance = self.corner_tolerance(pick);
         [End::Start, End::Finish].into_iter().all(|end| {
             let at = self.boundary.side_ends[pick.side as usize][end as usize];
@@ -35,12 +36,12 @@ impl Narrow<'_> {
                 End::Start => pick.along < 0.0,
                 End::Finish => pick.along > pick.length,
             };
-            let missed = at.edge == pick.edge && past && beyond > tolerance;
+            let missed = at.edge == pick.edge && past && pick.beyond > tolerance;
             if missed && !(pick.is_held && self.overlap_at(node, at) >= -tolerance) {
                 return false;
             }
             let corner = self.place[at.point as usize];
-            (p - corner).norm() >= self.size || self.is_inside_round(node, pick, p, end)
+            (p - corner).norm_squared() >= self.size * self.size || self.is_inside_round(node, pick, p, end)
         })
     }
 
@@ -103,18 +104,19 @@ impl Narrow<'_> {
     pub(super) fn enters(&self, node: usize, pick: &Pick) -> bool {
         let (normal, frame) = (right_of(pick.tangent), &self.frames.nodes[node]);
         let outside = |k: usize| frame.to[k].dot(&normal) >= -ENTRANCE_SINE * frame.distance[k];
-        outside(0) & outside(1) && (frame.is_convex || faces(frame.to[1] - frame.to[0], normal))
+        outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) {
+    /// Returns whether any side has lost.
+    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) -> bool {
         let block = |p: &Pick| self.boundary.block[p.edge as usize];
+        let mut lost = false;
         for i in 0..picks.len() {
-            let own = block(&picks[i]);
             for j in i + 1..picks.len() {
                 let (a, b) = (&picks[i], &picks[j]);
-                if block(b) != own {
+                if block(a) != block(b) {
                     continue;
                 }
                 let loser = match self.corner_between(a.side, b.side) {
@@ -123,9 +125,11 @@ impl Narrow<'_> {
                 };
                 if let Some(first) = loser {
                     picks[if first { i } else { j }].admitted = false;
+                    lost = true;
                 }
             }
         }
+        lost
     }
 
     /// Whether the node was behind the side already before the last step, so that it did not come in through it.

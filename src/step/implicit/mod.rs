@@ -145,6 +145,7 @@ impl Step<'_> {
     /// Contacts that take part in a sub-step of `dt` (s), with the forces of the last one.
     pub(super) fn implicit_contacts(&mut self, dt: f64) {
         let searches = self.state.counters.searches;
+        self.locate();
         self.search();
         if self.state.counters.searches != searches {
             self.scratch.implicit.matrix.clear();
