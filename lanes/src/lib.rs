@@ -10,9 +10,11 @@ mod avx2;
 mod avx512;
 mod path;
 mod portable;
+mod prefetch;
 mod table;
 
 pub use path::{Path, dispatch, dispatch_on, path};
+pub use prefetch::prefetch;
 pub use table::{SLOTS, Slot, Table};
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -373,8 +373,8 @@ pub struct Wants {
 }
 
 impl End<'_> {
-    /// Adds what contacts give, moves the covers; returns sums for the works, and the largest and the sum of all
-    /// squares of speeds (m²/s²).
+    /// Adds what contacts give, moves the covers; returns sums for the works, the largest and the sum of all squares
+    /// of speeds (m²/s²), and the largest square of a displacement (m²).
     #[inline(always)]
     pub fn finish<L: Lanes>(
         &mut self,
@@ -382,8 +382,9 @@ impl End<'_> {
         from: &Reference,
         push: &Common,
         wants: Wants,
-    ) -> (WorkSums, [f64; 2]) {
+    ) -> (WorkSums, [f64; 2], f64) {
         let zero = lanes.splat(0.0);
+        let mut farthest = zero;
         let (mut sums, mut row, mut fastest, mut squares) = ([zero; 6], [zero; 2], zero, zero);
         let still = Vector::zeros();
         let dt = lanes.splat(wants.dt);
@@ -416,7 +417,9 @@ impl End<'_> {
             let square = v[0] * v[0] + v[1] * v[1];
             (fastest, squares) = (lanes.max(square, fastest), squares + square);
             lanes.store_some_pairs(v, &mut self.velocity[range.clone()]);
-            lanes.store_some_pairs([u[0] + v[0] * dt, u[1] + v[1] * dt], &mut self.displacement[range]);
+            let u = [u[0] + v[0] * dt, u[1] + v[1] * dt];
+            farthest = lanes.max(u[0] * u[0] + u[1] * u[1], farthest);
+            lanes.store_some_pairs(u, &mut self.displacement[range]);
         }
         let [a, b, c, d, moment, product] = totals(lanes, &sums);
         let [x, y] = totals(lanes, &row);
@@ -427,7 +430,7 @@ impl End<'_> {
             product,
             row_sum: Vector::new(x, y),
         };
-        (works, [lanes.greatest(fastest), lanes.sum(squares)])
+        (works, [lanes.greatest(fastest), lanes.sum(squares)], lanes.greatest(farthest))
     }
 
     /// Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.

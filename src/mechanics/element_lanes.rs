@@ -99,17 +99,17 @@ impl<F: Copy> Constants<F> {
 }
 
 /// Groups in hand at once: the stages of one wait for each other, those of several side by side do not.
-const AHEAD: usize = 8;
+pub const AHEAD: usize = 8;
 
 /// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m);
-/// `pre_stress` holds that of each eight or nothing.
+/// `pre_stress` holds that of each eight or nothing. `meanwhile` is called after every few.
 #[inline(always)]
 pub fn push_forces<L: Lanes, E: Elements>(
     lanes: L,
     (elements, pre_stress): (&[E], &[PreStresses]),
     (rock, g): (&Elasticity, [Vector; 2]),
-    displacement: &Table,
-    force: &mut Table,
+    [displacement, force]: &mut [Table; 2],
+    mut meanwhile: impl FnMut(),
 ) {
     let constants = Constants::new(lanes, rock, g);
     let mut in_hand = [[constants.one; 4]; AHEAD];
@@ -131,6 +131,7 @@ pub fn push_forces<L: Lanes, E: Elements>(
             }
         }
         E::add(lanes, some, &in_hand, force);
+        meanwhile();
     }
 }
 

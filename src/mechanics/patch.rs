@@ -186,6 +186,11 @@ impl Patches {
         &self.batches[patch.batches.clone()]
     }
 
+    /// Eights of elements of a patch.
+    pub fn eights(&self, patch: &Patch) -> usize {
+        self.batches(patch).iter().map(|batch| batch.rows.len() + batch.groups.len()).sum()
+    }
+
     /// Rows of a batch with their in-situ stress, which is empty when the model has none.
     pub fn rows(&self, batch: &Batch) -> (&[Row], &[PreStresses]) {
         self.rows.get(&batch.rows)

@@ -104,6 +104,8 @@ pub struct PatchSums {
     pub fastest: f64,
     /// Sum of the squares of speeds at the end of the step (m²/s²): not finite when any is not.
     pub squares: f64,
+    /// Whether the last step left all displacements below the one from which on a block counts as failed.
+    pub is_near: bool,
 }
 
 /// Wall time (s) by part of the step.

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch};
+use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 
 use crate::contact::BlockPush;
 use crate::geometry::Vector;
@@ -18,6 +18,8 @@ use super::DECAY_MAX;
 
 /// Covers below which a run of patches is not split between threads.
 const GRAIN: usize = 4096;
+/// Covers from which on a step does not find them in the caches, and the next patch is asked for in advance.
+const ASKED: usize = 1 << 17;
 
 /// Covers below which a run of patches is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
@@ -152,11 +154,20 @@ impl Pass<'_> {
         }
     }
 
+    /// What the patch after this one will read.
+    fn ahead(&self, patch: &Patch) -> Ahead<'_> {
+        let (start, count) = (patch.covers.end, self.state.displacement.len());
+        let end = if count < ASKED { start } else { (start + patch.covers.len()).min(count) };
+        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::AHEAD).max(1);
+        Ahead { pass: self, covers: start..end, piece: (end - start).div_ceil(times) }
+    }
+
     /// Adds the element forces of a patch to the table of its covers (Eq. 7).
     #[inline(always)]
-    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, [displacement, force]: &mut [Table; 2]) {
+    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, tables: &mut [Table; 2]) {
         let (slope, u) = (self.slope, &self.state.displacement);
         let patches = &slope.patches;
+        let [displacement, force] = &mut *tables;
         let (own, halo) = (patch.covers.len(), patches.halo(patch));
         let local = displacement.first_mut(own + halo.len() + LANES);
         let (local, behind) = local.split_at_mut(own + halo.len());
@@ -171,14 +182,15 @@ impl Pass<'_> {
         if let Some(load) = self.load_force.get(patch.covers.clone()) {
             local[..own].copy_from_slice(load);
         }
+        let mut ahead = self.ahead(patch);
         for batch in patches.batches(patch) {
             let rock = &slope.rocks[batch.rock as usize];
             let [in_row, in_group] = patches.gradients(batch, &slope.covers.gradients[batch.set as usize]);
-            element_lanes::push_forces(lanes, patches.rows(batch), (rock, in_row), displacement, force);
-            element_lanes::push_forces(lanes, patches.groups(batch), (rock, in_group), displacement, force);
+            element_lanes::push_forces(lanes, patches.rows(batch), (rock, in_row), tables, || ahead.ask());
+            element_lanes::push_forces(lanes, patches.groups(batch), (rock, in_group), tables, || ahead.ask());
         }
         if !self.state.plastic.is_empty() {
-            self.relieve(patch, force);
+            self.relieve(patch, &mut tables[1]);
         }
     }
 
@@ -199,6 +211,32 @@ impl Pass<'_> {
                 slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
             }
         }
+    }
+}
+
+/// Covers whose values will be read soon, and are asked for piece by piece: memory is slow to come, and idle while a
+/// patch is in hand.
+struct Ahead<'a> {
+    pass: &'a Pass<'a>,
+    covers: Range<usize>,
+    piece: usize,
+}
+
+impl Ahead<'_> {
+    #[inline(always)]
+    fn ask(&mut self) {
+        if self.covers.is_empty() {
+            return;
+        }
+        let end = (self.covers.start + self.piece).min(self.covers.end);
+        let covers = self.covers.start..end;
+        self.covers.start = end;
+        let Pass { slope, state, metric, .. } = self.pass;
+        prefetch(&state.displacement[covers.clone()]);
+        prefetch(&state.velocity[covers.clone()]);
+        prefetch(&slope.covers.star_position[covers.clone()]);
+        prefetch(&metric.mass[covers.clone()]);
+        prefetch(&metric.row_sum[covers]);
     }
 }
 
@@ -375,6 +413,9 @@ impl Work for Spread<'_> {
     }
 }
 
+/// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
+const NEAR: f64 = 0.99;
+
 /// The end of a step: contacts' part of the velocities, new places, sums for the works.
 pub(super) struct Finish<'a> {
     pub slope: &'a Slope,
@@ -421,6 +462,7 @@ impl Work for Finish<'_> {
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
+        let mut farthest = 0.0;
         let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
         for block in blocks.filter(|b| !self.metric.fixed[*b]) {
             let own = self.slope.covers.covers_of(block);
@@ -436,8 +478,9 @@ impl Work for Finish<'_> {
                 velocity: &mut velocity[local.clone()],
                 displacement: &mut displacement[local],
             };
-            let (works, [fastest, squares]) = self.block(lanes, block, &mut end);
-            (sums.fastest, sums.squares) = (sums.fastest.max(fastest), sums.squares + squares);
+            let (works, speeds, distance) = self.block(lanes, block, &mut end);
+            (sums.fastest, sums.squares) = (sums.fastest.max(speeds[0]), sums.squares + speeds[1]);
+            farthest = f64::max(farthest, distance);
             sums.row_sum += works.row_sum;
             if patch.part_of.is_some() {
                 sums.works = works;
@@ -445,12 +488,13 @@ impl Work for Finish<'_> {
                 sums.damping += self.damping_work(block, &works);
             }
         }
+        sums.is_near = farthest < NEAR * self.slope.failure_displacement.powi(2);
     }
 }
 
 impl Finish<'_> {
     #[inline(always)]
-    fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2]) {
+    fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2], f64) {
         let (metric, push, from) = (self.metric, &self.push[block], &self.start[block].from);
         let is_pushed = *push != BlockPush::default() && metric.is_free(block);
         let mut common = Common::default();

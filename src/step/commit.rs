@@ -69,6 +69,7 @@ impl Step<'_> {
         for (u, v) in self.state.displacement.iter_mut().zip(&self.scratch.predicted) {
             *u += v * dt;
         }
+        self.scratch.sums.iter_mut().for_each(|sums| sums.is_near = false);
     }
 
     /// Velocities after damping and before any force.

@@ -54,17 +54,25 @@ fn note_slipped(slope: &Slope, state: &mut State, time: f64) {
     }
 }
 
-fn note_failed(slope: &Slope, state: &mut State, scratch: &Scratch, time: f64) {
+fn note_failed(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64) {
     let limit = slope.failure_displacement;
-    for block in (0..scratch.touching.len()).filter(|&b| !scratch.metric.fixed[b] && !state.removed[b]) {
-        if state.events.failed[block] {
+    for (first, patch) in slope.patches.iter().enumerate().filter(|(_, patch)| !patch.blocks.is_empty()) {
+        let parts = first..first + slope.patches.parts(first).len().max(1);
+        if scratch.sums[parts].iter().all(|sums| sums.is_near) {
             continue;
         }
-        let covers = slope.covers.covers_of(block);
-        let sum: Vector = covers.map(|i| state.displacement[i] * slope.metric.row_sum[i]).sum();
-        if sum.norm() > limit * slope.metric.total[block] {
-            state.events.failed[block] = true;
-            state.events.list.push(Event { kind: EventKind::Failed, subject: block as u32, time });
+        for block in patch.blocks.clone().filter(|&b| !scratch.metric.fixed[b] && !state.removed[b]) {
+            if state.events.failed[block] {
+                continue;
+            }
+            let covers = slope.covers.covers_of(block);
+            let sum: Vector = covers.map(|i| state.displacement[i] * slope.metric.row_sum[i]).sum();
+            if sum.norm() > limit * slope.metric.total[block] {
+                state.events.failed[block] = true;
+                state.events.list.push(Event { kind: EventKind::Failed, subject: block as u32, time });
+            }
         }
     }
+    // An implicit step, which looks at no displacement, must not find these.
+    scratch.sums.iter_mut().for_each(|sums| sums.is_near = false);
 }

@@ -1,0 +1,80 @@
+//! A large block, cut into parts of tiles whose elements stand in rows: every element is where it belongs, and the
+//! forces are those of the elements one by one.
+
+mod common;
+
+use common::simulation;
+use enmm::geometry::Vector;
+use enmm::io::bench::continuum_case;
+use enmm::state::{Scratch, Slope, State};
+use enmm::step::{Regime, advance, prepare};
+
+/// Height (m) below which nothing is displaced, so that what holds the base plays no part.
+const STILL: f64 = 10.0;
+
+#[test]
+fn every_part_has_the_elements_of_its_covers_once() {
+    let simulation = simulation(&continuum_case(12_000));
+    let slope = simulation.slope();
+    let (covers, patches) = (&slope.covers, &slope.patches);
+    let (mut in_rows, mut all) = (0, 0);
+    for patch in patches.iter() {
+        let ids: Vec<u32> = patch.covers.clone().map(|i| i as u32).chain(patches.halo(patch).iter().copied()).collect();
+        let is_own = |i: &u32| patch.covers.contains(&(*i as usize));
+        let wanted = covers.element_covers.iter().filter(|c| c.iter().any(is_own)).count();
+        let mut found = Vec::new();
+        for batch in patches.batches(patch) {
+            for (e, slots) in patches.elements(batch) {
+                assert_eq!(slots.map(|slot| ids[slot.index()]), covers.element_covers[e]);
+                assert_eq!(covers.element_triangle[e].set, batch.set);
+                found.push(e);
+            }
+            in_rows +=
+                patches.rows(batch).0.iter().map(|row| row.area.iter().filter(|a| **a > 0.0).count()).sum::<usize>();
+        }
+        found.sort_unstable();
+        found.dedup();
+        assert_eq!(found.len(), wanted);
+        all += wanted;
+    }
+    assert!(patches.len() > 4 && 10 * in_rows > 7 * all, "{in_rows} of {all} in rows");
+}
+
+/// Velocities after one step from displacements at rest.
+fn kicked(slope: &Slope, start: &State, displacement: impl Fn(usize) -> Vector) -> (Vec<Vector>, State) {
+    let mut state = start.clone();
+    (0..state.displacement.len()).for_each(|i| state.displacement[i] = displacement(i));
+    let before = state.clone();
+    let mut scratch = Scratch::default();
+    prepare(slope, &state, &mut scratch);
+    advance(slope, Regime::Dynamic { damping: 0.0 }, &mut state, &mut scratch, false).expect("a step");
+    (state.velocity, before)
+}
+
+#[test]
+fn forces_are_those_of_the_elements_one_by_one() {
+    let simulation = simulation(&continuum_case(12_000));
+    let slope = simulation.slope();
+    let place = |i: usize| slope.covers.star_position[i];
+    let moved = |i: usize| {
+        let p = place(i);
+        let share = 1e-3 * (p.y - STILL).max(0.0);
+        Vector::new((0.3 * p.x).sin() * (0.2 * p.y).cos(), (0.25 * p.x + 0.1 * p.y).cos()) * share
+    };
+    let (still, _) = kicked(slope, simulation.state(), |_| Vector::zeros());
+    let (bent, state) = kicked(slope, simulation.state(), moved);
+    let mut force = vec![Vector::zeros(); still.len()];
+    for (e, covers) in slope.covers.element_covers.iter().enumerate() {
+        let g = &slope.covers.gradients[slope.covers.element_triangle[e].set as usize];
+        let deformation = slope.deformation(e, &state.displacement);
+        let forces = deformation.forces(g, slope.covers.element_area[e], slope.rock_of(e), &[0.0; 3]);
+        covers.iter().zip(forces).for_each(|(&i, f)| force[i as usize] += f);
+    }
+    let kick = 0.5 * slope.dt;
+    let largest = force.iter().map(Vector::norm).fold(0.0, f64::max);
+    assert!(largest > 0.0);
+    for i in (0..force.len()).filter(|&i| place(i).y > STILL) {
+        let found = (bent[i] - still[i]) * (slope.metric.mass[i] / kick);
+        assert!((found - force[i]).norm() < 1e-9 * largest, "{found} instead of {} at {}", force[i], place(i));
+    }
+}
