@@ -2,6 +2,7 @@
 
 use crate::contact::Corner;
 
+use super::rule::End;
 use super::{HELD_BEYOND, Narrow, Pick};
 
 /// Least tributary length, relative to the mean of the neighbouring node segments.
@@ -81,12 +82,11 @@ impl Narrow<'_> {
         let band = HELD_BEYOND * self.size;
         let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
-        for (end, within) in
-            self.boundary.side_ends[pick.side as usize].iter().zip([pick.along, pick.length - pick.along])
-        {
-            if within < band && end.edge == pick.edge && end.corner == Corner::Convex {
-                let within = if pick.is_held { within.max(self.overlap_at(node, *end)) } else { within };
-                share = share.min(least + (1.0 - least) * within / band);
+        for (end, within) in [(End::Start, pick.along), (End::Finish, pick.length - pick.along)] {
+            let at = self.boundary.side_ends[pick.side as usize][end as usize];
+            if within < band && at.edge == pick.edge && at.corner == Corner::Convex {
+                let kept = if pick.is_held { self.overlap_at(node, pick, end) - band } else { within };
+                share = share.min(least + (1.0 - least) * within.max(kept) / band);
             }
         }
         share.clamp(1e-3, 1.0)

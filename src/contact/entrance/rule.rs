@@ -17,7 +17,7 @@ const FLUSH_COSINE: f64 = 0.985;
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+pub(super) enum End {
     Start,
     Finish,
 }
@@ -37,7 +37,7 @@ impl Narrow<'_> {
                 End::Finish => pick.along > pick.length,
             };
             let missed = at.edge == pick.edge && past && pick.beyond > tolerance;
-            if missed && !(pick.is_held && self.overlap_at(node, at) >= -tolerance) {
+            if missed && !(pick.is_held && self.overlap_at(node, pick, end) >= 0.0) {
                 return false;
             }
             let corner = self.place[at.point as usize];
@@ -63,35 +63,42 @@ impl Narrow<'_> {
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
-            return (p - q).dot(&outward) <= tolerance || pick.is_held && self.overlap_at(node, at) >= -tolerance;
+            return (p - q).dot(&outward) <= tolerance || pick.is_held && self.overlap_at(node, pick, end) >= 0.0;
         }
         let gap = (q - p).dot(&facing);
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
         }
-        let own_side = || match end {
-            End::Start => boundary.side_of_node_before(node),
-            End::Finish => boundary.side[boundary.node_point[node] as usize],
-        };
         if pick.gap > 0.0 || gap > 0.0 {
             return gap <= tolerance;
         }
         if pick.is_held {
             return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
         }
-        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.carries(boundary.node_before[corner as usize], own_side())
+        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.is_borne(node, corner, end)
     }
 
-    /// How far (m) the node is inside the facet round an end of a side, or the corner there inside both of the node's.
-    pub(super) fn overlap_at(&self, node: usize, at: SideEnd) -> f64 {
+    /// How far (m) the node is inside the facet round an end of the side, or the corner there inside both facets of the
+    /// node, unless that corner is a contact itself; negative where the two have parted.
+    pub(super) fn overlap_at(&self, node: usize, pick: &Pick, end: End) -> f64 {
+        let at = self.boundary.side_ends[pick.side as usize][end as usize];
         let frame = &self.frames.nodes[node];
         let to = self.place[at.point as usize] - frame.place;
         let inside = to.dot(&self.frames.edges[at.round as usize].normal());
-        if !frame.is_convex {
+        if !frame.is_convex || self.is_borne(node, at.point, end) {
             return inside;
         }
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
         inside.max(depths[0].min(depths[1]))
+    }
+
+    /// Whether the corner at an end of a side carried force against the node's own side towards that end.
+    fn is_borne(&self, node: usize, corner: u32, end: End) -> bool {
+        let own_side = match end {
+            End::Start => self.boundary.side_of_node_before(node),
+            End::Finish => self.boundary.side[self.boundary.node_point[node] as usize],
+        };
+        self.carries(self.boundary.node_before[corner as usize], own_side)
     }
 
     /// Whether a node carried force against a side in the last step.
