@@ -85,8 +85,10 @@ impl Narrow<'_> {
         for (end, within) in [(End::Start, pick.along), (End::Finish, pick.length - pick.along)] {
             let at = self.boundary.side_ends[pick.side as usize][end as usize];
             if within < band && at.edge == pick.edge && at.corner == Corner::Convex {
-                let kept = if pick.is_held { self.overlap_at(node, pick, end) - band } else { within };
-                share = share.min(least + (1.0 - least) * within.max(kept) / band);
+                let kept = |overlap: f64| within.max((overlap - band).min(0.0));
+                let is_past = pick.is_held && within < 0.0;
+                let within = if is_past { kept(self.overlap_at(node, pick, end)) } else { within };
+                share = share.min(least + (1.0 - least) * within / band);
             }
         }
         share.clamp(1e-3, 1.0)

@@ -85,11 +85,10 @@ impl Narrow<'_> {
         let frame = &self.frames.nodes[node];
         let to = self.place[at.point as usize] - frame.place;
         let inside = to.dot(&self.frames.edges[at.round as usize].normal());
-        if !frame.is_convex || self.is_borne(node, at.point, end) {
-            return inside;
-        }
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
-        inside.max(depths[0].min(depths[1]))
+        let depth = depths[0].min(depths[1]);
+        let is_covered = frame.is_convex && depth > inside && !self.is_borne(node, at.point, end);
+        if is_covered { depth } else { inside }
     }
 
     /// Whether the corner at an end of a side carried force against the node's own side towards that end.
