@@ -189,10 +189,7 @@ impl Step<'_> {
         if let Some(implicit) = &slope.implicit {
             return self.implicit_interval(implicit, dt);
         }
-        self.locate();
-        self.search();
-        self.yield_rock();
-        self.predict(dt);
+        self.set_out(dt);
         self.entrance(self.reach(dt), self.state.dt_last);
         self.answer(dt);
         let swept = self.open_close(dt);
@@ -207,7 +204,7 @@ impl Step<'_> {
         self.commit(dt)
     }
 
-    /// Near pairs, yielding and predicted velocities of a step of `dt` (s).
+    /// Places, near pairs, yielding and predicted velocities of a step of `dt` (s).
     fn set_out(&mut self, dt: f64) {
         self.locate();
         self.search();

@@ -182,16 +182,10 @@ impl Narrow<'_> {
                 pick.admitted = !self.is_false_sight(node, pick) && self.within(node, pick);
                 contested |= pick.admitted & !pick.is_held & (pick.gap < -TIE_TOLERANCE * self.size);
             }
-            // Only where a deep one without force is admitted do those matter that are not.
-            if contested {
-                self.choose_sides(node, picks);
-            }
-            let start = admitted.len();
-            admitted.extend(picks.iter().filter(|p| p.admitted));
-            if !contested && self.choose_sides(node, &mut admitted[start..]) {
-                let kept = keep_admitted(&mut admitted[start..]);
-                admitted.truncate(start + kept);
-            }
+            // Those that are not admitted matter only where a deep one without force is.
+            let count = if contested { picks.len() } else { keep_admitted(picks) };
+            self.choose_sides(node, &mut picks[..count]);
+            admitted.extend(picks[..count].iter().filter(|p| p.admitted));
         }
     }
 

@@ -37,7 +37,7 @@ impl Narrow<'_> {
                 End::Finish => pick.along > pick.length,
             };
             let missed = at.edge == pick.edge && past && pick.beyond > tolerance;
-            if missed && !(pick.is_held && self.overlap_at(node, pick, end) >= 0.0) {
+            if missed && !self.is_kept(node, pick, end) {
                 return false;
             }
             let corner = self.place[at.point as usize];
@@ -55,15 +55,14 @@ impl Narrow<'_> {
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
-        let at = boundary.side_ends[pick.side as usize][end as usize];
-        let SideEnd { round, point: corner, .. } = at;
+        let SideEnd { round, point: corner, .. } = boundary.side_ends[pick.side as usize][end as usize];
         let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
         if flush || own.dot(&outward) >= 0.0 {
-            return (p - q).dot(&outward) <= tolerance || pick.is_held && self.overlap_at(node, pick, end) >= 0.0;
+            return (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
         }
         let gap = (q - p).dot(&facing);
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
@@ -76,6 +75,11 @@ impl Narrow<'_> {
             return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
         }
         gap <= pick.gap + TIE_TOLERANCE * self.size && !self.is_borne(node, corner, end)
+    }
+
+    /// Whether a contact that carries force outlasts an end of its side.
+    fn is_kept(&self, node: usize, pick: &Pick, end: End) -> bool {
+        pick.is_held && self.overlap_at(node, pick, end) >= 0.0
     }
 
     /// How far (m) the node is inside the facet round an end of the side, or the corner there inside both facets of the
@@ -115,10 +119,8 @@ impl Narrow<'_> {
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    /// Returns whether any side has lost.
-    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) -> bool {
+    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) {
         let block = |p: &Pick| self.boundary.block[p.edge as usize];
-        let mut lost = false;
         for i in 0..picks.len() {
             for j in i + 1..picks.len() {
                 let (a, b) = (&picks[i], &picks[j]);
@@ -131,11 +133,9 @@ impl Narrow<'_> {
                 };
                 if let Some(first) = loser {
                     picks[if first { i } else { j }].admitted = false;
-                    lost = true;
                 }
             }
         }
-        lost
     }
 
     /// Whether the node was behind the side already before the last step, so that it did not come in through it.
