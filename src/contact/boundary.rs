@@ -72,6 +72,8 @@ pub struct Boundary {
     pub side_next: Vec<u32>,
     /// Both ends of each side, start and finish.
     pub side_ends: Vec<[SideEnd; 2]>,
+    /// Twice the area of each block over its perimeter (m): how thick it is.
+    pub block_thickness: Vec<f64>,
 }
 
 /// One end of a side.
@@ -104,6 +106,7 @@ impl Boundary {
             place_nodes(&mut stations, covers.mesh.size);
             boundary.push_loop(covers, outlines.loop_block[k], &stations);
         }
+        boundary.measure_blocks(covers);
         boundary
     }
 
@@ -163,6 +166,15 @@ impl Boundary {
     /// Side that ends at or passes through a node.
     pub fn side_of_node_before(&self, node: usize) -> u32 {
         self.side[self.node_edge_before[node] as usize]
+    }
+
+    fn measure_blocks(&mut self, covers: &Covers) {
+        let mut perimeter = vec![0.0; covers.block_count()];
+        for (k, &block) in self.block.iter().enumerate() {
+            perimeter[block as usize] += (self.reference[self.after(k)] - self.reference[k]).norm();
+        }
+        let area = |block: usize| covers.elements_of(block).map(|e| covers.element_area[e]).sum::<f64>();
+        self.block_thickness = perimeter.iter().enumerate().map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
     }
 
     fn push_loop(&mut self, covers: &Covers, block: u32, stations: &[Station]) {

@@ -7,7 +7,7 @@ use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::{FIRST_SIGHT_DEPTH, GRAIN, Narrow, Pick, right_of};
+use super::{GRAIN, Narrow, Pick, right_of};
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
@@ -118,7 +118,7 @@ impl Narrow<'_> {
             state: ContactState::Open,
             intact: self.first,
         };
-        if -pick.gap > FIRST_SIGHT_DEPTH * self.size {
+        if self.is_deep(node, pick, pick.gap) {
             history.offset = -pick.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {

@@ -29,6 +29,8 @@ const SIDES_MAX: usize = 12;
 const ENTRANCE_SINE: f64 = 0.17;
 /// Depth, relative to the mesh size, from which a contact at first sight starts without force.
 const FIRST_SIGHT_DEPTH: f64 = 3e-3;
+/// The same relative to the thickness of the thinner block, where that is less.
+const FIRST_SIGHT_SHARE: f64 = 0.25;
 /// Distance beyond a corner, relative to the mesh size, up to which a contact that carries force is kept.
 const HELD_BEYOND: f64 = 1e-3;
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
@@ -242,7 +244,15 @@ impl Narrow<'_> {
         }
         let boundary = self.boundary;
         let own = boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize];
-        own && -pick.gap > FIRST_SIGHT_DEPTH * self.size || self.behind.binary_search(&[node as u32, pick.side]).is_ok()
+        own && self.is_deep(node, pick, pick.gap) || self.behind.binary_search(&[node as u32, pick.side]).is_ok()
+    }
+
+    /// Whether a gap (m) of a pick is too deep for what has come in within a step.
+    fn is_deep(&self, node: usize, pick: &Pick, gap: f64) -> bool {
+        let Boundary { block, block_thickness, node_point, .. } = self.boundary;
+        let blocks = [node_point[node], pick.edge].map(|point| block[point as usize] as usize);
+        let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
+        -gap > (FIRST_SIGHT_DEPTH * self.size).min(FIRST_SIGHT_SHARE * thin)
     }
 
     #[inline(always)]

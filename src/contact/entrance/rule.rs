@@ -4,7 +4,7 @@ use crate::contact::{ContactState, Corner, SideEnd};
 use crate::cover;
 use crate::geometry::Point;
 
-use super::{ENTRANCE_SINE, FIRST_SIGHT_DEPTH, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
+use super::{ENTRANCE_SINE, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
 
 /// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
 const LEDGE: f64 = 5e-4;
@@ -72,7 +72,7 @@ impl Narrow<'_> {
             return gap <= tolerance;
         }
         if pick.is_held {
-            return -pick.gap < FIRST_SIGHT_DEPTH * self.size || gap < SHALLOWER * pick.gap;
+            return !self.is_deep(node, pick, pick.gap) || gap < SHALLOWER * pick.gap;
         }
         gap <= pick.gap + TIE_TOLERANCE * self.size && !self.is_borne(node, corner, end)
     }
@@ -140,7 +140,7 @@ impl Narrow<'_> {
 
     /// Whether the node was behind the side already before the last step, so that it did not come in through it.
     fn was_deep(&self, node: usize, pick: &Pick) -> bool {
-        self.opened(node, pick) - pick.gap > FIRST_SIGHT_DEPTH * self.size
+        self.is_deep(node, pick, pick.gap - self.opened(node, pick))
     }
 
     /// How far (m) the gap opened in the last step.
