@@ -155,7 +155,7 @@ impl OpenClose {
         self.order.arrange(contacts, &mut self.sequence, &mut self.ends);
     }
 
-    /// Sweeps until forces settle, warm-started from the last step's forces, over contacts that have been arranged.
+    /// Sweeps until forces settle, from those that are expected, over contacts that have been arranged.
     pub fn run(
         &mut self,
         metric: &Metric,

@@ -31,6 +31,8 @@ pub struct ContactHistory {
     pub normal_force: f64,
     /// Shear force at the end of the last step (N/m), on the node along the edge.
     pub shear_force: f64,
+    /// How both forces have changed in the last step (N/m).
+    pub trend: [f64; 2],
     /// Shear force that the spring has stored (N/m).
     pub shear_stored: f64,
     /// Penetration at first sight that carries no force (m); it fades.
@@ -90,6 +92,8 @@ impl VertexEdge {
     }
 }
 
+/// Share of their last change by which forces are expected to change again: from 0.7 on resting contacts swing.
+const EXPECTED: f64 = 0.5;
 /// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
 const CENTRED: f64 = 0.25;
 
@@ -143,6 +147,27 @@ impl VertexEdge {
         let trial = self.history.shear_stored - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])
+    }
+
+    /// Forces (N/m), normal and shear, that a step starts from: a contact that stays closed goes on half as it has
+    /// changed, within its limit.
+    #[inline(always)]
+    pub fn expected(&self) -> [f64; 2] {
+        let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
+        let normal = normal_force + EXPECTED * trend[0];
+        if normal <= 0.0 || normal_force <= trend[0].max(0.0) {
+            return [normal_force, shear_force];
+        }
+        let limit = self.limits.shear(normal);
+        [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)]
+    }
+
+    /// Takes the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and notes how they have changed.
+    #[inline(always)]
+    pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool) {
+        let ContactHistory { normal_force, shear_force, .. } = self.history;
+        self.bear(forces, bears, torn);
+        self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
     }
 
     /// Takes forces (N/m) that the joint carries, none unless it `bears`; `torn` when it was asked for more tension

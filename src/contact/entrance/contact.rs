@@ -130,6 +130,7 @@ impl Narrow<'_> {
             edge: pick.edge,
             normal_force: 0.0,
             shear_force: 0.0,
+            trend: [0.0; 2],
             shear_stored: 0.0,
             offset: 0.0,
             rest: 0.0,

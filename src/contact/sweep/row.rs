@@ -69,7 +69,7 @@ impl Watch {
 }
 
 impl Row {
-    /// Takes a contact with its forces of the last step.
+    /// Takes a contact with the forces that are expected of it.
     #[inline(always)]
     pub fn load(&mut self, contact: &VertexEdge, index: u32, view: &SweepView, options: &SweepOptions) {
         let closes = contact.closure_max.is_finite();
@@ -79,7 +79,7 @@ impl Row {
         self.bodies[0].load(&contact.pair, 0, view);
         self.bodies[1].load(&contact.pair, 1, view);
         self.normal = contact.normal;
-        self.force = [contact.history.normal_force, contact.history.shear_force];
+        self.force = contact.expected();
         let Limits { friction, cohesion, tension, rough } = &contact.limits;
         (self.friction, self.cohesion) = (*friction, *cohesion);
         self.open = if *tension > 0.0 { (-tension).next_down() } else { 0.0 };
@@ -91,7 +91,7 @@ impl Row {
     /// Leaves force and state in its contact.
     #[inline(always)]
     pub fn finish(&self, contacts: &mut [VertexEdge]) {
-        contacts[self.contact as usize].bear(self.force, self.bears, self.torn);
+        contacts[self.contact as usize].end(self.force, self.bears, self.torn);
     }
 
     /// What decides whether it is judged.
