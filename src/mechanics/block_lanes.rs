@@ -106,6 +106,12 @@ impl<F: Eight> Chunk<F> {
         let q = [star[0] + u[0] - at[0], star[1] + u[1] - at[1]];
         Self { q, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
     }
+
+    /// μ/m.
+    #[inline(always)]
+    fn ratio(&self) -> F {
+        self.inertial / self.mass
+    }
 }
 
 impl Span<'_> {
@@ -134,33 +140,64 @@ impl Span<'_> {
     /// Sums over the span, with those of `force` (N/m) where they are asked for.
     #[inline(always)]
     pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: Option<&[Vector]>) -> BlockSums {
-        let (mut sums, mut pushed) = ([lanes.splat(0.0); 10], [lanes.splat(0.0); 5]);
+        let mut tally = Tally::new(lanes);
         for range in self.chunks() {
             let chunk = self.chunk(lanes, range.clone(), from);
+            tally.add(&chunk);
             if let Some(force) = force {
-                let f = lanes.load_some_pairs(&force[range], Vector::zeros());
-                add_pushed(&chunk, f, &mut pushed);
-            }
-            let Chunk { q, w, mass, inertial, .. } = chunk;
-            let mq = [mass * q[0], mass * q[1]];
-            let terms = [
-                inertial * q[0],
-                inertial * q[1],
-                mq[0],
-                mq[1],
-                mq[0] * q[0] + mq[1] * q[1],
-                inertial * w[0],
-                inertial * w[1],
-                mass * w[0],
-                mass * w[1],
-                mq[0] * w[1] - mq[1] * w[0],
-            ];
-            for (sum, term) in sums.iter_mut().zip(&terms) {
-                *sum = *sum + *term;
+                tally.add_pushed(&chunk, lanes.load_some_pairs(&force[range], Vector::zeros()));
             }
         }
-        let [a, b, c, d, polar, e, f, g, h, moment] = totals(lanes, &sums);
-        let [i, j, torque, k, l] = totals(lanes, &pushed);
+        tally.total(lanes)
+    }
+}
+
+/// Sums of a block in the making, and those with forces.
+struct Tally<F> {
+    sums: [F; 10],
+    pushed: [F; 5],
+}
+
+impl<F: Eight> Tally<F> {
+    #[inline(always)]
+    fn new<L: Lanes<F = F>>(lanes: L) -> Self {
+        Self { sums: [lanes.splat(0.0); 10], pushed: [lanes.splat(0.0); 5] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, chunk: &Chunk<F>) {
+        let Chunk { q, w, mass, inertial } = *chunk;
+        let mq = [mass * q[0], mass * q[1]];
+        let terms = [
+            inertial * q[0],
+            inertial * q[1],
+            mq[0],
+            mq[1],
+            mq[0] * q[0] + mq[1] * q[1],
+            inertial * w[0],
+            inertial * w[1],
+            mass * w[0],
+            mass * w[1],
+            mq[0] * w[1] - mq[1] * w[0],
+        ];
+        for (sum, term) in self.sums.iter_mut().zip(&terms) {
+            *sum = *sum + *term;
+        }
+    }
+
+    #[inline(always)]
+    fn add_pushed(&mut self, chunk: &Chunk<F>, f: [F; 2]) {
+        let (q, ratio) = (chunk.q, chunk.ratio());
+        let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
+        for (sum, term) in self.pushed.iter_mut().zip(&terms) {
+            *sum = *sum + *term;
+        }
+    }
+
+    #[inline(always)]
+    fn total<L: Lanes<F = F>>(&self, lanes: L) -> BlockSums {
+        let [a, b, c, d, polar, e, f, g, h, moment] = totals(lanes, &self.sums);
+        let [i, j, torque, k, l] = totals(lanes, &self.pushed);
         BlockSums {
             inertial_place: Vector::new(a, b),
             first: Vector::new(c, d),
@@ -172,15 +209,6 @@ impl Span<'_> {
             torque,
             weighted: Vector::new(k, l),
         }
-    }
-}
-
-#[inline(always)]
-fn add_pushed<F: Eight>(chunk: &Chunk<F>, f: [F; 2], sums: &mut [F; 5]) {
-    let (q, ratio) = (chunk.q, chunk.inertial / chunk.mass);
-    let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
-    for (sum, term) in sums.iter_mut().zip(&terms) {
-        *sum = *sum + *term;
     }
 }
 
@@ -201,16 +229,17 @@ impl Common {
         Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
     }
 
+    /// At places q of covers, with their ratios μ/m where these count.
     #[inline(always)]
-    fn at<L: Lanes>(&self, lanes: L, chunk: &Chunk<L::F>) -> [L::F; 2] {
+    fn at<L: Lanes>(&self, lanes: L, q: [L::F; 2], ratio: impl FnOnce() -> L::F) -> [L::F; 2] {
         let mut weighted = splat(lanes, self.weighted);
         if self.weighted != Vector::zeros() {
-            let ratio = chunk.inertial / chunk.mass;
+            let ratio = ratio();
             weighted = [ratio * weighted[0], ratio * weighted[1]];
         }
         let spin = lanes.splat(self.spin);
-        let x = lanes.splat(self.velocity.x) + weighted[0] - spin * chunk.q[1];
-        let y = lanes.splat(self.velocity.y) + weighted[1] + spin * chunk.q[0];
+        let x = lanes.splat(self.velocity.x) + weighted[0] - spin * q[1];
+        let y = lanes.splat(self.velocity.y) + weighted[1] + spin * q[0];
         [x, y]
     }
 }
@@ -237,6 +266,38 @@ fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
     -lanes.max(inverse * lanes.splat(-f64::MAX), lanes.splat(-1.0))
 }
 
+impl Own<'_> {
+    /// Velocities v (m/s) of some covers after damping, with `add` (m/s) and what forces f (N/m) give.
+    #[inline(always)]
+    fn kicked<L: Lanes>(
+        &self,
+        lanes: L,
+        range: Range<usize>,
+        (v, add): ([L::F; 2], [L::F; 2]),
+        (f, mass): ([L::F; 2], L::F),
+    ) -> [L::F; 2] {
+        let (factor, dt) = (lanes.splat(self.factor), lanes.splat(self.dt));
+        let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
+        let Some((row_sum, inverse)) = self.held else {
+            let share = dt / mass;
+            return [out[0] + f[0] * share, out[1] + f[1] * share];
+        };
+        let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
+        let inverse = match inverse {
+            None => [lanes.splat(1.0) / mass; 2],
+            Some(inverse) => {
+                let inverse = lanes.load_some_pairs(&inverse[range], Vector::zeros());
+                if self.masked {
+                    out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
+                }
+                inverse
+            }
+        };
+        let body = splat(lanes, self.acceleration);
+        [out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt, out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt]
+    }
+}
+
 impl Span<'_> {
     /// Writes the velocities that damping and forces (N/m) leave, with what is common to the block; returns the
     /// square of the largest speed before.
@@ -249,7 +310,6 @@ impl Span<'_> {
         common: &Common,
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> f64 {
-        let (factor, dt) = (lanes.splat(own.factor), lanes.splat(own.dt));
         let mut speed = lanes.splat(0.0);
         let common = Some(common).filter(|common| **common != Common::default());
         for range in self.chunks() {
@@ -257,35 +317,41 @@ impl Span<'_> {
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
             let mut add = [lanes.splat(0.0); 2];
             if let Some(common) = common {
-                add = common.at(lanes, &self.chunk(lanes, range.clone(), from));
+                let chunk = self.chunk(lanes, range.clone(), from);
+                add = common.at(lanes, chunk.q, || chunk.ratio());
             }
-            let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
             speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
-            match own.held {
-                None => {
-                    let share = dt / lanes.load_some(&self.mass[range.clone()], 1.0);
-                    out = [out[0] + f[0] * share, out[1] + f[1] * share];
-                }
-                Some((row_sum, inverse)) => {
-                    let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
-                    let inverse = match inverse {
-                        None => [lanes.splat(1.0) / lanes.load_some(&self.mass[range.clone()], 1.0); 2],
-                        Some(inverse) => {
-                            let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
-                            if own.masked {
-                                out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
-                            }
-                            inverse
-                        }
-                    };
-                    let body = splat(lanes, own.acceleration);
-                    out[0] = out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt;
-                    out[1] = out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt;
-                }
-            }
+            let mass = lanes.load_some(&self.mass[range.clone()], 1.0);
+            let out = own.kicked(lanes, range.clone(), (v, add), (f, mass));
             lanes.store_some_pairs(out, &mut predicted[range]);
         }
         lanes.greatest(speed)
+    }
+
+    /// The sums, those with forces for a free block, and the kick without what is common to the block, which follows
+    /// from them.
+    #[inline(always)]
+    pub fn sum_and_kick<L: Lanes>(
+        &self,
+        lanes: L,
+        from: &Reference,
+        own: &Own,
+        (force, predicted): (&[Vector], &mut [Vector]),
+    ) -> (BlockSums, f64) {
+        let (mut tally, mut speed, zero) = (Tally::new(lanes), lanes.splat(0.0), lanes.splat(0.0));
+        for range in self.chunks() {
+            let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
+            let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
+            let chunk = self.chunk(lanes, range.clone(), from);
+            tally.add(&chunk);
+            if own.held.is_none() {
+                tally.add_pushed(&chunk, f);
+            }
+            speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
+            let out = own.kicked(lanes, range.clone(), (v, [zero; 2]), (f, chunk.mass));
+            lanes.store_some_pairs(out, &mut predicted[range]);
+        }
+        (tally.total(lanes), lanes.greatest(speed))
     }
 
     /// Adds what is common to the block where covers can move.
@@ -300,7 +366,7 @@ impl Span<'_> {
     ) {
         for range in self.chunks() {
             let chunk = self.chunk(lanes, range.clone(), from);
-            let mut add = common.at(lanes, &chunk);
+            let mut add = common.at(lanes, chunk.q, || chunk.ratio());
             if let Some(inverse) = inverse {
                 let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
                 add = [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])];
@@ -399,7 +465,7 @@ impl End<'_> {
             if wants.is_pushed || wants.is_damped {
                 let chunk = self.chunk(lanes, range.clone(), from, u);
                 if wants.is_pushed {
-                    let add = push.at(lanes, &chunk);
+                    let add = push.at(lanes, chunk.q, || chunk.ratio());
                     v = [v[0] + add[0], v[1] + add[1]];
                 }
                 if wants.is_damped {

@@ -158,7 +158,7 @@ impl Pass<'_> {
     fn ahead(&self, patch: &Patch) -> Ahead<'_> {
         let (start, count) = (patch.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + patch.covers.len()).min(count) };
-        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::AHEAD).max(1);
+        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::TOGETHER).max(1);
         Ahead { pass: self, covers: start..end, piece: (end - start).div_ceil(times) }
     }
 
@@ -177,10 +177,9 @@ impl Pass<'_> {
         }
         // Missing elements of a row may reach beyond the last slot.
         behind.fill(Vector::zeros());
-        let local = force.first_mut(own + halo.len());
-        local.fill(Vector::zeros());
+        lanes.clear(force, own + halo.len() + LANES);
         if let Some(load) = self.load_force.get(patch.covers.clone()) {
-            local[..own].copy_from_slice(load);
+            force.first_mut(own).copy_from_slice(load);
         }
         let mut ahead = self.ahead(patch);
         for batch in patches.batches(patch) {
@@ -333,8 +332,7 @@ impl Pass<'_> {
         let covers = self.slope.patches.get(patch).covers.clone();
         let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
         let own = self.own(patch, block, covers, &step);
-        sums.block = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
-        sums.fastest = span.kick(lanes, &from, &own, &Common::default(), (force, predicted));
+        (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
     }
 
     /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
