@@ -115,6 +115,19 @@ impl<F: Eight> Chunk<F> {
 }
 
 impl Span<'_> {
+    /// The same with lengths that the compiler sees to be equal, so that a loop checks them once.
+    #[inline(always)]
+    fn even(&self) -> Self {
+        let count = self.star.len();
+        Self {
+            star: self.star,
+            displacement: &self.displacement[..count],
+            velocity: &self.velocity[..count],
+            mass: &self.mass[..count],
+            inertial: &self.inertial[..count],
+        }
+    }
+
     /// Ranges of up to eight covers.
     #[inline(always)]
     fn chunks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
@@ -244,6 +257,36 @@ impl Common {
     }
 }
 
+/// What is common to a large block, for covers of a part of it: those that contacts, supports or bolts may ask for get
+/// it before these do, the others with what else ends the step.
+#[derive(Clone, Copy)]
+pub struct Spread<'a> {
+    /// What is common to the block.
+    pub common: &'a Common,
+    /// 1/m along x and y unless all covers can move.
+    pub inverse: Option<&'a [Vector]>,
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
+}
+
+impl Spread<'_> {
+    /// Whether any of some covers may be asked for.
+    #[inline(always)]
+    fn is_exposed(&self, range: Range<usize>) -> bool {
+        let exposed = &self.exposed[range];
+        exposed.first_chunk::<LANES>().map_or_else(|| exposed.contains(&true), |eight| *eight != [false; LANES])
+    }
+
+    /// Velocities (m/s) that some covers get where they can move.
+    #[inline(always)]
+    fn given<L: Lanes>(&self, lanes: L, range: Range<usize>, chunk: &Chunk<L::F>) -> [L::F; 2] {
+        let add = self.common.at(lanes, chunk.q, || chunk.ratio());
+        let Some(inverse) = self.inverse else { return add };
+        let inverse = lanes.load_some_pairs(&inverse[range], Vector::zeros());
+        [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])]
+    }
+}
+
 /// What turns velocities into predicted ones beside what is common to the block.
 #[derive(Clone, Copy)]
 pub struct Own<'a> {
@@ -338,11 +381,13 @@ impl Span<'_> {
         own: &Own,
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> (BlockSums, f64) {
+        let (span, count) = (self.even(), self.star.len());
+        let (force, predicted) = (&force[..count], &mut predicted[..count]);
         let (mut tally, mut speed, zero) = (Tally::new(lanes), lanes.splat(0.0), lanes.splat(0.0));
-        for range in self.chunks() {
-            let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
+        for range in span.chunks() {
+            let v = lanes.load_some_pairs(&span.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
-            let chunk = self.chunk(lanes, range.clone(), from);
+            let chunk = span.chunk(lanes, range.clone(), from);
             tally.add(&chunk);
             if own.held.is_none() {
                 tally.add_pushed(&chunk, f);
@@ -354,23 +399,15 @@ impl Span<'_> {
         (tally.total(lanes), lanes.greatest(speed))
     }
 
-    /// Adds what is common to the block where covers can move.
+    /// Adds what is common to the block to the velocities of covers that may be asked for.
     #[inline(always)]
-    pub fn add_common<L: Lanes>(
-        &self,
-        lanes: L,
-        from: &Reference,
-        common: &Common,
-        inverse: Option<&[Vector]>,
-        predicted: &mut [Vector],
-    ) {
+    pub fn spread<L: Lanes>(&self, lanes: L, from: &Reference, spread: &Spread, predicted: &mut [Vector]) {
         for range in self.chunks() {
-            let chunk = self.chunk(lanes, range.clone(), from);
-            let mut add = common.at(lanes, chunk.q, || chunk.ratio());
-            if let Some(inverse) = inverse {
-                let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
-                add = [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])];
+            if !spread.is_exposed(range.clone()) {
+                continue;
             }
+            let chunk = self.chunk(lanes, range.clone(), from);
+            let add = spread.given(lanes, range.clone(), &chunk);
             let out = lanes.load_some_pairs(&predicted[range.clone()], Vector::zeros());
             lanes.store_some_pairs([out[0] + add[0], out[1] + add[1]], &mut predicted[range]);
         }
@@ -421,6 +458,8 @@ pub struct End<'a> {
     pub increment: &'a [Vector],
     /// Displacements (m): before, after the step afterwards.
     pub displacement: &'a mut [Vector],
+    /// What covers that nothing asks for have still to get in common.
+    pub spread: Option<Spread<'a>>,
 }
 
 /// What is wanted of the end of a step.
@@ -458,6 +497,10 @@ impl End<'_> {
             let range = start..(start + LANES).min(self.star.len());
             let u = lanes.load_some_pairs(&self.displacement[range.clone()], still);
             let mut v = lanes.load_some_pairs(&self.velocity[range.clone()], still);
+            if let Some(spread) = self.spread.filter(|spread| !spread.is_exposed(range.clone())) {
+                let add = spread.given(lanes, range.clone(), &self.chunk(lanes, range.clone(), from, u));
+                v = [v[0] + add[0], v[1] + add[1]];
+            }
             if wants.is_touched {
                 let increment = lanes.load_some_pairs(&self.increment[range.clone()], still);
                 v = [v[0] + increment[0], v[1] + increment[1]];

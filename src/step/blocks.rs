@@ -8,7 +8,7 @@ use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 
 use crate::contact::BlockPush;
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Wants, WorkSums};
+use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
 use crate::mechanics::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, Metric, Patch, Patches, element_lanes,
 };
@@ -108,6 +108,8 @@ pub(super) struct Pass<'a> {
     pub damping: &'a [Damping],
     /// Whether all covers of each patch can move along both axes.
     pub movable: &'a [bool],
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
     /// Time (s) over which forces act.
     pub dt: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
@@ -133,11 +135,6 @@ impl Pass<'_> {
         self.span(block, self.slope.covers.covers_of(block)).reference()
     }
 
-    /// 1/m of the covers of a held block, unless they are in a patch where nothing else is held.
-    fn inverse(&self, patch: usize, covers: Range<usize>) -> Option<&[Vector]> {
-        (!self.movable[patch]).then(|| &self.metric.inverse[covers])
-    }
-
     /// How the covers of a block in a patch are written.
     fn own(&self, patch: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
         let held = !self.metric.is_free(block);
@@ -149,7 +146,8 @@ impl Pass<'_> {
             factor,
             dt: self.dt,
             acceleration: self.acceleration,
-            held: held.then(|| (&self.metric.row_sum[covers.clone()], self.inverse(patch, covers))),
+            held: held
+                .then(|| (&self.metric.row_sum[covers.clone()], inverse(self.metric, self.movable[patch], covers))),
             masked,
         }
     }
@@ -345,8 +343,8 @@ impl Pass<'_> {
             is_cut |= self.join_parts(first, out);
         }
         if is_cut {
-            let spread = Spread { pass: self, sums: out.sums, start: out.start };
-            Run { work: &spread, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
+            let exposed = Exposed { pass: self, sums: out.sums, start: out.start };
+            Run { work: &exposed, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
         }
     }
 
@@ -376,8 +374,8 @@ pub(super) struct KickOut<'a> {
     pub sums: &'a mut [PatchSums],
 }
 
-/// Adds what is common to a block to its parts.
-struct Spread<'a> {
+/// Adds what is common to a block to covers of its parts that contacts, supports or bolts may ask for.
+struct Exposed<'a> {
     pass: &'a Pass<'a>,
     sums: &'a [PatchSums],
     start: &'a [BlockStart],
@@ -392,23 +390,37 @@ impl Cut for Predicted<'_> {
     }
 }
 
-impl Work for Spread<'_> {
+impl Work for Exposed<'_> {
     type Out<'o> = Predicted<'o>;
 
     #[inline(always)]
     fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &mut [Table; 2]) {
-        let Pass { slope, metric, .. } = self.pass;
+        let Pass { slope, metric, movable, exposed, .. } = *self.pass;
         let patch = slope.patches.get(k);
         let Some(block) = patch.part_of.map(|b| b as usize).filter(|b| !metric.fixed[*b]) else { return };
-        let common = &self.sums[k].common;
-        if *common == Common::default() {
-            return;
+        if let Some(spread) = spread(metric, (patch, block), movable[k], exposed, &self.sums[k].common) {
+            let from = &self.start[block].from;
+            self.pass.span(block, patch.covers.clone()).spread(lanes, from, &spread, predicted);
         }
-        let covers = patch.covers.clone();
-        let inverse = self.pass.inverse(k, covers.clone()).filter(|_| !metric.is_free(block));
-        let from = &self.start[block].from;
-        self.pass.span(block, covers).add_common(lanes, from, common, inverse, predicted);
     }
+}
+
+/// What covers of a part of a block that can move have in common with the others of the block.
+fn spread<'a>(
+    metric: &'a Metric,
+    (part, block): (&Patch, usize),
+    movable: bool,
+    exposed: &'a [bool],
+    common: &'a Common,
+) -> Option<Spread<'a>> {
+    let covers = part.covers.clone();
+    let inverse = inverse(metric, movable || metric.is_free(block), covers.clone());
+    (*common != Common::default()).then(|| Spread { common, inverse, exposed: &exposed[covers] })
+}
+
+/// 1/m of covers unless they can all move.
+fn inverse(metric: &Metric, movable: bool, covers: Range<usize>) -> Option<&[Vector]> {
+    (!movable).then(|| &metric.inverse[covers])
 }
 
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
@@ -427,6 +439,10 @@ pub(super) struct Finish<'a> {
     pub increment: &'a [Vector],
     /// Damping of each block.
     pub damping: &'a [Damping],
+    /// Whether all covers of each patch can move along both axes.
+    pub movable: &'a [bool],
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
     /// Time (s) by which places move.
     pub dt: f64,
     /// Whether the work of body loads is asked for.
@@ -461,12 +477,16 @@ impl Work for Finish<'_> {
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
+        let common = sums.common;
         let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
         for block in blocks.filter(|b| !self.metric.fixed[*b]) {
             let own = self.slope.covers.covers_of(block);
             let covers = own.start.max(patch.covers.start)..own.end.min(patch.covers.end);
             let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
+            let of_part =
+                patch.part_of.and_then(|_| spread(self.metric, (patch, block), self.movable[k], self.exposed, &common));
             let mut end = End {
+                spread: of_part,
                 star: &self.slope.covers.star_position[covers.clone()],
                 mass: &self.metric.mass[covers.clone()],
                 inertial: &inertial(self.metric, block)[covers.clone()],
