@@ -106,12 +106,6 @@ impl<F: Eight> Chunk<F> {
         let q = [star[0] + u[0] - at[0], star[1] + u[1] - at[1]];
         Self { q, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
     }
-
-    /// μ/m.
-    #[inline(always)]
-    fn ratio(&self) -> F {
-        self.inertial / self.mass
-    }
 }
 
 impl Span<'_> {
@@ -200,7 +194,7 @@ impl<F: Eight> Tally<F> {
 
     #[inline(always)]
     fn add_pushed(&mut self, chunk: &Chunk<F>, f: [F; 2]) {
-        let (q, ratio) = (chunk.q, chunk.ratio());
+        let (q, ratio) = (chunk.q, chunk.inertial / chunk.mass);
         let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
         for (sum, term) in self.pushed.iter_mut().zip(&terms) {
             *sum = *sum + *term;
@@ -242,18 +236,36 @@ impl Common {
         Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
     }
 
-    /// At places q of covers, with their ratios μ/m where these count.
+    /// The same in all lanes, for a loop over covers.
     #[inline(always)]
-    fn at<L: Lanes>(&self, lanes: L, q: [L::F; 2], ratio: impl FnOnce() -> L::F) -> [L::F; 2] {
-        let mut weighted = splat(lanes, self.weighted);
-        if self.weighted != Vector::zeros() {
-            let ratio = ratio();
-            weighted = [ratio * weighted[0], ratio * weighted[1]];
-        }
+    fn shared<L: Lanes>(&self, lanes: L) -> Shared<L::F> {
+        let (velocity, weighted) = (splat(lanes, self.velocity), splat(lanes, self.weighted));
         let spin = lanes.splat(self.spin);
-        let x = lanes.splat(self.velocity.x) + weighted[0] - spin * q[1];
-        let y = lanes.splat(self.velocity.y) + weighted[1] + spin * q[0];
-        [x, y]
+        if self.weighted == Vector::zeros() {
+            let velocity = [velocity[0] + weighted[0], velocity[1] + weighted[1]];
+            return Shared { velocity, weighted: None, spin };
+        }
+        Shared { velocity, weighted: Some(weighted), spin }
+    }
+}
+
+/// A [`Common`] velocity in all lanes; without b where that is zero.
+struct Shared<F> {
+    velocity: [F; 2],
+    weighted: Option<[F; 2]>,
+    spin: F,
+}
+
+impl<F: Eight> Shared<F> {
+    /// What covers have of it.
+    #[inline(always)]
+    fn at(&self, chunk: &Chunk<F>) -> [F; 2] {
+        let [mut x, mut y] = self.velocity;
+        if let Some(weighted) = self.weighted {
+            let ratio = chunk.inertial / chunk.mass;
+            (x, y) = (x + ratio * weighted[0], y + ratio * weighted[1]);
+        }
+        [x - self.spin * chunk.q[1], y + self.spin * chunk.q[0]]
     }
 }
 
@@ -277,10 +289,9 @@ impl Spread<'_> {
         exposed.first_chunk::<LANES>().map_or_else(|| exposed.contains(&true), |eight| *eight != [false; LANES])
     }
 
-    /// Velocities (m/s) that some covers get where they can move.
+    /// What some covers get of `add` (m/s): nothing where they cannot move.
     #[inline(always)]
-    fn given<L: Lanes>(&self, lanes: L, range: Range<usize>, chunk: &Chunk<L::F>) -> [L::F; 2] {
-        let add = self.common.at(lanes, chunk.q, || chunk.ratio());
+    fn given<L: Lanes>(&self, lanes: L, range: Range<usize>, add: [L::F; 2]) -> [L::F; 2] {
         let Some(inverse) = self.inverse else { return add };
         let inverse = lanes.load_some_pairs(&inverse[range], Vector::zeros());
         [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])]
@@ -354,14 +365,13 @@ impl Span<'_> {
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> f64 {
         let mut speed = lanes.splat(0.0);
-        let common = Some(common).filter(|common| **common != Common::default());
+        let common = (*common != Common::default()).then(|| common.shared(lanes));
         for range in self.chunks() {
             let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
             let mut add = [lanes.splat(0.0); 2];
-            if let Some(common) = common {
-                let chunk = self.chunk(lanes, range.clone(), from);
-                add = common.at(lanes, chunk.q, || chunk.ratio());
+            if let Some(common) = &common {
+                add = common.at(&self.chunk(lanes, range.clone(), from));
             }
             speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
             let mass = lanes.load_some(&self.mass[range.clone()], 1.0);
@@ -402,12 +412,10 @@ impl Span<'_> {
     /// Adds what is common to the block to the velocities of covers that may be asked for.
     #[inline(always)]
     pub fn spread<L: Lanes>(&self, lanes: L, from: &Reference, spread: &Spread, predicted: &mut [Vector]) {
-        for range in self.chunks() {
-            if !spread.is_exposed(range.clone()) {
-                continue;
-            }
+        let common = spread.common.shared(lanes);
+        for range in self.chunks().filter(|range| spread.is_exposed(range.clone())) {
             let chunk = self.chunk(lanes, range.clone(), from);
-            let add = spread.given(lanes, range.clone(), &chunk);
+            let add = spread.given(lanes, range.clone(), common.at(&chunk));
             let out = lanes.load_some_pairs(&predicted[range.clone()], Vector::zeros());
             lanes.store_some_pairs([out[0] + add[0], out[1] + add[1]], &mut predicted[range]);
         }
@@ -488,47 +496,52 @@ impl End<'_> {
         push: &Common,
         wants: Wants,
     ) -> (WorkSums, [f64; 2], f64) {
-        let zero = lanes.splat(0.0);
-        let mut farthest = zero;
-        let (mut sums, mut row, mut fastest, mut squares) = ([zero; 6], [zero; 2], zero, zero);
-        let still = Vector::zeros();
-        let dt = lanes.splat(wants.dt);
-        for start in (0..self.star.len()).step_by(LANES) {
-            let range = start..(start + LANES).min(self.star.len());
-            let u = lanes.load_some_pairs(&self.displacement[range.clone()], still);
-            let mut v = lanes.load_some_pairs(&self.velocity[range.clone()], still);
-            if let Some(spread) = self.spread.filter(|spread| !spread.is_exposed(range.clone())) {
-                let add = spread.given(lanes, range.clone(), &self.chunk(lanes, range.clone(), from, u));
+        let (zero, still, dt) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.dt));
+        let (mut sums, mut row, mut fastest, mut squares, mut farthest) = ([zero; 6], [zero; 2], zero, zero, zero);
+        let (push, with) = (push.shared(lanes), splat(lanes, from.velocity));
+        let spread = self.spread.map(|spread| (spread, spread.common.shared(lanes)));
+        let count = self.star.len();
+        let (velocity, displacement) = (&mut self.velocity[..count], &mut self.displacement[..count]);
+        let (before, increment) = (&self.before[..count], &self.increment[..count]);
+        let (mass, inertial) = (&self.mass[..count], &self.inertial[..count]);
+        for start in (0..count).step_by(LANES) {
+            let range = start..(start + LANES).min(count);
+            let u = lanes.load_some_pairs(&displacement[range.clone()], still);
+            let mut v = lanes.load_some_pairs(&velocity[range.clone()], still);
+            // Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
+            let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+            let old = lanes.load_some_pairs(&before[range.clone()], from.velocity);
+            let m = [lanes.load_some(&mass[range.clone()], 1.0), lanes.load_some(&inertial[range.clone()], 0.0)];
+            let chunk = Chunk::new(lanes, from, [star, u, old], m);
+            if let Some((spread, common)) = &spread
+                && !spread.is_exposed(range.clone())
+            {
+                let add = spread.given(lanes, range.clone(), common.at(&chunk));
                 v = [v[0] + add[0], v[1] + add[1]];
             }
             if wants.is_touched {
-                let increment = lanes.load_some_pairs(&self.increment[range.clone()], still);
+                let increment = lanes.load_some_pairs(&increment[range.clone()], still);
                 v = [v[0] + increment[0], v[1] + increment[1]];
             }
-            if wants.is_pushed || wants.is_damped {
-                let chunk = self.chunk(lanes, range.clone(), from, u);
-                if wants.is_pushed {
-                    let add = push.at(lanes, chunk.q, || chunk.ratio());
-                    v = [v[0] + add[0], v[1] + add[1]];
-                }
-                if wants.is_damped {
-                    let with = splat(lanes, from.velocity);
-                    let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
-                    let mass = lanes.load_some(&self.mass[range.clone()], 0.0);
-                    add_works(&chunk, mass, s, &mut sums);
-                }
+            if wants.is_pushed {
+                let add = push.at(&chunk);
+                v = [v[0] + add[0], v[1] + add[1]];
+            }
+            if wants.is_damped {
+                let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
+                add_works(&chunk, lanes.load_some(&mass[range.clone()], 0.0), s, &mut sums);
             }
             if wants.is_loaded {
-                let before = lanes.load_some_pairs(&self.before[range.clone()], still);
+                let before = lanes.load_some_pairs(&before[range.clone()], still);
                 let row_sum = lanes.load_some(&self.row_sum[range.clone()], 0.0);
                 row = [row[0] + row_sum * (before[0] + v[0]), row[1] + row_sum * (before[1] + v[1])];
             }
             let square = v[0] * v[0] + v[1] * v[1];
             (fastest, squares) = (lanes.max(square, fastest), squares + square);
-            lanes.store_some_pairs(v, &mut self.velocity[range.clone()]);
+            lanes.store_some_pairs(v, &mut velocity[range.clone()]);
             let u = [u[0] + v[0] * dt, u[1] + v[1] * dt];
             farthest = lanes.max(u[0] * u[0] + u[1] * u[1], farthest);
-            lanes.store_some_pairs(u, &mut self.displacement[range]);
+            lanes.store_some_pairs(u, &mut displacement[range]);
         }
         let [a, b, c, d, moment, product] = totals(lanes, &sums);
         let [x, y] = totals(lanes, &row);
@@ -540,15 +553,6 @@ impl End<'_> {
             row_sum: Vector::new(x, y),
         };
         (works, [lanes.greatest(fastest), lanes.sum(squares)], lanes.greatest(farthest))
-    }
-
-    /// Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
-    #[inline(always)]
-    fn chunk<L: Lanes>(&self, lanes: L, range: Range<usize>, from: &Reference, u: [L::F; 2]) -> Chunk<L::F> {
-        let v = lanes.load_some_pairs(&self.before[range.clone()], from.velocity);
-        let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
-        let (mass, inertial) = (&self.mass[range.clone()], &self.inertial[range]);
-        Chunk::new(lanes, from, [star, u, v], [lanes.load_some(mass, 1.0), lanes.load_some(inertial, 0.0)])
     }
 }
 
