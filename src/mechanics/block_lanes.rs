@@ -438,6 +438,17 @@ pub struct WorkSums {
     pub row_sum: Vector,
 }
 
+impl WorkSums {
+    /// From those in lanes: momentum, inertial, moment, product; those with row-sum masses.
+    #[inline(always)]
+    fn total<L: Lanes>(lanes: L, sums: &[L::F; 6], row: &[L::F; 2]) -> Self {
+        let [a, b, c, d, moment, product] = totals(lanes, sums);
+        let [x, y] = totals(lanes, row);
+        let (momentum, inertial) = (Vector::new(a, b), Vector::new(c, d));
+        Self { momentum, inertial, moment, product, row_sum: Vector::new(x, y) }
+    }
+}
+
 impl AddAssign for WorkSums {
     fn add_assign(&mut self, other: Self) {
         self.momentum += other.momentum;
@@ -543,15 +554,7 @@ impl End<'_> {
             farthest = lanes.max(u[0] * u[0] + u[1] * u[1], farthest);
             lanes.store_some_pairs(u, &mut displacement[range]);
         }
-        let [a, b, c, d, moment, product] = totals(lanes, &sums);
-        let [x, y] = totals(lanes, &row);
-        let works = WorkSums {
-            momentum: Vector::new(a, b),
-            inertial: Vector::new(c, d),
-            moment,
-            product,
-            row_sum: Vector::new(x, y),
-        };
+        let works = WorkSums::total(lanes, &sums, &row);
         (works, [lanes.greatest(fastest), lanes.sum(squares)], lanes.greatest(farthest))
     }
 }

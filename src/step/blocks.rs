@@ -35,12 +35,18 @@ thread_local! {
 trait Cut: Sized + Send {
     /// The outputs of some covers, blocks and patches, and the rest.
     fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self);
+
+    /// Outputs on covers that are asked for before they are written.
+    fn asked(&self) -> &[Vector] {
+        &[]
+    }
 }
 
 /// Work on a run of patches with its outputs.
 trait Work: Sync {
     type Out<'o>: Cut;
-    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, tables: &mut [Table; 2]);
+    /// Does the work on a patch; `next` is what of the outputs behind it is asked for before it is written.
+    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
 }
 
 /// A run of patches in the hands of one thread.
@@ -89,10 +95,10 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
         while rest.range.len() > 1 {
             let next = rest.range.start + 1;
             let (first, others) = rest.cut(next);
-            first.work.patch(lanes, first.range.start, first.out, tables);
+            first.work.patch(lanes, first.range.start, first.out, others.out.asked(), tables);
             rest = others;
         }
-        rest.work.patch(lanes, rest.range.start, rest.out, tables);
+        rest.work.patch(lanes, rest.range.start, rest.out, &[], tables);
     }
 }
 
@@ -153,16 +159,16 @@ impl Pass<'_> {
     }
 
     /// What the patch after this one will read.
-    fn ahead(&self, patch: &Patch) -> Ahead<'_> {
+    fn ahead<'a>(&'a self, patch: &Patch, next: &'a [Vector]) -> Ahead<'a> {
         let (start, count) = (patch.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + patch.covers.len()).min(count) };
         let times = self.slope.patches.eights(patch).div_ceil(element_lanes::TOGETHER).max(1);
-        Ahead { pass: self, covers: start..end, piece: (end - start).div_ceil(times) }
+        Ahead { pass: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
     }
 
     /// Adds the element forces of a patch to the table of its covers (Eq. 7).
     #[inline(always)]
-    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, tables: &mut [Table; 2]) {
+    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, next: &[Vector], tables: &mut [Table; 2]) {
         let (slope, u) = (self.slope, &self.state.displacement);
         let patches = &slope.patches;
         let [displacement, force] = &mut *tables;
@@ -179,7 +185,7 @@ impl Pass<'_> {
         if let Some(load) = self.load_force.get(patch.covers.clone()) {
             force.first_mut(own).copy_from_slice(load);
         }
-        let mut ahead = self.ahead(patch);
+        let mut ahead = self.ahead(patch, next);
         for batch in patches.batches(patch) {
             let rock = &slope.rocks[batch.rock as usize];
             let [in_row, in_group] = patches.gradients(batch, &slope.covers.gradients[batch.set as usize]);
@@ -216,6 +222,8 @@ impl Pass<'_> {
 struct Ahead<'a> {
     pass: &'a Pass<'a>,
     covers: Range<usize>,
+    /// Predicted velocities from there on.
+    next: &'a [Vector],
     piece: usize,
 }
 
@@ -228,6 +236,9 @@ impl Ahead<'_> {
         let end = (self.covers.start + self.piece).min(self.covers.end);
         let covers = self.covers.start..end;
         self.covers.start = end;
+        let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
+        self.next = later;
+        prefetch(now);
         let Pass { slope, state, metric, .. } = self.pass;
         prefetch(&state.displacement[covers.clone()]);
         prefetch(&state.velocity[covers.clone()]);
@@ -254,6 +265,10 @@ impl Cut for Kicked<'_> {
         let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
         (Kicked { predicted, motion, start, sums }, rest)
     }
+
+    fn asked(&self) -> &[Vector] {
+        self.predicted
+    }
 }
 
 impl Work for Pass<'_> {
@@ -261,7 +276,7 @@ impl Work for Pass<'_> {
 
     /// Forces and kick of the blocks of a patch; of a part of a block all but what is common to the block.
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, tables: &mut [Table; 2]) {
+    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
         let patch = self.slope.patches.get(number);
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
@@ -276,7 +291,7 @@ impl Work for Pass<'_> {
             motion.fill(BlockMotion::default());
             return;
         }
-        self.push_elements(lanes, patch, tables);
+        self.push_elements(lanes, patch, next, tables);
         let force = tables[1].first(patch.covers.len());
         if let Some(block) = patch.part_of {
             self.kick_part(lanes, (number, block as usize), force, predicted, sums);
@@ -394,7 +409,7 @@ impl Work for Exposed<'_> {
     type Out<'o> = Predicted<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &mut [Table; 2]) {
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
         let Pass { slope, metric, movable, exposed, .. } = *self.pass;
         let patch = slope.patches.get(k);
         let Some(block) = patch.part_of.map(|b| b as usize).filter(|b| !metric.fixed[*b]) else { return };
@@ -471,7 +486,7 @@ impl Work for Finish<'_> {
     type Out<'o> = Finished<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &mut [Table; 2]) {
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
         let patch = self.slope.patches.get(k);
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
