@@ -365,13 +365,13 @@ impl Span<'_> {
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> f64 {
         let mut speed = lanes.splat(0.0);
-        let common = (*common != Common::default()).then(|| common.shared(lanes));
+        let (shared, any) = (common.shared(lanes), *common != Common::default());
         for range in self.chunks() {
             let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
             let mut add = [lanes.splat(0.0); 2];
-            if let Some(common) = &common {
-                add = common.at(&self.chunk(lanes, range.clone(), from));
+            if any {
+                add = shared.at(&self.chunk(lanes, range.clone(), from));
             }
             speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
             let mass = lanes.load_some(&self.mass[range.clone()], 1.0);
@@ -510,7 +510,7 @@ impl End<'_> {
         let (zero, still, dt) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.dt));
         let (mut sums, mut row, mut fastest, mut squares, mut farthest) = ([zero; 6], [zero; 2], zero, zero, zero);
         let (push, with) = (push.shared(lanes), splat(lanes, from.velocity));
-        let spread = self.spread.map(|spread| (spread, spread.common.shared(lanes)));
+        let common = self.spread.map_or(Common::default(), |spread| *spread.common).shared(lanes);
         let count = self.star.len();
         let (velocity, displacement) = (&mut self.velocity[..count], &mut self.displacement[..count]);
         let (before, increment) = (&self.before[..count], &self.increment[..count]);
@@ -524,7 +524,7 @@ impl End<'_> {
             let old = lanes.load_some_pairs(&before[range.clone()], from.velocity);
             let m = [lanes.load_some(&mass[range.clone()], 1.0), lanes.load_some(&inertial[range.clone()], 0.0)];
             let chunk = Chunk::new(lanes, from, [star, u, old], m);
-            if let Some((spread, common)) = &spread
+            if let Some(spread) = &self.spread
                 && !spread.is_exposed(range.clone())
             {
                 let add = spread.given(lanes, range.clone(), common.at(&chunk));
