@@ -11,7 +11,7 @@ pub use body::BlockPush;
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::geometry::Vector;
+use crate::geometry::{NONE, Vector};
 use crate::mechanics::Metric;
 
 use self::body::{Body, Ground};
@@ -110,7 +110,7 @@ impl Kernel for Load<'_> {
     fn run<L: Lanes>(self, _: L) {
         for ((row, watch), &k) in self.rows.iter_mut().zip(self.watch).zip(self.sequence) {
             row.load(&self.contacts[k as usize], k, self.view, self.options);
-            *watch = row.watch();
+            *watch = row.watch(&self.contacts[k as usize].pair);
         }
     }
 }
@@ -258,7 +258,9 @@ impl OpenClose {
             let step = force - bolt.force;
             if step != 0.0 {
                 push_bolt(bodies, bolt.direction * (-step * kick), &mut ground);
-                ground.mark([0, 1].map(|k| bodies[k].block()), turn, true);
+                for block in bodies.iter().map(Body::block).filter(|&block| block != NONE) {
+                    ground.mark([block; 2], turn);
+                }
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
             }

@@ -1,6 +1,6 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, Remembered, SearchGrid, SupportRow, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, Metric, YieldSurface};
@@ -40,6 +40,8 @@ pub struct Scratch {
     pub frames: Frames,
     /// What the vertex rule admits in this step.
     pub admitted: Admitted,
+    /// Where the contacts of the last step are.
+    pub remembered: Remembered,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.

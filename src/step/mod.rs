@@ -121,7 +121,7 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) ->
         step.implicit_contacts(dt);
     } else {
         step.set_out(dt);
-        step.entrance(step.reach(dt), step.state.dt_last);
+        step.touch(dt);
     }
     (state, scratch)
 }
@@ -190,7 +190,7 @@ impl Step<'_> {
             return self.implicit_interval(implicit, dt);
         }
         self.set_out(dt);
-        self.entrance(self.reach(dt), self.state.dt_last);
+        self.touch(dt);
         self.answer(dt);
         let swept = self.open_close(dt);
         if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
@@ -221,7 +221,7 @@ impl Step<'_> {
             let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
             self.state.near.candidates.clear();
             self.state.near.candidates.extend_from_slice(piece);
-            self.entrance(self.reach(dt), self.state.dt_last);
+            self.touch(dt);
             self.scratch.contacts.iter().for_each(&mut *see);
             rest = others;
         }

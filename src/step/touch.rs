@@ -2,14 +2,12 @@
 
 use std::time::Instant;
 
-use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{self, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport, VertexEdge};
+use crate::contact::{self, Approach, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport};
 use crate::cover::Weights;
-use crate::geometry::{Point, Vector};
-use crate::mechanics::Metric;
-use crate::state::{Scratch, State};
+use crate::geometry::Point;
+use crate::state::Scratch;
 
 use super::{Regime, Step};
 
@@ -24,52 +22,6 @@ pub(super) const REACH: f64 = 0.005;
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
-
-/// What contacts come on with in a step of `dt` (s) whose forces act for `kick` (s).
-struct Approach<'a> {
-    state: &'a State,
-    metric: &'a Metric,
-    predicted: &'a [Vector],
-    dt: f64,
-    kick: f64,
-    /// Damping ratio of a dynamic stage.
-    damping: Option<f64>,
-}
-
-/// How some contacts answer: compiled for every kind of lanes.
-struct Answer<'a> {
-    contacts: &'a mut [VertexEdge],
-    view: &'a Approach<'a>,
-}
-
-impl Kernel for Answer<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        for contact in self.contacts {
-            contact.approach = contact.relative(self.view.predicted);
-            if let Some(ratio) = self.view.damping {
-                self.view.centre(contact, ratio);
-            }
-        }
-    }
-}
-
-impl Approach<'_> {
-    /// Centres the springs that are a joint's own.
-    #[inline(always)]
-    fn centre(&self, contact: &mut VertexEdge, ratio: f64) {
-        let Self { state, metric, dt, kick, .. } = *self;
-        let physical = state.laws[contact.law as usize].penalty.map(|penalty| !penalty);
-        if physical != [false; 2] {
-            let last = contact.relative(&state.velocity).map(|v| v * state.dt_last);
-            let inverse: f64 = contact.pair.blocks.map(|b| metric.inverse_total[b as usize]).iter().sum();
-            let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
-            contact.centre(physical, dt, kick, last, bouncing);
-        }
-    }
-}
 
 impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
@@ -121,12 +73,23 @@ impl Step<'_> {
         REACH * self.slope.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
     }
 
-    /// Contacts that take part in this step, with geometry and approach velocities: those nearer than `reach` (m);
-    /// covers have moved for `dt_last` (s) with the velocities of the state.
-    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64) {
+    /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
+    pub(super) fn touch(&mut self, dt: f64) {
+        self.entrance(self.reach(dt), self.state.dt_last, Some(dt));
+    }
+
+    /// Contacts nearer than `reach` (m), in an explicit step of `dt` (s) with how they answer; covers have moved for
+    /// `dt_last` (s) with the velocities of the state.
+    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>) {
         let clock = Instant::now();
+        let damping = match self.regime {
+            Regime::Dynamic { damping } => Some(damping),
+            Regime::Static { .. } => None,
+        };
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
+        scratch.remembered.index(&state.contacts, slope.boundary.node_count());
+        let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = Narrow {
             boundary: &slope.boundary,
             place: &scratch.place,
@@ -142,6 +105,8 @@ impl Step<'_> {
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,
+            remembered: &scratch.remembered,
+            approach: dt.map(approach),
             size,
             reach,
             theta: slope.theta,
@@ -155,23 +120,9 @@ impl Step<'_> {
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
-    /// How contacts, supports and bolts answer in a step of `dt` (s).
+    /// How supports and bolts answer in a step of `dt` (s).
     pub(super) fn answer(&mut self, dt: f64) {
         let clock = Instant::now();
-        let (state, scratch) = (&*self.state, &mut *self.scratch);
-        let kick = 0.5 * (state.dt_last + dt);
-        let Scratch { contacts, predicted, metric, serial, .. } = scratch;
-        let damping = match self.regime {
-            Regime::Dynamic { damping } => Some(damping),
-            Regime::Static { .. } => None,
-        };
-        let view = Approach { state, metric, predicted, dt, kick, damping };
-        if *serial || contacts.len() <= CONTACTS {
-            dispatch(Answer { contacts, view: &view });
-        } else {
-            let parts = contacts.par_chunks_mut(CONTACTS);
-            parts.for_each(|contacts| dispatch(Answer { contacts, view: &view }));
-        }
         self.load_supports(dt);
         self.load_bolts();
         self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();

@@ -7,7 +7,7 @@ use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::{GRAIN, Narrow, Pick, right_of};
+use super::{Approach, GRAIN, Narrow, Pick, right_of};
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
@@ -23,6 +23,10 @@ impl Kernel for Make<'_> {
     fn run<L: Lanes>(self, _: L) {
         for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
             *contact = self.narrow.contact(pick);
+            if let Some(approach) = &self.narrow.approach {
+                contact.approach = contact.relative(approach.predicted);
+                self.narrow.centre(contact, approach);
+            }
         }
     }
 }
@@ -81,6 +85,21 @@ impl Narrow<'_> {
             lag: [0.0; 2],
             torn: false,
             fresh: pick.held.is_none(),
+        }
+    }
+
+    /// Centres the springs of a dynamic stage that are a joint's own.
+    #[inline(always)]
+    fn centre(&self, contact: &mut VertexEdge, approach: &Approach) {
+        let Approach { dt, kick, damping, .. } = *approach;
+        let physical = self.laws[contact.law as usize].penalty.map(|penalty| !penalty);
+        if let Some(ratio) = damping
+            && physical != [false; 2]
+        {
+            let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
+            let inverse: f64 = contact.pair.blocks.map(|b| self.metric.inverse_total[b as usize]).iter().sum();
+            let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
+            contact.centre(physical, dt, kick, last, bouncing);
         }
     }
 

@@ -70,6 +70,10 @@ pub struct Narrow<'a> {
     pub dt_last: f64,
     /// Contacts of the last step, ordered by node and side.
     pub history: &'a [ContactHistory],
+    /// Where those of each node are.
+    pub remembered: &'a Remembered,
+    /// How contacts come on in an explicit step; none in an implicit one.
+    pub approach: Option<Approach<'a>>,
     /// Mesh size (m).
     pub size: f64,
     /// Gap (m) below which a contact takes part in the iteration.
@@ -84,6 +88,47 @@ pub struct Narrow<'a> {
     pub in_situ: Option<&'a StressField>,
     /// Whether to keep to the calling thread.
     pub serial: bool,
+}
+
+/// How contacts come on in an explicit step.
+pub struct Approach<'a> {
+    /// Velocities (m/s) of the covers without contact forces.
+    pub predicted: &'a [Vector],
+    /// Step (s).
+    pub dt: f64,
+    /// Time (s) for which forces act.
+    pub kick: f64,
+    /// Damping ratio of a dynamic stage.
+    pub damping: Option<f64>,
+}
+
+/// Where the contacts of the last step are in the list that is ordered by node and side.
+#[derive(Debug, Clone, Default)]
+pub struct Remembered {
+    /// First contact of each node, and the number of contacts.
+    first: Vec<u32>,
+}
+
+impl Remembered {
+    /// Bytes of the buffer.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.first.as_slice())
+    }
+
+    /// Indexes contacts by their nodes, of which there are `nodes`.
+    pub fn index(&mut self, history: &[ContactHistory], nodes: usize) {
+        self.first.clear();
+        for (k, contact) in history.iter().enumerate() {
+            self.first.resize(self.first.len().max(contact.node as usize + 1), k as u32);
+        }
+        self.first.resize(nodes + 1, history.len() as u32);
+    }
+
+    /// Contacts of a node.
+    #[inline(always)]
+    fn of_node(&self, node: usize) -> std::ops::Range<usize> {
+        self.first[node] as usize..self.first[node + 1] as usize
+    }
 }
 
 /// A node over an edge of one side.
@@ -173,12 +218,10 @@ impl Narrow<'_> {
 
     /// Appends the picks that the vertex rule admits of some candidates.
     fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<Pick>) {
-        let Some(first) = candidates.first() else { return };
         let mut picks = [Pick::default(); SIDES_MAX + 1];
-        let mut known = self.history.partition_point(|h| h.node < first.node);
         for group in candidates.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node as usize;
-            let picks = self.pick_edges(node, group, &mut known, &mut picks);
+            let picks = self.pick_edges(node, group, &mut picks);
             let mut contested = false;
             for pick in picks.iter_mut().filter(|pick| pick.admitted) {
                 pick.admitted = !self.is_false_sight(node, pick) && self.within(node, pick);
@@ -191,24 +234,17 @@ impl Narrow<'_> {
         }
     }
 
-    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; `known`
-    /// is the first contact of the last step that belongs to no earlier pair of node and side.
-    fn pick_edges<'p>(
-        &self,
-        node: usize,
-        group: &[Candidate],
-        known: &mut usize,
-        picks: &'p mut [Pick; SIDES_MAX + 1],
-    ) -> &'p mut [Pick] {
+    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node.
+    fn pick_edges<'p>(&self, node: usize, group: &[Candidate], picks: &'p mut [Pick; SIDES_MAX + 1]) -> &'p mut [Pick] {
         let mut count = 0;
+        let mut known = self.remembered.of_node(node);
         for edges in group.chunk_by(|a, b| a.side == b.side) {
-            let key = (node as u32, edges[0].side);
-            while self.history.get(*known).is_some_and(|h| (h.node, h.side) < key) {
-                *known += 1;
+            while !known.is_empty() && self.history[known.start].side < edges[0].side {
+                known.start += 1;
             }
-            let held = self.history.get(*known).filter(|h| (h.node, h.side) == key);
+            let held = !known.is_empty() && self.history[known.start].side == edges[0].side;
             // Whether it counts is seldom the same twice: no branch depends on it.
-            let is_over = self.pick(node, edges, held.map(|_| *known as u32), &mut picks[count]);
+            let is_over = self.pick(node, edges, held.then_some(known.start as u32), &mut picks[count]);
             count = (count + usize::from(is_over)).min(SIDES_MAX);
         }
         &mut picks[..count]

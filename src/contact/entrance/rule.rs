@@ -106,8 +106,8 @@ impl Narrow<'_> {
 
     /// Whether a node carried force against a side in the last step.
     fn carries(&self, node: u32, side: u32) -> bool {
-        let at = self.history.partition_point(|h| (h.node, h.side) < (node, side));
-        self.history.get(at).is_some_and(|h| (h.node, h.side) == (node, side) && h.state != ContactState::Open)
+        let known = &self.history[self.remembered.of_node(node as usize)];
+        known.iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.

@@ -38,12 +38,12 @@ impl Ground<'_> {
         Ground { own, first_cover: *first_cover, push, moved, first_block: *first_block }
     }
 
-    /// Notes that blocks of the run move in a turn, if they do; none is a held one.
+    /// Notes a turn, or 0, for blocks of the run. Turns grow.
     #[inline(always)]
-    pub fn mark(&mut self, blocks: [u32; 2], turn: u32, moves: bool) {
-        for block in blocks.into_iter().filter(|&block| block != NONE) {
+    pub fn mark(&mut self, blocks: [u32; 2], turn: u32) {
+        for block in blocks {
             let moved = &mut self.moved[(block - self.first_block) as usize];
-            *moved = if moves { turn } else { *moved };
+            *moved = turn.max(*moved);
         }
     }
 

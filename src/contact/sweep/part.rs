@@ -164,8 +164,10 @@ impl Part<'_> {
             let [step, force] = row.judge(pass.kick, pass.contacts, &mut ground);
             let share = step / larger(force, floor);
             change = larger(share, change);
-            (watch.judged, watch.force) = (first + k, force);
-            ground.mark(watch.blocks, first + k, share > moves);
+            watch.judged(first + k, force);
+            // The sign of the difference, since a comparison ends as a branch.
+            let moved = ((moves - share).to_bits() >> 63) as u32;
+            ground.mark(watch.blocks, (first + k) * moved);
         }
         change
     }

@@ -1,6 +1,8 @@
 //! A contact as the iteration judges it (Eqs. 14, 15, 17).
 
-use crate::contact::{Limits, VertexEdge};
+use std::hint::select_unpredictable;
+
+use crate::contact::{Limits, Pair, VertexEdge};
 use crate::geometry::{NONE, Vector};
 
 use super::body::{Body, Ground};
@@ -41,10 +43,12 @@ pub struct Row {
 /// What decides whether a row is judged in a sweep.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Watch {
-    /// The free blocks of both bodies, one of them twice when the other is held; none when both are.
+    /// The free blocks of both bodies, one of them twice when the other is held; both held ones when none is free.
     pub blocks: [u32; 2],
-    /// Turn in which it was judged last.
-    pub judged: u32,
+    /// Turn after the one in which it was judged last; always 0 without a free block.
+    due: u32,
+    /// 1 with a free block, else 0.
+    free: u32,
     /// The larger of its forces (N/m), since a cohesive joint may bear shear alone.
     pub force: f64,
 }
@@ -53,8 +57,14 @@ impl Watch {
     /// Whether a body has moved since the row was judged; rows without a free block always have to be.
     #[inline(always)]
     pub fn is_due(&self, ground: &Ground) -> bool {
-        let moved = |block: u32| ground.moved[(block - ground.first_block) as usize];
-        self.blocks[0] == NONE || moved(self.blocks[0]).max(moved(self.blocks[1])) > self.judged
+        let moved = self.blocks.map(|block| ground.moved[(block - ground.first_block) as usize]);
+        moved[0].max(moved[1]) >= self.due
+    }
+
+    /// Notes the turn in which the row was judged, and its force (N/m) since.
+    #[inline(always)]
+    pub fn judged(&mut self, turn: u32, force: f64) {
+        (self.due, self.force) = ((turn + 1) * self.free, force);
     }
 }
 
@@ -86,10 +96,12 @@ impl Row {
 
     /// What decides whether it is judged.
     #[inline(always)]
-    pub fn watch(&self) -> Watch {
+    pub fn watch(&self, pair: &Pair) -> Watch {
         let [a, b] = [0, 1].map(|k| self.bodies[k].block());
-        let blocks = [if a == NONE { b } else { a }, if b == NONE { a } else { b }];
-        Watch { blocks, judged: 0, force: self.largest() }
+        let free = u32::from(a != NONE || b != NONE);
+        let [first, second] = if free == 1 { [a, b] } else { pair.blocks };
+        let blocks = [if first == NONE { second } else { first }, if second == NONE { first } else { second }];
+        Watch { blocks, due: free, free, force: self.largest() }
     }
 
     #[inline(always)]
@@ -118,8 +130,7 @@ impl Row {
         }
         self.bears = normal > self.open;
         self.torn = !self.bears & (normal != 0.0);
-        let bears = if self.bears { 1.0 } else { 0.0 };
-        let (normal, limit) = (normal * bears, limit * bears);
+        let [normal, limit] = [normal, limit].map(|force| select_unpredictable(self.bears, force, 0.0));
         let force = [normal, smaller(larger(shear, -limit), limit)];
         let step = [force[0] - self.force[0], force[1] - self.force[1]];
         // Nor does a branch depend on whether the force changes: it would be known too late.

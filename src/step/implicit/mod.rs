@@ -154,7 +154,7 @@ impl Step<'_> {
         scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let reach = REACH * self.slope.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
         let moved_for = if self.state.step > 0 { self.slope.dt } else { 0.0 };
-        self.entrance(reach.min(CUTOFF * self.slope.covers.mesh.size), moved_for);
+        self.entrance(reach.min(CUTOFF * self.slope.covers.mesh.size), moved_for, None);
         self.load_supports(dt);
         let buffers = &mut self.scratch.implicit;
         buffers.forces_before.clear();
