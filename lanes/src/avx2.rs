@@ -236,7 +236,7 @@ impl Lanes for Avx2 {
         [first, third]: [Slot; 2],
         [x, y]: [Registers; 2],
         [z, w]: [Registers; 2],
-    ) {
+    ) -> Pair {
         let ([a, b], [c, d]) = (join(self, x.0[0], y.0[0]), join(self, x.0[1], y.0[1]));
         let ([e, f], [g, h]) = (join(self, z.0[0], w.0[0]), join(self, z.0[1], w.0[1]));
         // SAFETY: the token proves AVX2.
@@ -244,15 +244,10 @@ impl Lanes for Avx2 {
         let base = [balance(self, zero, a, e), balance(self, a, b, f), balance(self, b, c, g), balance(self, c, d, h)];
         add_run(self, table.run_mut(first), base);
         add_run(self, table.run_mut(third), [e, f, g, h]);
-    }
-
-    #[inline(always)]
-    fn scatter_last(self, table: &mut Table, first: Slot, [x, y]: [Registers; 2]) {
-        let at = table.run_beside_mut(first)[LANES - 1].as_mut_ptr();
-        // SAFETY: the token proves AVX2; a pair is two f64 in a row.
+        // SAFETY: the token proves AVX2.
         unsafe {
-            let (x, y) = (_mm256_extractf128_pd::<1>(x.0[1]), _mm256_extractf128_pd::<1>(y.0[1]));
-            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), _mm_unpackhi_pd(x, y)));
+            let last = _mm256_extractf128_pd::<1>(d);
+            Pair::new(_mm_cvtsd_f64(last), _mm_cvtsd_f64(_mm_unpackhi_pd(last, last)))
         }
     }
 }

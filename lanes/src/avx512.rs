@@ -276,7 +276,7 @@ impl Lanes for Avx512 {
         [first, third]: [Slot; 2],
         second: [Register; 2],
         other: [Register; 2],
-    ) {
+    ) -> Pair {
         let ([a, b], [c, d]) = (join(self, second), join(self, other));
         // SAFETY: the token proves AVX-512F.
         let [low, high] = unsafe {
@@ -287,16 +287,10 @@ impl Lanes for Avx512 {
         };
         add_run(self, table.run_mut(first), low, high);
         add_run(self, table.run_mut(third), c, d);
-    }
-
-    #[inline(always)]
-    fn scatter_last(self, table: &mut Table, first: Slot, [x, y]: [Register; 2]) {
-        let at = table.run_beside_mut(first)[LANES - 1].as_mut_ptr();
-        // SAFETY: the token proves AVX-512F; a pair is two f64 in a row.
+        // SAFETY: the token proves AVX-512F.
         unsafe {
-            let x = _mm256_extractf128_pd::<1>(_mm512_extractf64x4_pd::<1>(x.0));
-            let y = _mm256_extractf128_pd::<1>(_mm512_extractf64x4_pd::<1>(y.0));
-            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), _mm_unpackhi_pd(x, y)));
+            let last = _mm256_extractf128_pd::<1>(_mm512_extractf64x4_pd::<1>(b));
+            Pair::new(_mm_cvtsd_f64(last), _mm_cvtsd_f64(_mm_unpackhi_pd(last, last)))
         }
     }
 }

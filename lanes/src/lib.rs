@@ -76,8 +76,9 @@ pub trait Lanes: Copy {
         [[b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]]
     }
 
-    /// Adds pairs to the second and third corners of such triangles, and what holds them in balance to the first. The
-    /// last second corner waits for [`Lanes::scatter_last`], so that no run is read that has been written in part.
+    /// Adds pairs to the second and third corners of such triangles, and what holds them in balance to the first.
+    /// Returns the last of the pairs for the last second corner, which waits for [`Table::add_beside`], so that no run
+    /// is read that has been written in part.
     #[inline(always)]
     fn scatter_triangles(
         self,
@@ -85,7 +86,7 @@ pub trait Lanes: Copy {
         [first, third]: [Slot; 2],
         second: [Self::F; 2],
         other: [Self::F; 2],
-    ) {
+    ) -> Pair {
         let mut pairs = [[Pair::zeros(); LANES]; 2];
         self.store_pairs(second, &mut pairs[0]);
         self.store_pairs(other, &mut pairs[1]);
@@ -95,14 +96,16 @@ pub trait Lanes: Copy {
             before = *b;
         }
         table.run_mut(third).iter_mut().zip(&pairs[1]).for_each(|(at, c)| *at += c);
+        before
     }
 
-    /// Adds the last of the pairs to the second corner of the last triangle.
+    /// Writes zeros to the first pairs of a table, and to what of a last eight stands behind them.
     #[inline(always)]
-    fn scatter_last(self, table: &mut Table, first: Slot, second: [Self::F; 2]) {
-        let mut pairs = [Pair::zeros(); LANES];
-        self.store_pairs(second, &mut pairs);
-        table.run_beside_mut(first)[LANES - 1] += pairs[LANES - 1];
+    fn clear(self, table: &mut Table, count: usize) {
+        let zero = self.splat(0.0);
+        for eight in table.first_eights_mut(count) {
+            self.store_pairs([zero; 2], eight);
+        }
     }
 
     /// Up to eight values in a row; lanes beyond the end take `fill`.

@@ -103,10 +103,16 @@ impl Table {
         unsafe { &*self.pairs.0.as_ptr().add(first.index() + 1).cast() }
     }
 
-    /// Eight pairs after a slot.
+    /// Adds to the pair that a run of eight from the slot on ends before.
     #[inline(always)]
-    pub(crate) fn run_beside_mut(&mut self, first: Slot) -> &mut [Pair; LANES] {
+    pub fn add_beside(&mut self, first: Slot, pair: Pair) {
         // SAFETY: as for `run_beside`; the table is borrowed alone.
-        unsafe { &mut *self.pairs.0.as_mut_ptr().add(first.index() + 1).cast() }
+        unsafe { *self.pairs.0.get_unchecked_mut(first.index() + LANES) += pair }
+    }
+
+    /// Eights that together hold the first `count` pairs.
+    #[inline(always)]
+    pub(crate) fn first_eights_mut(&mut self, count: usize) -> &mut [[Pair; LANES]] {
+        &mut self.pairs.0.as_chunks_mut().0[..count.div_ceil(LANES)]
     }
 }

@@ -36,8 +36,8 @@ impl Kernel for Everything {
         let slots = [3, 1, 4, 1, 5, 39, 2, 6].map(Slot::new);
         lanes.scatter_add(&mut table, &slots, [x, b]);
         for run in [[SLOTS - 1, 3], [4, SLOTS - 1], [9, 13]] {
-            lanes.scatter_triangles(&mut table, run.map(Slot::new), [a, y], [b, x]);
-            lanes.scatter_last(&mut table, Slot::new(run[0]), [a, y]);
+            let last = lanes.scatter_triangles(&mut table, run.map(Slot::new), [a, y], [b, x]);
+            table.add_beside(Slot::new(run[0]), last);
         }
         let [g, h] = lanes.gather(&table, &slots);
         let [[i, j], [k, l]] = lanes.gather_triangles(&table, [7, SLOTS - 1].map(Slot::new));
@@ -73,6 +73,8 @@ impl Kernel for Everything {
         }
         let pairs = table.first(SLOTS).iter().chain(&stored);
         bits.extend(pairs.flat_map(|p| [p.x.to_bits(), p.y.to_bits()]));
+        lanes.clear(&mut table, 13);
+        bits.extend(table.first(40).iter().flat_map(|p| [p.x.to_bits(), p.y.to_bits()]));
         bits
     }
 }

@@ -109,6 +109,19 @@ impl<F: Eight> Chunk<F> {
 }
 
 impl Span<'_> {
+    /// The same with lengths that the compiler sees to be equal, so that a loop checks them once.
+    #[inline(always)]
+    fn even(&self) -> Self {
+        let count = self.star.len();
+        Self {
+            star: self.star,
+            displacement: &self.displacement[..count],
+            velocity: &self.velocity[..count],
+            mass: &self.mass[..count],
+            inertial: &self.inertial[..count],
+        }
+    }
+
     /// Ranges of up to eight covers.
     #[inline(always)]
     fn chunks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
@@ -134,33 +147,64 @@ impl Span<'_> {
     /// Sums over the span, with those of `force` (N/m) where they are asked for.
     #[inline(always)]
     pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: Option<&[Vector]>) -> BlockSums {
-        let (mut sums, mut pushed) = ([lanes.splat(0.0); 10], [lanes.splat(0.0); 5]);
+        let mut tally = Tally::new(lanes);
         for range in self.chunks() {
             let chunk = self.chunk(lanes, range.clone(), from);
+            tally.add(&chunk);
             if let Some(force) = force {
-                let f = lanes.load_some_pairs(&force[range], Vector::zeros());
-                add_pushed(&chunk, f, &mut pushed);
-            }
-            let Chunk { q, w, mass, inertial, .. } = chunk;
-            let mq = [mass * q[0], mass * q[1]];
-            let terms = [
-                inertial * q[0],
-                inertial * q[1],
-                mq[0],
-                mq[1],
-                mq[0] * q[0] + mq[1] * q[1],
-                inertial * w[0],
-                inertial * w[1],
-                mass * w[0],
-                mass * w[1],
-                mq[0] * w[1] - mq[1] * w[0],
-            ];
-            for (sum, term) in sums.iter_mut().zip(&terms) {
-                *sum = *sum + *term;
+                tally.add_pushed(&chunk, lanes.load_some_pairs(&force[range], Vector::zeros()));
             }
         }
-        let [a, b, c, d, polar, e, f, g, h, moment] = totals(lanes, &sums);
-        let [i, j, torque, k, l] = totals(lanes, &pushed);
+        tally.total(lanes)
+    }
+}
+
+/// Sums of a block in the making, and those with forces.
+struct Tally<F> {
+    sums: [F; 10],
+    pushed: [F; 5],
+}
+
+impl<F: Eight> Tally<F> {
+    #[inline(always)]
+    fn new<L: Lanes<F = F>>(lanes: L) -> Self {
+        Self { sums: [lanes.splat(0.0); 10], pushed: [lanes.splat(0.0); 5] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, chunk: &Chunk<F>) {
+        let Chunk { q, w, mass, inertial } = *chunk;
+        let mq = [mass * q[0], mass * q[1]];
+        let terms = [
+            inertial * q[0],
+            inertial * q[1],
+            mq[0],
+            mq[1],
+            mq[0] * q[0] + mq[1] * q[1],
+            inertial * w[0],
+            inertial * w[1],
+            mass * w[0],
+            mass * w[1],
+            mq[0] * w[1] - mq[1] * w[0],
+        ];
+        for (sum, term) in self.sums.iter_mut().zip(&terms) {
+            *sum = *sum + *term;
+        }
+    }
+
+    #[inline(always)]
+    fn add_pushed(&mut self, chunk: &Chunk<F>, f: [F; 2]) {
+        let (q, ratio) = (chunk.q, chunk.inertial / chunk.mass);
+        let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
+        for (sum, term) in self.pushed.iter_mut().zip(&terms) {
+            *sum = *sum + *term;
+        }
+    }
+
+    #[inline(always)]
+    fn total<L: Lanes<F = F>>(&self, lanes: L) -> BlockSums {
+        let [a, b, c, d, polar, e, f, g, h, moment] = totals(lanes, &self.sums);
+        let [i, j, torque, k, l] = totals(lanes, &self.pushed);
         BlockSums {
             inertial_place: Vector::new(a, b),
             first: Vector::new(c, d),
@@ -172,15 +216,6 @@ impl Span<'_> {
             torque,
             weighted: Vector::new(k, l),
         }
-    }
-}
-
-#[inline(always)]
-fn add_pushed<F: Eight>(chunk: &Chunk<F>, f: [F; 2], sums: &mut [F; 5]) {
-    let (q, ratio) = (chunk.q, chunk.inertial / chunk.mass);
-    let terms = [f[0], f[1], q[0] * f[1] - q[1] * f[0], ratio * f[0], ratio * f[1]];
-    for (sum, term) in sums.iter_mut().zip(&terms) {
-        *sum = *sum + *term;
     }
 }
 
@@ -201,17 +236,65 @@ impl Common {
         Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
     }
 
+    /// The same in all lanes, for a loop over covers.
     #[inline(always)]
-    fn at<L: Lanes>(&self, lanes: L, chunk: &Chunk<L::F>) -> [L::F; 2] {
-        let mut weighted = splat(lanes, self.weighted);
-        if self.weighted != Vector::zeros() {
-            let ratio = chunk.inertial / chunk.mass;
-            weighted = [ratio * weighted[0], ratio * weighted[1]];
-        }
+    fn shared<L: Lanes>(&self, lanes: L) -> Shared<L::F> {
+        let (velocity, weighted) = (splat(lanes, self.velocity), splat(lanes, self.weighted));
         let spin = lanes.splat(self.spin);
-        let x = lanes.splat(self.velocity.x) + weighted[0] - spin * chunk.q[1];
-        let y = lanes.splat(self.velocity.y) + weighted[1] + spin * chunk.q[0];
-        [x, y]
+        if self.weighted == Vector::zeros() {
+            let velocity = [velocity[0] + weighted[0], velocity[1] + weighted[1]];
+            return Shared { velocity, weighted: None, spin };
+        }
+        Shared { velocity, weighted: Some(weighted), spin }
+    }
+}
+
+/// A [`Common`] velocity in all lanes; without b where that is zero.
+struct Shared<F> {
+    velocity: [F; 2],
+    weighted: Option<[F; 2]>,
+    spin: F,
+}
+
+impl<F: Eight> Shared<F> {
+    /// What covers have of it.
+    #[inline(always)]
+    fn at(&self, chunk: &Chunk<F>) -> [F; 2] {
+        let [mut x, mut y] = self.velocity;
+        if let Some(weighted) = self.weighted {
+            let ratio = chunk.inertial / chunk.mass;
+            (x, y) = (x + ratio * weighted[0], y + ratio * weighted[1]);
+        }
+        [x - self.spin * chunk.q[1], y + self.spin * chunk.q[0]]
+    }
+}
+
+/// What is common to a large block, for covers of a part of it: those that contacts, supports or bolts may ask for get
+/// it before these do, the others with what else ends the step.
+#[derive(Clone, Copy)]
+pub struct Spread<'a> {
+    /// What is common to the block.
+    pub common: &'a Common,
+    /// 1/m along x and y unless all covers can move.
+    pub inverse: Option<&'a [Vector]>,
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
+}
+
+impl Spread<'_> {
+    /// Whether any of some covers may be asked for.
+    #[inline(always)]
+    fn is_exposed(&self, range: Range<usize>) -> bool {
+        let exposed = &self.exposed[range];
+        exposed.first_chunk::<LANES>().map_or_else(|| exposed.contains(&true), |eight| *eight != [false; LANES])
+    }
+
+    /// What some covers get of `add` (m/s): nothing where they cannot move.
+    #[inline(always)]
+    fn given<L: Lanes>(&self, lanes: L, range: Range<usize>, add: [L::F; 2]) -> [L::F; 2] {
+        let Some(inverse) = self.inverse else { return add };
+        let inverse = lanes.load_some_pairs(&inverse[range], Vector::zeros());
+        [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])]
     }
 }
 
@@ -237,6 +320,38 @@ fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
     -lanes.max(inverse * lanes.splat(-f64::MAX), lanes.splat(-1.0))
 }
 
+impl Own<'_> {
+    /// Velocities v (m/s) of some covers after damping, with `add` (m/s) and what forces f (N/m) give.
+    #[inline(always)]
+    fn kicked<L: Lanes>(
+        &self,
+        lanes: L,
+        range: Range<usize>,
+        (v, add): ([L::F; 2], [L::F; 2]),
+        (f, mass): ([L::F; 2], L::F),
+    ) -> [L::F; 2] {
+        let (factor, dt) = (lanes.splat(self.factor), lanes.splat(self.dt));
+        let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
+        let Some((row_sum, inverse)) = self.held else {
+            let share = dt / mass;
+            return [out[0] + f[0] * share, out[1] + f[1] * share];
+        };
+        let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
+        let inverse = match inverse {
+            None => [lanes.splat(1.0) / mass; 2],
+            Some(inverse) => {
+                let inverse = lanes.load_some_pairs(&inverse[range], Vector::zeros());
+                if self.masked {
+                    out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
+                }
+                inverse
+            }
+        };
+        let body = splat(lanes, self.acceleration);
+        [out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt, out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt]
+    }
+}
+
 impl Span<'_> {
     /// Writes the velocities that damping and forces (N/m) leave, with what is common to the block; returns the
     /// square of the largest speed before.
@@ -249,62 +364,58 @@ impl Span<'_> {
         common: &Common,
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> f64 {
-        let (factor, dt) = (lanes.splat(own.factor), lanes.splat(own.dt));
         let mut speed = lanes.splat(0.0);
-        let common = Some(common).filter(|common| **common != Common::default());
+        let (shared, any) = (common.shared(lanes), *common != Common::default());
         for range in self.chunks() {
             let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
             let mut add = [lanes.splat(0.0); 2];
-            if let Some(common) = common {
-                add = common.at(lanes, &self.chunk(lanes, range.clone(), from));
+            if any {
+                add = shared.at(&self.chunk(lanes, range.clone(), from));
             }
-            let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
             speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
-            match own.held {
-                None => {
-                    let share = dt / lanes.load_some(&self.mass[range.clone()], 1.0);
-                    out = [out[0] + f[0] * share, out[1] + f[1] * share];
-                }
-                Some((row_sum, inverse)) => {
-                    let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
-                    let inverse = match inverse {
-                        None => [lanes.splat(1.0) / lanes.load_some(&self.mass[range.clone()], 1.0); 2],
-                        Some(inverse) => {
-                            let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
-                            if own.masked {
-                                out = [out[0] * mask(lanes, inverse[0]), out[1] * mask(lanes, inverse[1])];
-                            }
-                            inverse
-                        }
-                    };
-                    let body = splat(lanes, own.acceleration);
-                    out[0] = out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt;
-                    out[1] = out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt;
-                }
-            }
+            let mass = lanes.load_some(&self.mass[range.clone()], 1.0);
+            let out = own.kicked(lanes, range.clone(), (v, add), (f, mass));
             lanes.store_some_pairs(out, &mut predicted[range]);
         }
         lanes.greatest(speed)
     }
 
-    /// Adds what is common to the block where covers can move.
+    /// The sums, those with forces for a free block, and the kick without what is common to the block, which follows
+    /// from them.
     #[inline(always)]
-    pub fn add_common<L: Lanes>(
+    pub fn sum_and_kick<L: Lanes>(
         &self,
         lanes: L,
         from: &Reference,
-        common: &Common,
-        inverse: Option<&[Vector]>,
-        predicted: &mut [Vector],
-    ) {
-        for range in self.chunks() {
-            let chunk = self.chunk(lanes, range.clone(), from);
-            let mut add = common.at(lanes, &chunk);
-            if let Some(inverse) = inverse {
-                let inverse = lanes.load_some_pairs(&inverse[range.clone()], Vector::zeros());
-                add = [add[0] * mask(lanes, inverse[0]), add[1] * mask(lanes, inverse[1])];
+        own: &Own,
+        (force, predicted): (&[Vector], &mut [Vector]),
+    ) -> (BlockSums, f64) {
+        let (span, count) = (self.even(), self.star.len());
+        let (force, predicted) = (&force[..count], &mut predicted[..count]);
+        let (mut tally, mut speed, zero) = (Tally::new(lanes), lanes.splat(0.0), lanes.splat(0.0));
+        for range in span.chunks() {
+            let v = lanes.load_some_pairs(&span.velocity[range.clone()], from.velocity);
+            let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
+            let chunk = span.chunk(lanes, range.clone(), from);
+            tally.add(&chunk);
+            if own.held.is_none() {
+                tally.add_pushed(&chunk, f);
             }
+            speed = lanes.max(v[0] * v[0] + v[1] * v[1], speed);
+            let out = own.kicked(lanes, range.clone(), (v, [zero; 2]), (f, chunk.mass));
+            lanes.store_some_pairs(out, &mut predicted[range]);
+        }
+        (tally.total(lanes), lanes.greatest(speed))
+    }
+
+    /// Adds what is common to the block to the velocities of covers that may be asked for.
+    #[inline(always)]
+    pub fn spread<L: Lanes>(&self, lanes: L, from: &Reference, spread: &Spread, predicted: &mut [Vector]) {
+        let common = spread.common.shared(lanes);
+        for range in self.chunks().filter(|range| spread.is_exposed(range.clone())) {
+            let chunk = self.chunk(lanes, range.clone(), from);
+            let add = spread.given(lanes, range.clone(), common.at(&chunk));
             let out = lanes.load_some_pairs(&predicted[range.clone()], Vector::zeros());
             lanes.store_some_pairs([out[0] + add[0], out[1] + add[1]], &mut predicted[range]);
         }
@@ -325,6 +436,17 @@ pub struct WorkSums {
     pub product: f64,
     /// Σ(∫ρw)s (kg/s).
     pub row_sum: Vector,
+}
+
+impl WorkSums {
+    /// From those in lanes: momentum, inertial, moment, product; those with row-sum masses.
+    #[inline(always)]
+    fn total<L: Lanes>(lanes: L, sums: &[L::F; 6], row: &[L::F; 2]) -> Self {
+        let [a, b, c, d, moment, product] = totals(lanes, sums);
+        let [x, y] = totals(lanes, row);
+        let (momentum, inertial) = (Vector::new(a, b), Vector::new(c, d));
+        Self { momentum, inertial, moment, product, row_sum: Vector::new(x, y) }
+    }
 }
 
 impl AddAssign for WorkSums {
@@ -355,6 +477,8 @@ pub struct End<'a> {
     pub increment: &'a [Vector],
     /// Displacements (m): before, after the step afterwards.
     pub displacement: &'a mut [Vector],
+    /// What covers that nothing asks for have still to get in common.
+    pub spread: Option<Spread<'a>>,
 }
 
 /// What is wanted of the end of a step.
@@ -383,63 +507,55 @@ impl End<'_> {
         push: &Common,
         wants: Wants,
     ) -> (WorkSums, [f64; 2], f64) {
-        let zero = lanes.splat(0.0);
-        let mut farthest = zero;
-        let (mut sums, mut row, mut fastest, mut squares) = ([zero; 6], [zero; 2], zero, zero);
-        let still = Vector::zeros();
-        let dt = lanes.splat(wants.dt);
-        for start in (0..self.star.len()).step_by(LANES) {
-            let range = start..(start + LANES).min(self.star.len());
-            let u = lanes.load_some_pairs(&self.displacement[range.clone()], still);
-            let mut v = lanes.load_some_pairs(&self.velocity[range.clone()], still);
+        let (zero, still, dt) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.dt));
+        let (mut sums, mut row, mut fastest, mut squares, mut farthest) = ([zero; 6], [zero; 2], zero, zero, zero);
+        let (push, with) = (push.shared(lanes), splat(lanes, from.velocity));
+        let common = self.spread.map_or(Common::default(), |spread| *spread.common).shared(lanes);
+        let count = self.star.len();
+        let (velocity, displacement) = (&mut self.velocity[..count], &mut self.displacement[..count]);
+        let (before, increment) = (&self.before[..count], &self.increment[..count]);
+        let (mass, inertial) = (&self.mass[..count], &self.inertial[..count]);
+        for start in (0..count).step_by(LANES) {
+            let range = start..(start + LANES).min(count);
+            let u = lanes.load_some_pairs(&displacement[range.clone()], still);
+            let mut v = lanes.load_some_pairs(&velocity[range.clone()], still);
+            // Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
+            let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+            let old = lanes.load_some_pairs(&before[range.clone()], from.velocity);
+            let m = [lanes.load_some(&mass[range.clone()], 1.0), lanes.load_some(&inertial[range.clone()], 0.0)];
+            let chunk = Chunk::new(lanes, from, [star, u, old], m);
+            if let Some(spread) = &self.spread
+                && !spread.is_exposed(range.clone())
+            {
+                let add = spread.given(lanes, range.clone(), common.at(&chunk));
+                v = [v[0] + add[0], v[1] + add[1]];
+            }
             if wants.is_touched {
-                let increment = lanes.load_some_pairs(&self.increment[range.clone()], still);
+                let increment = lanes.load_some_pairs(&increment[range.clone()], still);
                 v = [v[0] + increment[0], v[1] + increment[1]];
             }
-            if wants.is_pushed || wants.is_damped {
-                let chunk = self.chunk(lanes, range.clone(), from, u);
-                if wants.is_pushed {
-                    let add = push.at(lanes, &chunk);
-                    v = [v[0] + add[0], v[1] + add[1]];
-                }
-                if wants.is_damped {
-                    let with = splat(lanes, from.velocity);
-                    let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
-                    let mass = lanes.load_some(&self.mass[range.clone()], 0.0);
-                    add_works(&chunk, mass, s, &mut sums);
-                }
+            if wants.is_pushed {
+                let add = push.at(&chunk);
+                v = [v[0] + add[0], v[1] + add[1]];
+            }
+            if wants.is_damped {
+                let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
+                add_works(&chunk, lanes.load_some(&mass[range.clone()], 0.0), s, &mut sums);
             }
             if wants.is_loaded {
-                let before = lanes.load_some_pairs(&self.before[range.clone()], still);
+                let before = lanes.load_some_pairs(&before[range.clone()], still);
                 let row_sum = lanes.load_some(&self.row_sum[range.clone()], 0.0);
                 row = [row[0] + row_sum * (before[0] + v[0]), row[1] + row_sum * (before[1] + v[1])];
             }
             let square = v[0] * v[0] + v[1] * v[1];
             (fastest, squares) = (lanes.max(square, fastest), squares + square);
-            lanes.store_some_pairs(v, &mut self.velocity[range.clone()]);
+            lanes.store_some_pairs(v, &mut velocity[range.clone()]);
             let u = [u[0] + v[0] * dt, u[1] + v[1] * dt];
             farthest = lanes.max(u[0] * u[0] + u[1] * u[1], farthest);
-            lanes.store_some_pairs(u, &mut self.displacement[range]);
+            lanes.store_some_pairs(u, &mut displacement[range]);
         }
-        let [a, b, c, d, moment, product] = totals(lanes, &sums);
-        let [x, y] = totals(lanes, &row);
-        let works = WorkSums {
-            momentum: Vector::new(a, b),
-            inertial: Vector::new(c, d),
-            moment,
-            product,
-            row_sum: Vector::new(x, y),
-        };
+        let works = WorkSums::total(lanes, &sums, &row);
         (works, [lanes.greatest(fastest), lanes.sum(squares)], lanes.greatest(farthest))
-    }
-
-    /// Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
-    #[inline(always)]
-    fn chunk<L: Lanes>(&self, lanes: L, range: Range<usize>, from: &Reference, u: [L::F; 2]) -> Chunk<L::F> {
-        let v = lanes.load_some_pairs(&self.before[range.clone()], from.velocity);
-        let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
-        let (mass, inertial) = (&self.mass[range.clone()], &self.inertial[range]);
-        Chunk::new(lanes, from, [star, u, v], [lanes.load_some(mass, 1.0), lanes.load_some(inertial, 0.0)])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Corotated forces of elements, eight side by side (Eqs. 6, 7).
 
-use enmm_lanes::{Eight, LANES, Lanes, Table};
+use enmm_lanes::{LANES, Lanes, Table};
 
 use crate::geometry::Vector;
 
@@ -16,13 +16,11 @@ pub trait Elements: Sized {
     fn gather<L: Lanes>(&self, lanes: L, displacement: &Table) -> [[L::F; 2]; 2];
 
     /// Adds forces x, y on the second and x, y on the third covers (N/m); the first bear what holds them in balance.
-    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table);
-}
+    /// Returns what waits for [`Elements::settle`].
+    fn add<L: Lanes>(&self, lanes: L, forces: [L::F; 4], force: &mut Table) -> Vector;
 
-/// The force on the first cover.
-#[inline(always)]
-fn balance<F: Eight>([x2, y2, x3, y3]: [F; 4]) -> [F; 2] {
-    [-(x2 + x3), -(y2 + y3)]
+    /// Adds what some have left to wait.
+    fn settle(some: &[Self], waiting: &[Vector; TOGETHER], force: &mut Table);
 }
 
 impl Elements for Group {
@@ -40,14 +38,15 @@ impl Elements for Group {
     }
 
     #[inline(always)]
-    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table) {
-        for (group, &values) in some.iter().zip(forces) {
-            let [x2, y2, x3, y3] = values;
-            lanes.scatter_add(force, &group.slots[0], balance(values));
-            lanes.scatter_add(force, &group.slots[1], [x2, y2]);
-            lanes.scatter_add(force, &group.slots[2], [x3, y3]);
-        }
+    fn add<L: Lanes>(&self, lanes: L, [x2, y2, x3, y3]: [L::F; 4], force: &mut Table) -> Vector {
+        lanes.scatter_add(force, &self.slots[0], [-(x2 + x3), -(y2 + y3)]);
+        lanes.scatter_add(force, &self.slots[1], [x2, y2]);
+        lanes.scatter_add(force, &self.slots[2], [x3, y3]);
+        Vector::zeros()
     }
+
+    #[inline(always)]
+    fn settle(_: &[Self], _: &[Vector; TOGETHER], _: &mut Table) {}
 }
 
 impl Elements for Row {
@@ -62,12 +61,14 @@ impl Elements for Row {
     }
 
     #[inline(always)]
-    fn add<L: Lanes>(lanes: L, some: &[Self], forces: &[[L::F; 4]; AHEAD], force: &mut Table) {
-        for (row, &[x2, y2, x3, y3]) in some.iter().zip(forces) {
-            lanes.scatter_triangles(force, row.first, [x2, y2], [x3, y3]);
-        }
-        for (row, &[x2, y2, ..]) in some.iter().zip(forces) {
-            lanes.scatter_last(force, row.first[0], [x2, y2]);
+    fn add<L: Lanes>(&self, lanes: L, [x2, y2, x3, y3]: [L::F; 4], force: &mut Table) -> Vector {
+        lanes.scatter_triangles(force, self.first, [x2, y2], [x3, y3])
+    }
+
+    #[inline(always)]
+    fn settle(some: &[Self], waiting: &[Vector; TOGETHER], force: &mut Table) {
+        for (row, pair) in some.iter().zip(waiting) {
+            force.add_beside(row.first[0], *pair);
         }
     }
 }
@@ -98,8 +99,14 @@ impl<F: Copy> Constants<F> {
     }
 }
 
-/// Groups in hand at once: the stages of one wait for each other, those of several side by side do not.
-pub const AHEAD: usize = 8;
+/// Eights whose forces are added before what they have left to wait.
+pub const TOGETHER: usize = 8;
+/// Eights by which stresses come after deformations, and the adding of forces after stresses: the stages of one eight
+/// wait for each other and ask different parts of the processor, those of several side by side do neither.
+const BEHIND: [usize; 2] = [4, 3];
+/// Deformations and forces kept, more than the stages are behind each other.
+const KEPT: [usize; 2] = [8, 4];
+const _: () = assert!(BEHIND[0] < KEPT[0] && BEHIND[1] < KEPT[1]);
 
 /// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m);
 /// `pre_stress` holds that of each eight or nothing. `meanwhile` is called after every few.
@@ -111,27 +118,29 @@ pub fn push_forces<L: Lanes, E: Elements>(
     [displacement, force]: &mut [Table; 2],
     mut meanwhile: impl FnMut(),
 ) {
-    let constants = Constants::new(lanes, rock, g);
-    let mut in_hand = [[constants.one; 4]; AHEAD];
-    let mut pre_stress = pre_stress.chunks(AHEAD);
-    for some in elements.chunks(AHEAD) {
-        for (eight, values) in some.iter().zip(&mut in_hand) {
-            *values = deformation(lanes, &constants, eight, displacement);
+    if elements.is_empty() {
+        return;
+    }
+    let (constants, count) = (Constants::new(lanes, rock, g), elements.len());
+    let mut deformed = [[constants.one; 4]; KEPT[0]];
+    let mut stressed = [[constants.one; 4]; KEPT[1]];
+    let mut waiting = [Vector::zeros(); TOGETHER];
+    for k in 0..count + BEHIND[0] + BEHIND[1] {
+        if let Some(eight) = elements.get(k) {
+            deformed[k % KEPT[0]] = deformation(lanes, &constants, eight, displacement);
         }
-        match pre_stress.next() {
-            None => {
-                for (eight, values) in some.iter().zip(&mut in_hand) {
-                    *values = corner_forces(lanes, &constants, eight.area(), *values, None);
-                }
-            }
-            Some(pre_stress) => {
-                for ((eight, pre), values) in some.iter().zip(pre_stress).zip(&mut in_hand) {
-                    *values = corner_forces(lanes, &constants, eight.area(), *values, Some(pre));
-                }
-            }
+        let k = k.wrapping_sub(BEHIND[0]);
+        if let Some(eight) = elements.get(k) {
+            let values = deformed[k % KEPT[0]];
+            stressed[k % KEPT[1]] = corner_forces(lanes, &constants, eight.area(), values, pre_stress.get(k));
         }
-        E::add(lanes, some, &in_hand, force);
-        meanwhile();
+        let k = k.wrapping_sub(BEHIND[1]);
+        let Some(eight) = elements.get(k) else { continue };
+        waiting[k % TOGETHER] = eight.add(lanes, stressed[k % KEPT[1]], force);
+        if k % TOGETHER == TOGETHER - 1 || k == count - 1 {
+            E::settle(&elements[k - k % TOGETHER..=k], &waiting, force);
+            meanwhile();
+        }
     }
 }
 

@@ -80,7 +80,7 @@ impl Scratch {
 
     /// Bytes of the buffers, by part.
     pub fn memory(&self) -> Vec<Part> {
-        let fields: [&dyn Array; 4] = [&self.load_force, &self.predicted, &self.damped, &self.increment];
+        let fields: [&dyn Array; 5] = [&self.load_force, &self.predicted, &self.damped, &self.increment, &self.exposed];
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", metric(&self.metric)),

@@ -30,6 +30,8 @@ pub struct Scratch {
     pub damping_of: Option<Damping>,
     /// Whether all covers of each patch can move along both axes.
     pub movable: Vec<bool>,
+    /// Whether contacts, supports or bolts may ask for the predicted velocity of each cover: only these have it whole.
+    pub exposed: Vec<bool>,
     /// Sums over patches.
     pub sums: Vec<PatchSums>,
     /// Current places of boundary points (m).

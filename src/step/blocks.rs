@@ -8,7 +8,7 @@ use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 
 use crate::contact::BlockPush;
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Wants, WorkSums};
+use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
 use crate::mechanics::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, Metric, Patch, Patches, element_lanes,
 };
@@ -35,12 +35,18 @@ thread_local! {
 trait Cut: Sized + Send {
     /// The outputs of some covers, blocks and patches, and the rest.
     fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self);
+
+    /// Outputs on covers that are asked for before they are written.
+    fn asked(&self) -> &[Vector] {
+        &[]
+    }
 }
 
 /// Work on a run of patches with its outputs.
 trait Work: Sync {
     type Out<'o>: Cut;
-    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, tables: &mut [Table; 2]);
+    /// Does the work on a patch; `next` is what of the outputs behind it is asked for before it is written.
+    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
 }
 
 /// A run of patches in the hands of one thread.
@@ -89,10 +95,10 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
         while rest.range.len() > 1 {
             let next = rest.range.start + 1;
             let (first, others) = rest.cut(next);
-            first.work.patch(lanes, first.range.start, first.out, tables);
+            first.work.patch(lanes, first.range.start, first.out, others.out.asked(), tables);
             rest = others;
         }
-        rest.work.patch(lanes, rest.range.start, rest.out, tables);
+        rest.work.patch(lanes, rest.range.start, rest.out, &[], tables);
     }
 }
 
@@ -108,6 +114,8 @@ pub(super) struct Pass<'a> {
     pub damping: &'a [Damping],
     /// Whether all covers of each patch can move along both axes.
     pub movable: &'a [bool],
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
     /// Time (s) over which forces act.
     pub dt: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
@@ -133,11 +141,6 @@ impl Pass<'_> {
         self.span(block, self.slope.covers.covers_of(block)).reference()
     }
 
-    /// 1/m of the covers of a held block, unless they are in a patch where nothing else is held.
-    fn inverse(&self, patch: usize, covers: Range<usize>) -> Option<&[Vector]> {
-        (!self.movable[patch]).then(|| &self.metric.inverse[covers])
-    }
-
     /// How the covers of a block in a patch are written.
     fn own(&self, patch: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
         let held = !self.metric.is_free(block);
@@ -149,22 +152,23 @@ impl Pass<'_> {
             factor,
             dt: self.dt,
             acceleration: self.acceleration,
-            held: held.then(|| (&self.metric.row_sum[covers.clone()], self.inverse(patch, covers))),
+            held: held
+                .then(|| (&self.metric.row_sum[covers.clone()], inverse(self.metric, self.movable[patch], covers))),
             masked,
         }
     }
 
     /// What the patch after this one will read.
-    fn ahead(&self, patch: &Patch) -> Ahead<'_> {
+    fn ahead<'a>(&'a self, patch: &Patch, next: &'a [Vector]) -> Ahead<'a> {
         let (start, count) = (patch.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + patch.covers.len()).min(count) };
-        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::AHEAD).max(1);
-        Ahead { pass: self, covers: start..end, piece: (end - start).div_ceil(times) }
+        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::TOGETHER).max(1);
+        Ahead { pass: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
     }
 
     /// Adds the element forces of a patch to the table of its covers (Eq. 7).
     #[inline(always)]
-    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, tables: &mut [Table; 2]) {
+    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, next: &[Vector], tables: &mut [Table; 2]) {
         let (slope, u) = (self.slope, &self.state.displacement);
         let patches = &slope.patches;
         let [displacement, force] = &mut *tables;
@@ -177,12 +181,11 @@ impl Pass<'_> {
         }
         // Missing elements of a row may reach beyond the last slot.
         behind.fill(Vector::zeros());
-        let local = force.first_mut(own + halo.len());
-        local.fill(Vector::zeros());
+        lanes.clear(force, own + halo.len() + LANES);
         if let Some(load) = self.load_force.get(patch.covers.clone()) {
-            local[..own].copy_from_slice(load);
+            force.first_mut(own).copy_from_slice(load);
         }
-        let mut ahead = self.ahead(patch);
+        let mut ahead = self.ahead(patch, next);
         for batch in patches.batches(patch) {
             let rock = &slope.rocks[batch.rock as usize];
             let [in_row, in_group] = patches.gradients(batch, &slope.covers.gradients[batch.set as usize]);
@@ -219,6 +222,8 @@ impl Pass<'_> {
 struct Ahead<'a> {
     pass: &'a Pass<'a>,
     covers: Range<usize>,
+    /// Predicted velocities from there on.
+    next: &'a [Vector],
     piece: usize,
 }
 
@@ -231,6 +236,9 @@ impl Ahead<'_> {
         let end = (self.covers.start + self.piece).min(self.covers.end);
         let covers = self.covers.start..end;
         self.covers.start = end;
+        let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
+        self.next = later;
+        prefetch(now);
         let Pass { slope, state, metric, .. } = self.pass;
         prefetch(&state.displacement[covers.clone()]);
         prefetch(&state.velocity[covers.clone()]);
@@ -257,6 +265,10 @@ impl Cut for Kicked<'_> {
         let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
         (Kicked { predicted, motion, start, sums }, rest)
     }
+
+    fn asked(&self) -> &[Vector] {
+        self.predicted
+    }
 }
 
 impl Work for Pass<'_> {
@@ -264,7 +276,7 @@ impl Work for Pass<'_> {
 
     /// Forces and kick of the blocks of a patch; of a part of a block all but what is common to the block.
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, tables: &mut [Table; 2]) {
+    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
         let patch = self.slope.patches.get(number);
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
@@ -279,7 +291,7 @@ impl Work for Pass<'_> {
             motion.fill(BlockMotion::default());
             return;
         }
-        self.push_elements(lanes, patch, tables);
+        self.push_elements(lanes, patch, next, tables);
         let force = tables[1].first(patch.covers.len());
         if let Some(block) = patch.part_of {
             self.kick_part(lanes, (number, block as usize), force, predicted, sums);
@@ -333,8 +345,7 @@ impl Pass<'_> {
         let covers = self.slope.patches.get(patch).covers.clone();
         let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
         let own = self.own(patch, block, covers, &step);
-        sums.block = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
-        sums.fastest = span.kick(lanes, &from, &own, &Common::default(), (force, predicted));
+        (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
     }
 
     /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
@@ -347,8 +358,8 @@ impl Pass<'_> {
             is_cut |= self.join_parts(first, out);
         }
         if is_cut {
-            let spread = Spread { pass: self, sums: out.sums, start: out.start };
-            Run { work: &spread, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
+            let exposed = Exposed { pass: self, sums: out.sums, start: out.start };
+            Run { work: &exposed, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
         }
     }
 
@@ -378,8 +389,8 @@ pub(super) struct KickOut<'a> {
     pub sums: &'a mut [PatchSums],
 }
 
-/// Adds what is common to a block to its parts.
-struct Spread<'a> {
+/// Adds what is common to a block to covers of its parts that contacts, supports or bolts may ask for.
+struct Exposed<'a> {
     pass: &'a Pass<'a>,
     sums: &'a [PatchSums],
     start: &'a [BlockStart],
@@ -394,23 +405,37 @@ impl Cut for Predicted<'_> {
     }
 }
 
-impl Work for Spread<'_> {
+impl Work for Exposed<'_> {
     type Out<'o> = Predicted<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &mut [Table; 2]) {
-        let Pass { slope, metric, .. } = self.pass;
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
+        let Pass { slope, metric, movable, exposed, .. } = *self.pass;
         let patch = slope.patches.get(k);
         let Some(block) = patch.part_of.map(|b| b as usize).filter(|b| !metric.fixed[*b]) else { return };
-        let common = &self.sums[k].common;
-        if *common == Common::default() {
-            return;
+        if let Some(spread) = spread(metric, (patch, block), movable[k], exposed, &self.sums[k].common) {
+            let from = &self.start[block].from;
+            self.pass.span(block, patch.covers.clone()).spread(lanes, from, &spread, predicted);
         }
-        let covers = patch.covers.clone();
-        let inverse = self.pass.inverse(k, covers.clone()).filter(|_| !metric.is_free(block));
-        let from = &self.start[block].from;
-        self.pass.span(block, covers).add_common(lanes, from, common, inverse, predicted);
     }
+}
+
+/// What covers of a part of a block that can move have in common with the others of the block.
+fn spread<'a>(
+    metric: &'a Metric,
+    (part, block): (&Patch, usize),
+    movable: bool,
+    exposed: &'a [bool],
+    common: &'a Common,
+) -> Option<Spread<'a>> {
+    let covers = part.covers.clone();
+    let inverse = inverse(metric, movable || metric.is_free(block), covers.clone());
+    (*common != Common::default()).then(|| Spread { common, inverse, exposed: &exposed[covers] })
+}
+
+/// 1/m of covers unless they can all move.
+fn inverse(metric: &Metric, movable: bool, covers: Range<usize>) -> Option<&[Vector]> {
+    (!movable).then(|| &metric.inverse[covers])
 }
 
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
@@ -429,6 +454,10 @@ pub(super) struct Finish<'a> {
     pub increment: &'a [Vector],
     /// Damping of each block.
     pub damping: &'a [Damping],
+    /// Whether all covers of each patch can move along both axes.
+    pub movable: &'a [bool],
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
     /// Time (s) by which places move.
     pub dt: f64,
     /// Whether the work of body loads is asked for.
@@ -457,18 +486,22 @@ impl Work for Finish<'_> {
     type Out<'o> = Finished<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &mut [Table; 2]) {
+    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
         let patch = self.slope.patches.get(k);
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
+        let common = sums.common;
         let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
         for block in blocks.filter(|b| !self.metric.fixed[*b]) {
             let own = self.slope.covers.covers_of(block);
             let covers = own.start.max(patch.covers.start)..own.end.min(patch.covers.end);
             let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
+            let of_part =
+                patch.part_of.and_then(|_| spread(self.metric, (patch, block), self.movable[k], self.exposed, &common));
             let mut end = End {
+                spread: of_part,
                 star: &self.slope.covers.star_position[covers.clone()],
                 mass: &self.metric.mass[covers.clone()],
                 inertial: &inertial(self.metric, block)[covers.clone()],

@@ -43,8 +43,9 @@ impl Step<'_> {
     fn finish(&mut self, dt: f64) -> Totals {
         let is_loaded = self.extra(dt) != Vector::zeros();
         let (slope, state) = (self.slope, &mut *self.state);
-        let Scratch { metric, predicted, increment, motion, start, push, sums, serial, damping, .. } =
-            &mut *self.scratch;
+        let Scratch {
+            metric, predicted, increment, motion, start, push, sums, serial, damping, movable, exposed, ..
+        } = &mut *self.scratch;
         let finish = Finish {
             slope,
             metric,
@@ -54,6 +55,8 @@ impl Step<'_> {
             push,
             increment,
             damping,
+            movable,
+            exposed,
             dt: if self.report { 0.0 } else { dt },
             is_loaded,
             grain: blocks::grain(*serial),

@@ -26,7 +26,8 @@ impl Step<'_> {
         let (acceleration, grain, is_loaded) =
             (self.acceleration(dt), blocks::grain(self.scratch.serial), self.scratch.is_loaded);
         self.damp_blocks();
-        let Scratch { metric, predicted, motion, start, sums, load_force, damping, movable, .. } = &mut *self.scratch;
+        let Scratch { metric, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
+            &mut *self.scratch;
         let pass = blocks::Pass {
             slope: self.slope,
             state: &*self.state,
@@ -34,6 +35,7 @@ impl Step<'_> {
             acceleration,
             damping,
             movable,
+            exposed,
             dt: kick_dt,
             grain,
             load_force: if is_loaded { load_force } else { &[] },

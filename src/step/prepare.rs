@@ -23,8 +23,21 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.clear();
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
+    expose(slope, &mut scratch.exposed);
     scratch.open_close.prepare(&scratch.metric, &slope.supports, &scratch.rows);
     implicit::prepare(slope, &scratch.metric, &mut scratch.implicit);
+}
+
+/// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
+fn expose(slope: &Slope, exposed: &mut Vec<bool>) {
+    exposed.clear();
+    exposed.resize(slope.covers.cover_count(), false);
+    let of_contacts = slope.boundary.covers.iter();
+    let of_supports = slope.supports.iter().map(|support| &support.covers);
+    let of_bolts = slope.bolts.iter().flat_map(|bolt| &bolt.covers);
+    for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {
+        exposed[cover as usize] = true;
+    }
 }
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
