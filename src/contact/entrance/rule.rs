@@ -140,9 +140,13 @@ impl Narrow<'_> {
         }
     }
 
-    /// Whether a node at first sight was behind the side already before the last step: it did not come in through it.
+    /// Whether a node at first sight was behind the side already before the last step, while no end of that side bore
+    /// on the node's own: it did not come in through it.
     fn came_in_elsewhere(&self, node: usize, pick: &Pick) -> bool {
-        pick.held.is_none() && self.is_deep(node, pick, pick.gap - self.opened(node, pick))
+        let ends = &self.boundary.side_ends[pick.side as usize];
+        let is_met = |end: End| self.is_borne(node, ends[end as usize].point, end);
+        let was_deep = || self.is_deep(node, pick, pick.gap - self.opened(node, pick));
+        pick.held.is_none() && was_deep() && !is_met(End::Start) && !is_met(End::Finish)
     }
 
     /// How far (m) the gap opened in the last step.
@@ -181,7 +185,7 @@ impl Narrow<'_> {
             shallow.is_held && shallow.admitted
         } else {
             let far = !adjacent && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep);
-            behind && far || shallow.admitted && shallow.gap <= 0.0
+            behind && far || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
             return Some(first_is_deeper);
