@@ -73,6 +73,22 @@ fn a_corner_falls_on_a_corner() {
     }
 }
 
+/// A wedge lands on its tip and slides over an edge: the edge bears, though it is soon above the wedge's upper face.
+#[test]
+fn an_edge_bears_the_tip_of_a_wedge() {
+    let base = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [5.0, 0.0], [5.0, -0.5], [0.0, -0.5]]";
+    for (before, speed) in [(5e-4, 0.2), (5e-4, 1.0), (2e-3, 1.0)] {
+        let wedge = format!("[[[{}, 0.002], [7.0, 0.102], [7.0, 0.7]]]", 5.0 + before);
+        let mut simulation = case(base, &wedge, 0.1, &thrown([6.5, 0.2], [-speed, -6.0]));
+        let mut worst = 0.0f64;
+        for _ in 0..100 {
+            advance(&mut simulation, 1);
+            worst = worst.max(deepest_overlap(&simulation).depth);
+        }
+        assert!(worst < 0.002 * SIZE, "{before} m before the edge at {speed} m/s: overlap {worst:e} m");
+    }
+}
+
 /// A block slides over the closed mouth of a crack as over a whole face: it loses v²/2gμ of its way to friction.
 #[test]
 fn a_block_slides_over_a_closed_crack() {

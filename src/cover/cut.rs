@@ -5,7 +5,7 @@ use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 use super::Weights;
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
-use super::order::{self, hilbert, morton};
+use super::order::{self, hilbert};
 use super::outlines::{Outlines, mesh_only};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
@@ -373,7 +373,7 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
         area[root] += raw.area[e];
     }
     let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
-    roots.sort_by_cached_key(|&r| (morton(first[r as usize] / area[r as usize], low, high), r));
+    roots.sort_by_cached_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
     let mut block_of_root = vec![NONE; n];
     for (k, &r) in roots.iter().enumerate() {
         block_of_root[r as usize] = k as u32;

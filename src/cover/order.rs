@@ -1,7 +1,7 @@
-//! Order in space: neighbours in the plane are neighbours in memory. Blocks, whose numbers users know, go by Morton
-//! codes; within a block a Hilbert curve makes any run of elements or covers one compact patch of the plane. Covers of
-//! a large block go row by row within square tiles of the lattice, and the curve goes from tile to tile: so elements in
-//! a row of the lattice have their covers in a row in memory.
+//! Order in space: neighbours in the plane are neighbours in memory. Blocks go along a Hilbert curve, and elements and
+//! covers within a block along another, so that any run of them is one compact patch of the plane. Covers of a large
+//! block go row by row within square tiles of the lattice, and the curve goes from tile to tile: so elements in a row
+//! of the lattice have their covers in a row in memory.
 
 use crate::geometry::Point;
 
@@ -24,26 +24,6 @@ pub fn tile_centre(tile: [i32; 2]) -> [i32; 2] {
 
 /// Halvings of the box: 2⁻²⁶ of its side is far below any mesh size.
 const LEVELS: u32 = 26;
-
-/// Morton code of a point in the box `low`–`high`, 20 bits an axis.
-pub fn morton(p: Point, low: Point, high: Point) -> u64 {
-    let extent = (high - low).max().max(f64::MIN_POSITIVE);
-    let level = |v: f64| ((v / extent).clamp(0.0, 1.0) * f64::from((1u32 << 20) - 1)) as u64;
-    spread(level(p.x - low.x)) | spread(level(p.y - low.y)) << 1
-}
-
-fn spread(mut v: u64) -> u64 {
-    for (shift, mask) in [
-        (16, 0x0000_ffff_0000_ffff),
-        (8, 0x00ff_00ff_00ff_00ff),
-        (4, 0x0f0f_0f0f_0f0f_0f0f),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ] {
-        v = (v | v << shift) & mask;
-    }
-    v
-}
 
 /// Place of a point along the Hilbert curve that fills the square over the box `low`–`high`, from its lower left to
 /// its upper left corner.

@@ -51,7 +51,8 @@ impl Narrow<'_> {
     /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
     /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
     /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
-    /// shallower one. Faces that lie on each other do not exclude each other.
+    /// shallower one. Faces that lie on each other do not exclude each other, and overlap when each has the other's
+    /// corner behind it, though a sharp one may be pierced: the node is then past the facet round its tip.
     fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
         let boundary = self.boundary;
         let tolerance = self.corner_tolerance(pick);
@@ -61,10 +62,11 @@ impl Narrow<'_> {
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
-        if flush || own.dot(&outward) >= 0.0 {
-            return (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
-        }
         let gap = (q - p).dot(&facing);
+        if flush || own.dot(&outward) >= 0.0 {
+            let is_inside = (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
+            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick);
+        }
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
         }
@@ -138,9 +140,13 @@ impl Narrow<'_> {
         }
     }
 
-    /// Whether the node was behind the side already before the last step, so that it did not come in through it.
-    fn was_deep(&self, node: usize, pick: &Pick) -> bool {
-        self.is_deep(node, pick, pick.gap - self.opened(node, pick))
+    /// Whether a node at first sight was behind the side already before the last step, while no end of that side bore
+    /// on the node's own: it did not come in through it.
+    fn came_in_elsewhere(&self, node: usize, pick: &Pick) -> bool {
+        let ends = &self.boundary.side_ends[pick.side as usize];
+        let is_met = |end: End| self.is_borne(node, ends[end as usize].point, end);
+        let was_deep = || self.is_deep(node, pick, pick.gap - self.opened(node, pick));
+        pick.held.is_none() && was_deep() && !is_met(End::Start) && !is_met(End::Finish)
     }
 
     /// How far (m) the gap opened in the last step.
@@ -178,8 +184,8 @@ impl Narrow<'_> {
         let deep_loses = if deep.is_held {
             shallow.is_held && shallow.admitted
         } else {
-            let far = !adjacent && shallow.gap > 0.0 || deep.held.is_none() && self.was_deep(node, deep);
-            behind && far || shallow.admitted && shallow.gap <= 0.0
+            let far = !adjacent && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep);
+            behind && far || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
             return Some(first_is_deeper);
