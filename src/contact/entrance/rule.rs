@@ -65,7 +65,7 @@ impl Narrow<'_> {
         let gap = (q - p).dot(&facing);
         if flush || own.dot(&outward) >= 0.0 {
             let is_inside = (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
-            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick);
+            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick, &[end]);
         }
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
@@ -140,13 +140,13 @@ impl Narrow<'_> {
         }
     }
 
-    /// Whether a node at first sight was behind the side already before the last step, while no end of that side bore
-    /// on the node's own: it did not come in through it.
-    fn came_in_elsewhere(&self, node: usize, pick: &Pick) -> bool {
-        let ends = &self.boundary.side_ends[pick.side as usize];
-        let is_met = |end: End| self.is_borne(node, ends[end as usize].point, end);
+    /// Whether a node at first sight was behind the side already before the last step, while none of these ends of that
+    /// side bore on the node's own: it did not come in through it.
+    fn came_in_elsewhere(&self, node: usize, pick: &Pick, ends: &[End]) -> bool {
+        let at = &self.boundary.side_ends[pick.side as usize];
         let was_deep = || self.is_deep(node, pick, pick.gap - self.opened(node, pick));
-        pick.held.is_none() && was_deep() && !is_met(End::Start) && !is_met(End::Finish)
+        let is_met = |end: &End| self.is_borne(node, at[*end as usize].point, *end);
+        pick.held.is_none() && was_deep() && !ends.iter().any(is_met)
     }
 
     /// How far (m) the gap opened in the last step.
@@ -184,7 +184,7 @@ impl Narrow<'_> {
         let deep_loses = if deep.is_held {
             shallow.is_held && shallow.admitted
         } else {
-            let far = !adjacent && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep);
+            let far = !adjacent && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep, &[End::Start, End::Finish]);
             behind && far || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
