@@ -65,7 +65,7 @@ impl Narrow<'_> {
         let gap = (q - p).dot(&facing);
         if flush || own.dot(&outward) >= 0.0 {
             let is_inside = (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
-            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick, &[end]);
+            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick, Some(end));
         }
         if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
             return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
@@ -129,9 +129,11 @@ impl Narrow<'_> {
                 if block(a) != block(b) {
                     continue;
                 }
-                let loser = match self.corner_between(a.side, b.side) {
+                let end = self.end_between(a.side, b.side);
+                let corner = end.map(|end| self.boundary.side_ends[a.side as usize][end as usize].corner);
+                let loser = match corner {
                     Some(Corner::Reflex) => None,
-                    corner => self.loser(node, a, b, corner.is_some()),
+                    _ => self.loser(node, a, b, corner.is_some()),
                 };
                 if let Some(first) = loser {
                     picks[if first { i } else { j }].admitted = false;
@@ -140,13 +142,13 @@ impl Narrow<'_> {
         }
     }
 
-    /// Whether a node at first sight was behind the side already before the last step, while none of these ends of that
-    /// side bore on the node's own: it did not come in through it.
-    fn came_in_elsewhere(&self, node: usize, pick: &Pick, ends: &[End]) -> bool {
+    /// Whether a node at first sight was behind the side already before the last step, while the corner at this end of
+    /// the side did not bear on the node's own: it came in neither through the side nor round that corner.
+    fn came_in_elsewhere(&self, node: usize, pick: &Pick, end: Option<End>) -> bool {
         let at = &self.boundary.side_ends[pick.side as usize];
         let was_deep = || self.is_deep(node, pick, pick.gap - self.opened(node, pick));
-        let is_met = |end: &End| self.is_borne(node, at[*end as usize].point, *end);
-        pick.held.is_none() && was_deep() && !ends.iter().any(is_met)
+        let is_met = |end: End| self.is_borne(node, at[end as usize].point, end);
+        pick.held.is_none() && was_deep() && !end.is_some_and(is_met)
     }
 
     /// How far (m) the gap opened in the last step.
@@ -159,14 +161,12 @@ impl Narrow<'_> {
         relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 
-    fn corner_between(&self, s: u32, t: u32) -> Option<Corner> {
-        let (boundary, s, t) = (self.boundary, s as usize, t as usize);
-        if boundary.side_next[s] as usize == t {
-            Some(boundary.side_corner[t])
-        } else if boundary.side_next[t] as usize == s {
-            Some(boundary.side_corner[s])
+    /// The end of side `s` at which it meets side `t`.
+    fn end_between(&self, s: u32, t: u32) -> Option<End> {
+        if self.boundary.side_next[s as usize] == t {
+            Some(End::Finish)
         } else {
-            None
+            (self.boundary.side_previous[s as usize] == t).then_some(End::Start)
         }
     }
 
@@ -184,7 +184,8 @@ impl Narrow<'_> {
         let deep_loses = if deep.is_held {
             shallow.is_held && shallow.admitted
         } else {
-            let far = !adjacent && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep, &[End::Start, End::Finish]);
+            let far = !adjacent && shallow.gap > 0.0
+                || self.came_in_elsewhere(node, deep, self.end_between(deep.side, shallow.side));
             behind && far || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
