@@ -4,7 +4,7 @@
 
 #include "check.h"
 
-enum { BASE, BLOCK, COUNT };
+enum { BLOCK, BASE, COUNT };
 
 static enmm_model *create(const char *path)
 {
@@ -340,7 +340,7 @@ static void failures(enmm_model *model)
     OK(enmm_set_gravity(model, 1e4, 0));
     CHECK(enmm_do_step(model, time, 1, &info) == ENMM_NUMERICAL_FAILURE);
     CHECK(memcmp(&info, &same, sizeof info) == 0);
-    CHECK(strstr(enmm_last_error(), "block 1") != NULL);
+    CHECK(strstr(enmm_last_error(), "block 0") != NULL);
     OK(enmm_get_time(model, &now));
     OK(enmm_get_block_states(model, after, COUNT, &written));
     CHECK(now == time && memcmp(before, after, sizeof after) == 0);
