@@ -25,11 +25,11 @@ const WINDOWS_MIN: usize = 2;
 const PROCESSOR_TICK: f64 = 0.004;
 /// Floating-point operations of one element: gradient 22, rotation 8, stretch 4, stress 12, forces 22, their sum 6.
 const OPERATIONS_PER_ELEMENT: f64 = 74.0;
-/// Bytes of an element that a step must read: the slots of three covers in its patch, and its cut area.
+/// Bytes of an element that its stage must read: the slots of three covers in its patch, and its cut area.
 const ELEMENT_BYTES: f64 = 3.0 * 2.0 + 8.0;
-/// Bytes of a cover that a step must move: place, masses and load read once, displacement and velocity read and
-/// written, force, damped and predicted velocity written and read.
-const COVER_BYTES: f64 = 16.0 + 3.0 * 8.0 + 16.0 + 2.0 * 32.0 + 3.0 * 32.0;
+/// Bytes of a cover that the stage of the elements must move: place, displacement, velocity and two masses read,
+/// predicted velocity fetched and written.
+const COVER_BYTES: f64 = 3.0 * 16.0 + 2.0 * 8.0 + 2.0 * 16.0;
 
 /// What a model costs.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
