@@ -126,16 +126,10 @@ impl Narrow<'_> {
         for i in 0..picks.len() {
             for j in i + 1..picks.len() {
                 let (a, b) = (&picks[i], &picks[j]);
-                if block(a) != block(b) {
+                if block(a) != block(b) || self.is_notch(a.side, b.side) {
                     continue;
                 }
-                let end = self.end_between(a.side, b.side);
-                let corner = end.map(|end| self.boundary.side_ends[a.side as usize][end as usize].corner);
-                let loser = match corner {
-                    Some(Corner::Reflex) => None,
-                    _ => self.loser(node, a, b, corner.is_some()),
-                };
-                if let Some(first) = loser {
+                if let Some(first) = self.loser(node, a, b) {
                     picks[if first { i } else { j }].admitted = false;
                 }
             }
@@ -161,6 +155,12 @@ impl Narrow<'_> {
         relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 
+    /// Whether two sides meet in a notch.
+    fn is_notch(&self, s: u32, t: u32) -> bool {
+        let at = &self.boundary.side_ends[s as usize];
+        self.end_between(s, t).is_some_and(|end| at[end as usize].corner == Corner::Reflex)
+    }
+
     /// The end of side `s` at which it meets side `t`.
     fn end_between(&self, s: u32, t: u32) -> Option<End> {
         if self.boundary.side_next[s as usize] == t {
@@ -172,21 +172,21 @@ impl Narrow<'_> {
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
     /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
-    fn loser(&self, node: usize, a: &Pick, b: &Pick, adjacent: bool) -> Option<bool> {
+    fn loser(&self, node: usize, a: &Pick, b: &Pick) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
         let opposed = cosine < -OPPOSED_COSINE && shallow.gap < deep.gap * cosine;
-        if !adjacent && !opposed {
+        let end = self.end_between(deep.side, shallow.side);
+        if end.is_none() && !opposed {
             return None;
         }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
         let deep_loses = if deep.is_held {
             shallow.is_held && shallow.admitted
         } else {
-            let far = !adjacent && shallow.gap > 0.0
-                || self.came_in_elsewhere(node, deep, self.end_between(deep.side, shallow.side));
-            behind && far || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
+            let far = || end.is_none() && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep, end);
+            behind && far() || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
             return Some(first_is_deeper);
