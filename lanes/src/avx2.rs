@@ -197,6 +197,16 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Registers, b: Registers) -> u8 {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[0], b.0[0]));
+            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[1], b.0[1]));
+            (low | high << 4) as u8
+        }
+    }
+
+    #[inline(always)]
     fn sum(self, lanes: Registers) -> f64 {
         // SAFETY: the token proves AVX2.
         unsafe {

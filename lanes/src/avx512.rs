@@ -232,6 +232,12 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Register, b: Register) -> u8 {
+        // SAFETY: the token proves AVX-512F.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
+    }
+
+    #[inline(always)]
     fn sum(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
         unsafe {

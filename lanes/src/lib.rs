@@ -57,6 +57,9 @@ pub trait Lanes: Copy {
     /// The greater of each lane; the second where the first is not a number.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
 
+    /// Lanes in which the first is at most the second, as bits from the lowest on.
+    fn at_most(self, a: Self::F, b: Self::F) -> u8;
+
     /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
     fn sum(self, lanes: Self::F) -> f64;
 

@@ -102,6 +102,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Array, b: Array) -> u8 {
+        (0..LANES).fold(0, |bits, k| bits | u8::from(a.0[k] <= b.0[k]) << k)
+    }
+
+    #[inline(always)]
     fn sum(self, Array(v): Array) -> f64 {
         ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]))
     }

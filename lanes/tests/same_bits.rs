@@ -71,6 +71,8 @@ impl Kernel for Everything {
             bits.extend(out.map(f64::to_bits));
             bits.extend([lanes.sum(value), lanes.greatest(value)].map(f64::to_bits));
         }
+        let masks = [(a, b), (b, a), (a, a), (x, w), (lanes.sqrt(-a), b)].map(|(a, b)| lanes.at_most(a, b));
+        bits.extend(masks.map(u64::from));
         let pairs = table.first(SLOTS).iter().chain(&stored);
         bits.extend(pairs.flat_map(|p| [p.x.to_bits(), p.y.to_bits()]));
         lanes.clear(&mut table, 13);

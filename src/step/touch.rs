@@ -15,8 +15,6 @@ use super::{Regime, Step};
 const SKIN: f64 = 0.1;
 /// Distance, relative to the mesh size, within which pairs are kept.
 pub(super) const CUTOFF: f64 = 0.25;
-/// Size of a cell of the search, relative to the mesh size.
-const CELL: f64 = 0.5;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
 
@@ -55,7 +53,6 @@ impl Step<'_> {
             let view = SearchView {
                 boundary,
                 place: &scratch.place,
-                cell: CELL * size,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
                 fixed: &scratch.metric.fixed,

@@ -1,0 +1,167 @@
+//! Near edges of nodes, and sides that come into view behind rock.
+
+use std::ops::Range;
+
+use enmm_lanes::{Kernel, LANES, Lanes};
+
+use crate::contact::Boundary;
+
+use super::behind::Before;
+use super::grid::{Grid, Stretch};
+use super::within::{Boxes, Marks, NOWHERE, Span, Within};
+use super::{Candidate, SearchView};
+
+/// Most nodes in a row that look round together.
+const FEW: usize = 8;
+/// Stretches up to which a list is sorted by ranks.
+const SHORT: usize = 32;
+
+/// What is found for some nodes, and buffers for it.
+#[derive(Debug, Clone, Default)]
+pub struct Run {
+    pub candidates: Vec<Candidate>,
+    pub behind: Vec<[u32; 2]>,
+    /// Stretches round a few nodes, and their boxes.
+    around: Vec<u32>,
+    boxes: Vec<Boxes>,
+    /// Those near one node.
+    near: Vec<u32>,
+}
+
+impl Run {
+    pub fn bytes(&self) -> usize {
+        let lists = size_of_val(self.around.as_slice()) + size_of_val(self.near.as_slice());
+        let around = lists + size_of_val(self.boxes.as_slice());
+        size_of_val(self.candidates.as_slice()) + size_of_val(self.behind.as_slice()) + around
+    }
+}
+
+/// Near edges of some nodes are found: compiled for every kind of lanes.
+pub struct Find<'a> {
+    pub grid: &'a Grid,
+    pub view: &'a SearchView<'a>,
+    pub nodes: Range<usize>,
+    pub before: Before<'a>,
+    pub run: &'a mut Run,
+}
+
+impl Kernel for Find<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let within = Within::new(lanes, self.view.cutoff);
+        self.run.candidates.clear();
+        self.run.behind.clear();
+        while !self.nodes.is_empty() {
+            let (few, block, span) = self.next_few();
+            if !self.view.removed[block as usize] {
+                self.look_round(&within, block, span);
+                for node in few {
+                    self.near_edges(&within, node, block);
+                }
+            }
+        }
+    }
+}
+
+impl Find<'_> {
+    /// Takes the next few nodes of one block: which, block and box.
+    #[inline(always)]
+    fn next_few(&mut self) -> (Range<usize>, u32, Span) {
+        let (boundary, place) = (self.view.boundary, self.view.place);
+        let Range { start, end } = self.nodes;
+        let point = |node: usize| boundary.node_point[node] as usize;
+        let block = boundary.block[point(start)];
+        let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
+        let (mut span, mut last) = (Span::at(place[point(start)]), start);
+        for node in others {
+            (span, last) = (span.with(place[point(node)]), node);
+        }
+        self.nodes.start = last + 1;
+        (start..last + 1, block, span)
+    }
+
+    /// Lists the stretches that a box of a block may meet, with their boxes.
+    #[inline(always)]
+    fn look_round<L: Lanes>(&mut self, within: &Within<L>, block: u32, span: Span) {
+        let (grid, fixed) = (self.grid, self.view.fixed);
+        let Run { around, boxes, .. } = &mut *self.run;
+        around.clear();
+        let mut marks = Marks::default();
+        let mut list = |eight: u32, lane: usize| {
+            let stretch = grid.stretch_at[eight as usize * LANES + lane];
+            let Stretch { block: other, partial, .. } = grid.stretches[stretch as usize];
+            if (other != block || partial) && !(fixed[block as usize] && fixed[other as usize]) {
+                around.push(stretch);
+            }
+        };
+        for row in grid.round(span) {
+            for eight in row {
+                marks.push(eight as u32, within.boxes(span, &grid.boxes[eight]), &mut list);
+            }
+        }
+        marks.see(&mut list);
+        sort(around);
+        let eights = around.len().div_ceil(LANES);
+        boxes.resize(eights, NOWHERE);
+        for k in 0..eights * LANES {
+            let span = around.get(k).map_or(Span::NOWHERE, |&stretch| grid.stretches[stretch as usize].span);
+            span.put(&mut boxes[k / LANES], k % LANES);
+        }
+    }
+
+    /// Appends the near edges of a node.
+    #[inline(always)]
+    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
+        let (boundary, grid) = (self.view.boundary, self.grid);
+        let Run { candidates, behind, around, boxes, near } = &mut *self.run;
+        let p = self.view.place[boundary.node_point[node] as usize];
+        let first = candidates.len();
+        let mut marks = Marks::default();
+        near.clear();
+        let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);
+        for (eight, boxes) in boxes.iter().enumerate() {
+            marks.push(eight as u32, within.boxes(Span::at(p), boxes), &mut list);
+        }
+        marks.see(&mut list);
+        let mut add = |edge: u32, k: usize| {
+            let edge = edge + k as u32;
+            candidates.push(Candidate { node: node as u32, side: boundary.side[edge as usize], edge });
+        };
+        for &stretch in near.iter() {
+            let stretch = &grid.stretches[stretch as usize];
+            let mut edges = grid.near_edges(within, p, stretch);
+            if stretch.block == block {
+                edges &= may_meet(boundary, node, stretch.edge);
+            }
+            marks.push(stretch.edge, edges, &mut add);
+        }
+        marks.see(&mut add);
+        self.before.renew(self.view, node as u32, &candidates[first..], behind);
+    }
+}
+
+/// Sorts different numbers, a few of them by counting how many are less than each.
+#[inline(always)]
+fn sort(list: &mut [u32]) {
+    if list.len() > SHORT {
+        return list.sort_unstable();
+    }
+    let (mut values, mut ranks) = ([0; SHORT], [0u32; SHORT]);
+    values[..list.len()].copy_from_slice(list);
+    for value in list.iter() {
+        ranks.iter_mut().zip(&values).for_each(|(rank, other)| *rank += u32::from(value < other));
+    }
+    for (value, rank) in values.iter().zip(&ranks).take(list.len()) {
+        list[*rank as usize] = *value;
+    }
+}
+
+/// Which of the eight edges from one on a node of their own block can touch at all.
+fn may_meet(boundary: &Boundary, node: usize, first: u32) -> u8 {
+    let sides = [boundary.side[boundary.node_point[node] as usize], boundary.side_of_node_before(node)];
+    let edges = (first as usize..boundary.len()).take(LANES).enumerate();
+    let may = |edge: usize| boundary.partial[edge] && !sides.contains(&boundary.side[edge]);
+    if boundary.node_partial(node) { edges.fold(0, |bits, (k, edge)| bits | u8::from(may(edge)) << k) } else { 0 }
+}

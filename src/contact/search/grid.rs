@@ -1,0 +1,217 @@
+//! Stretches of the boundary, sorted into the cells of a grid by their middles.
+
+use std::ops::Range;
+
+use enmm_lanes::{LANES, Lanes};
+
+use crate::geometry::{Point, Vector};
+
+use super::SearchView;
+use super::within::{Boxes, NOWHERE, Span, Within};
+
+/// Size of a cell, relative to the search cutoff.
+const CELL: f64 = 4.0;
+/// Extent along an axis, relative to the search cutoff, beyond which no edge is added to a stretch.
+const LONGEST: f64 = 6.0;
+/// Most cells per stretch; where blocks have flown apart cells are larger.
+const CELLS_PER_STRETCH: f64 = 4.0;
+
+/// Up to eight edges in a row of one loop.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch {
+    pub span: Span,
+    /// First edge.
+    pub edge: u32,
+    /// Start of that edge among the points of the grid.
+    point: u32,
+    pub block: u32,
+    count: u8,
+    /// Whether one of the edges lies on a partial cut.
+    pub partial: bool,
+}
+
+/// Equal square cells.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cells {
+    origin: Point,
+    /// Cells per metre.
+    density: f64,
+    columns: usize,
+    rows: usize,
+}
+
+/// Cells go row by row, so that neighbours in a row are one run of stretches.
+#[derive(Debug, Clone, Default)]
+pub struct Grid {
+    cells: Cells,
+    /// Farthest that the middle of a stretch may be from a box near it, along either axis (m).
+    reach: f64,
+    /// Points of all loops (m), with the first of a loop again after its last.
+    x: Vec<f64>,
+    y: Vec<f64>,
+    pub stretches: Vec<Stretch>,
+    /// First place of every cell; a row starts with a new eight.
+    cell_start: Vec<u32>,
+    /// Stretches by place: by cell and, within one, by index.
+    pub stretch_at: Vec<u32>,
+    /// Their boxes, eight by eight.
+    pub boxes: Vec<Boxes>,
+}
+
+impl Stretch {
+    /// As many of some edges in a row as are not too long together; the first of them starts at a point of the grid.
+    fn of(view: &SearchView, edges: Range<usize>, point: usize) -> Self {
+        let (boundary, edge) = (view.boundary, edges.start);
+        let (mut span, mut count, mut partial) = (Span::at(view.place[edge]), 0, false);
+        for edge in edges {
+            let longer = span.with(view.place[boundary.after(edge)]);
+            if count > 0 && (longer.high - longer.low).amax() > LONGEST * view.cutoff {
+                break;
+            }
+            (span, count, partial) = (longer, count + 1, partial | boundary.partial[edge]);
+        }
+        Self { span, edge: edge as u32, point: point as u32, block: boundary.block[edge], count, partial }
+    }
+
+    /// Bits of the edges that it has.
+    #[inline(always)]
+    fn edges(&self) -> u8 {
+        ((1u32 << self.count) - 1) as u8
+    }
+}
+
+impl Cells {
+    /// Column and row of the cell of a point, or of the nearest one.
+    fn of(&self, p: Point) -> [usize; 2] {
+        let index = |x: f64, count: usize| ((x * self.density) as usize).min(count - 1);
+        [index(p.x - self.origin.x, self.columns), index(p.y - self.origin.y, self.rows)]
+    }
+
+    fn index(&self, [column, row]: [usize; 2]) -> usize {
+        row * self.columns + column
+    }
+
+    fn index_of(&self, stretch: &Stretch) -> usize {
+        self.index(self.of(stretch.span.middle()))
+    }
+}
+
+impl Grid {
+    pub fn bytes(&self) -> usize {
+        let points = size_of_val(self.x.as_slice()) + size_of_val(self.y.as_slice());
+        let cells = size_of_val(self.cell_start.as_slice()) + size_of_val(self.stretch_at.as_slice());
+        points + cells + size_of_val(self.stretches.as_slice()) + size_of_val(self.boxes.as_slice())
+    }
+
+    /// Lays all edges that count into the grid.
+    pub fn lay(&mut self, view: &SearchView) {
+        self.divide(view);
+        self.measure(view.cutoff);
+        self.sort();
+    }
+
+    /// Divides the boundary of the blocks that count into stretches.
+    fn divide(&mut self, view: &SearchView) {
+        let boundary = view.boundary;
+        self.x.clear();
+        self.y.clear();
+        self.stretches.clear();
+        let mut first = 0;
+        while let Some(length) = boundary.next[first..].iter().position(|&next| next as usize == first) {
+            let edges = first..first + length + 1;
+            first = edges.end;
+            if !view.removed[boundary.block[edges.start] as usize] {
+                self.divide_loop(view, edges);
+            }
+        }
+        self.push_points(&[Point::zeros(); LANES]);
+    }
+
+    /// Divides a loop, evenly but for stretches that would become long.
+    fn divide_loop(&mut self, view: &SearchView, edges: Range<usize>) {
+        let most = edges.len().div_ceil(edges.len().div_ceil(LANES));
+        let first_point = self.x.len();
+        let mut first = edges.start;
+        while first < edges.end {
+            let stretch = Stretch::of(view, first..edges.end.min(first + most), first_point + first - edges.start);
+            first += stretch.count as usize;
+            self.stretches.push(stretch);
+        }
+        self.push_points(&view.place[edges.clone()]);
+        self.push_points(&[view.place[edges.start]]);
+    }
+
+    fn push_points(&mut self, points: &[Point]) {
+        self.x.extend(points.iter().map(|p| p.x));
+        self.y.extend(points.iter().map(|p| p.y));
+    }
+
+    /// Lays the grid over the middles of all stretches.
+    fn measure(&mut self, cutoff: f64) {
+        let (mut low, mut high, mut longest) = (Point::new(f64::MAX, f64::MAX), Point::new(f64::MIN, f64::MIN), 0.0f64);
+        for Stretch { span, .. } in &self.stretches {
+            let middle = span.middle();
+            (low, high) = (low.inf(&middle), high.sup(&middle));
+            longest = longest.max((span.high - span.low).amax());
+        }
+        self.reach = 0.5 * longest + cutoff;
+        let span = (high - low).map(|x| x.max(0.0));
+        let count = |cell: f64| [span.x, span.y].map(|x| (x / cell).floor() + 1.0);
+        let most = CELLS_PER_STRETCH * self.stretches.len() as f64 + 16.0;
+        let mut cell = CELL * cutoff;
+        while count(cell).iter().product::<f64>() > most {
+            cell *= 2.0;
+        }
+        let [columns, rows] = count(cell).map(|n| n as usize);
+        self.cells = Cells { origin: low, density: 1.0 / cell, columns, rows };
+    }
+
+    /// Sorts the stretches and their boxes by cell.
+    fn sort(&mut self) {
+        let (cells, start) = (self.cells, &mut self.cell_start);
+        start.clear();
+        start.resize(cells.columns * cells.rows + 1, 0);
+        self.stretches.iter().for_each(|stretch| start[cells.index_of(stretch)] += 1);
+        let mut end = 0u32;
+        for row in start.chunks_mut(cells.columns) {
+            end = end.next_multiple_of(LANES as u32);
+            for cell in row {
+                end += *cell;
+                *cell = end;
+            }
+        }
+        let eights = end.div_ceil(LANES as u32) as usize;
+        self.stretch_at.resize(eights * LANES, 0);
+        self.boxes.clear();
+        self.boxes.resize(eights, NOWHERE);
+        for (k, stretch) in self.stretches.iter().enumerate() {
+            let start = &mut start[cells.index_of(stretch)];
+            *start -= 1;
+            let at = *start as usize;
+            self.stretch_at[at] = k as u32;
+            stretch.span.put(&mut self.boxes[at / LANES], at % LANES);
+        }
+    }
+
+    /// To which edges of a stretch a point is near.
+    #[inline(always)]
+    pub fn near_edges<L: Lanes>(&self, within: &Within<L>, p: Point, stretch: &Stretch) -> u8 {
+        let from = stretch.point as usize;
+        match (self.x[from..].first_chunk(), self.y[from..].first_chunk()) {
+            (Some(x), Some(y)) => stretch.edges() & within.edges(p, x, y),
+            _ => 0,
+        }
+    }
+
+    /// Eights, by index, of the cells round a box, row by row.
+    #[inline(always)]
+    pub fn round(&self, span: Span) -> impl Iterator<Item = Range<usize>> {
+        let reach = Vector::new(self.reach, self.reach);
+        let ([left, bottom], [right, top]) = (self.cells.of(span.low - reach), self.cells.of(span.high + reach));
+        (bottom..=top).map(move |row| {
+            let [start, end] =
+                [left, right + 1].map(|column| self.cell_start[self.cells.index([column, row])] as usize);
+            start / LANES..end.div_ceil(LANES)
+        })
+    }
+}

@@ -1,0 +1,75 @@
+//! The search finds the near pairs that all nodes against all edges give, on any number of threads.
+
+use std::path::Path;
+
+use enmm::contact::{Boundary, Near, SearchGrid, SearchView};
+use enmm::geometry::{Point, Vector, segment};
+use enmm::model::Simulation;
+
+/// Whether a node and an edge can touch: not two fixed blocks, and in one block only both sides of a partial cut.
+fn may_meet(boundary: &Boundary, fixed: &[bool], node: usize, edge: usize) -> bool {
+    let [before, after] = boundary.edges_of_node(node).map(|edge| edge as usize);
+    let (own, other) = (boundary.block[after] as usize, boundary.block[edge] as usize);
+    let partial = |edge: usize| boundary.partial[edge];
+    let is_own = own == other;
+    !(fixed[own] && fixed[other])
+        && (!is_own || partial(edge) && (partial(before) || partial(after)))
+        && (!is_own || [before, after].iter().all(|&side| boundary.side[side] != boundary.side[edge]))
+}
+
+/// Nodes and edges that are near, by all against all.
+fn all_against_all(view: &SearchView) -> Vec<[u32; 3]> {
+    let boundary = view.boundary;
+    let counts = |point: usize| !view.removed[boundary.block[point] as usize];
+    let edges: Vec<_> = (0..boundary.len()).filter(|&edge| counts(edge)).collect();
+    let mut pairs = Vec::new();
+    for node in (0..boundary.node_count()).filter(|&node| counts(boundary.node_point[node] as usize)) {
+        let p = view.place[boundary.node_point[node] as usize];
+        for &edge in &edges {
+            let (a, b) = (view.place[edge], view.place[boundary.after(edge)]);
+            if segment::distance(p, a, b) < view.cutoff && may_meet(boundary, view.fixed, node, edge) {
+                pairs.push([node as u32, boundary.side[edge], edge as u32]);
+            }
+        }
+    }
+    pairs
+}
+
+/// Blocks pushed their own ways, some of them far off.
+fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
+    let slope = simulation.slope();
+    let away = |block: u32| {
+        let angle = 0.7 * f64::from(block);
+        let far = if block % 50 == 7 { 30.0 } else { 1.0 };
+        Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
+    };
+    let place = simulation.scratch().place.iter().zip(&slope.boundary.block);
+    place.map(|(p, &block)| p + away(block)).collect()
+}
+
+#[test]
+fn the_search_finds_what_all_against_all_find() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
+    let case = enmm::io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
+    let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
+    simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+    let boundary = &simulation.slope().boundary;
+    assert!(boundary.partial.contains(&true), "there must be partial cuts");
+    let fixed = &simulation.scratch().metric.fixed;
+    let removed: Vec<bool> = (0..fixed.len()).map(|block| block % 40 == 3).collect();
+    let cutoff = 0.25 * simulation.slope().covers.mesh.size;
+    let mut grids: [(SearchGrid, Near); 2] = Default::default();
+    for share in [0.0, 0.1, 0.3] {
+        let place = push(&simulation, share);
+        let view = |serial| SearchView { boundary, place: &place, cutoff, removed: &removed, fixed, serial };
+        let expected = all_against_all(&view(true));
+        assert!(expected.len() > 5000, "{} pairs", expected.len());
+        for (serial, (grid, near)) in [true, false].into_iter().zip(&mut grids) {
+            grid.search(&view(serial), near);
+            let found: Vec<_> = near.candidates.iter().map(|c| [c.node, c.side, c.edge]).collect();
+            assert!(found == expected, "{} pairs at {share}, not {}", found.len(), expected.len());
+        }
+        assert!(grids[0].1 == grids[1].1, "a run of all nodes and many runs differ at {share}");
+        assert!(!grids[0].1.behind.is_empty());
+    }
+}
