@@ -28,12 +28,16 @@ impl<'a> Before<'a> {
     /// Keeps the pairs behind rock that are still in view of a node, and adds those that have come into view deep;
     /// `near` are its edges now. Nodes come in their order.
     pub fn renew(&mut self, view: &SearchView, node: u32, near: &[Candidate], behind: &mut Vec<[u32; 2]>) {
-        let known = of_node(&mut self.candidates, |c| c.node.cmp(&node));
         let was = of_node(&mut self.behind, |pair| pair[0].cmp(&node));
-        if known.len() == near.len() && known.iter().zip(near).all(|(a, b)| a.edge == b.edge) {
+        if let Some((known, rest)) = self.candidates.split_at_checked(near.len())
+            && known.iter().zip(near).all(|(a, b)| a.node == b.node && a.edge == b.edge)
+            && rest.first().is_none_or(|next| next.node > node)
+        {
+            self.candidates = rest;
             behind.extend_from_slice(was);
             return;
         }
+        let known = of_node(&mut self.candidates, |c| c.node.cmp(&node));
         for edges in near.chunk_by(|a, b| a.side == b.side) {
             let side = edges[0].side;
             let is_known = known.iter().fold(false, |known, c| known | (c.side == side));
