@@ -1,10 +1,12 @@
-//! What stands around the steps: the build of a model, one element by itself, a saved state, a report, a frame.
+//! What stands around the steps: the build of a model, a search, one element by itself, a saved state, a report, a
+//! frame.
 
 use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
+use enmm::contact::{Near, SearchGrid, SearchView};
 use enmm::geometry::Vector;
 use enmm::io::bench::Model;
 use enmm::io::checkpoint::encode;
@@ -23,6 +25,28 @@ fn build(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(4));
     for model in [MODEL, Model::Continuum(10_000)] {
         group.bench_function(model.to_string(), |bencher| bencher.iter(|| black_box(model.build().is_ok())));
+    }
+}
+
+/// Near pairs found anew by nodes that stay where they are.
+fn search(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("search");
+    group.sample_size(20);
+    for model in [MODEL, Model::Slope(10_000, 4)] {
+        let mut simulation = model.build().unwrap_or_else(|e| panic!("{e}"));
+        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+        let (slope, scratch) = (simulation.slope(), simulation.scratch());
+        let view = SearchView {
+            boundary: &slope.boundary,
+            place: &scratch.place,
+            cutoff: 0.25 * slope.covers.mesh.size,
+            removed: &simulation.state().removed,
+            fixed: &scratch.metric.fixed,
+            serial: true,
+        };
+        let (mut grid, mut near) = (SearchGrid::default(), Near::default());
+        group.throughput(Throughput::Elements(slope.boundary.len() as u64));
+        group.bench_function(model.to_string(), |bencher| bencher.iter(|| grid.search(&view, &mut near)));
     }
 }
 
@@ -57,5 +81,5 @@ fn outputs(criterion: &mut Criterion) {
     group.bench_function("restore", |bencher| bencher.iter(|| simulation.restore(start.clone())));
 }
 
-criterion_group!(benches, build, elements, outputs);
+criterion_group!(benches, build, search, elements, outputs);
 criterion_main!(benches);

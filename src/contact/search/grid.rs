@@ -10,9 +10,9 @@ use super::SearchView;
 use super::within::{Boxes, NOWHERE, Span, Within};
 
 /// Size of a cell, relative to the search cutoff.
-const CELL: f64 = 4.0;
+const CELL: f64 = 6.0;
 /// Extent along an axis, relative to the search cutoff, beyond which no edge is added to a stretch.
-const LONGEST: f64 = 6.0;
+const LONGEST: f64 = 8.0;
 /// Most cells per stretch; where blocks have flown apart cells are larger.
 const CELLS_PER_STRETCH: f64 = 4.0;
 
