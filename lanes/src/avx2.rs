@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Eight, Kernel, LANES, Lanes, Pair, Slot, Table};
+use super::{Arithmetic, Kernel, LANES, Lanes, Pair, Places, Slot, Table, Values};
 
 /// Proof that the processor has AVX2: only [`run`] makes one.
 #[derive(Clone, Copy)]
@@ -52,7 +52,7 @@ impl Neg for Registers {
     }
 }
 
-impl Eight for Registers {}
+impl Arithmetic for Registers {}
 
 /// x and y of the pairs 0–1 and 2–3.
 #[inline(always)]
@@ -75,27 +75,47 @@ fn join(_: Avx2, x: __m256d, y: __m256d) -> [__m256d; 2] {
     }
 }
 
-/// Two pairs of a table.
+/// x and y of four pairs, each at its own address.
+///
+/// # Safety
+/// Two f64 in a row must be at each address.
 #[inline(always)]
-fn two(_: Avx2, table: &Table, slots: [Slot; 2]) -> __m256d {
-    // SAFETY: the token proves AVX2; each address is that of a pair, two f64 in a row.
+unsafe fn four(_: Avx2, at: [*const f64; 4]) -> [__m256d; 2] {
+    // SAFETY: the token proves AVX2; the caller answers for the addresses.
     unsafe {
-        let first = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[0])));
-        _mm256_insertf128_pd::<1>(first, _mm_loadu_pd(table.values(slots[1])))
+        let even = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd(at[0])), _mm_loadu_pd(at[2]));
+        let odd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd(at[1])), _mm_loadu_pd(at[3]));
+        [_mm256_unpacklo_pd(even, odd), _mm256_unpackhi_pd(even, odd)]
     }
 }
 
-/// Adds to two pairs of a table, one after the other.
+/// x and y of eight pairs, each at its own address.
+///
+/// # Safety
+/// Two f64 in a row must be at each address.
 #[inline(always)]
-fn add_two(_: Avx2, table: &mut Table, slots: [Slot; 2], lanes: __m256d) {
-    // SAFETY: the token proves AVX2; each address is that of a pair, two f64 in a row.
+unsafe fn eight(token: Avx2, [a, b, c, d, e, f, g, h]: [*const f64; LANES]) -> [Registers; 2] {
+    // SAFETY: the caller answers for the addresses.
+    let ([x, y], [z, w]) = unsafe { (four(token, [a, b, c, d]), four(token, [e, f, g, h])) };
+    [Registers([x, z]), Registers([y, w])]
+}
+
+/// Four pairs of x and y.
+#[inline(always)]
+fn quarters(_: Avx2, x: __m256d, y: __m256d) -> [__m128d; 4] {
+    // SAFETY: the token proves AVX2.
     unsafe {
-        let parts = [_mm256_castpd256_pd128(lanes), _mm256_extractf128_pd::<1>(lanes)];
-        for (slot, part) in slots.into_iter().zip(parts) {
-            let at = table.values_mut(slot);
-            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), part));
-        }
+        let (even, odd) = (_mm256_unpacklo_pd(x, y), _mm256_unpackhi_pd(x, y));
+        let high = [_mm256_extractf128_pd::<1>(even), _mm256_extractf128_pd::<1>(odd)];
+        [_mm256_castpd256_pd128(even), _mm256_castpd256_pd128(odd), high[0], high[1]]
     }
+}
+
+/// Eight pairs of x and y.
+#[inline(always)]
+fn apart(token: Avx2, [x, y]: [Registers; 2]) -> [__m128d; LANES] {
+    let ([a, b, c, d], [e, f, g, h]) = (quarters(token, x.0[0], y.0[0]), quarters(token, x.0[1], y.0[1]));
+    [a, b, c, d, e, f, g, h]
 }
 
 /// The pairs 0–1, 2–3, 4–5 and 6–7 of a run.
@@ -138,7 +158,7 @@ fn balance(_: Avx2, before: __m256d, second: __m256d, third: __m256d) -> __m256d
     unsafe { _mm256_sub_pd(_mm256_permute2f128_pd::<0x21>(before, second), _mm256_add_pd(second, third)) }
 }
 
-impl Lanes for Avx2 {
+impl Values for Avx2 {
     type F = Registers;
 
     #[inline(always)]
@@ -164,6 +184,45 @@ impl Lanes for Avx2 {
         }
     }
 
+    #[inline(always)]
+    fn max(self, a: Registers, b: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_max_pd(a.0[0], b.0[0]), _mm256_max_pd(a.0[1], b.0[1])] })
+    }
+
+    #[inline(always)]
+    fn min(self, a: Registers, b: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_min_pd(a.0[0], b.0[0]), _mm256_min_pd(a.0[1], b.0[1])] })
+    }
+
+    #[inline(always)]
+    fn keep_above(self, values: Registers, others: Registers, limit: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let low = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[0], limit.0[0]);
+            let high = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[1], limit.0[1]);
+            Registers([_mm256_and_pd(low, values.0[0]), _mm256_and_pd(high, values.0[1])])
+        }
+    }
+
+    #[inline(always)]
+    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Registers; 2] {
+        // SAFETY: each address is that of a pair, two f64 in a row.
+        unsafe { eight(self, at.of(pairs)) }
+    }
+
+    #[inline(always)]
+    fn scatter_to(self, lanes: [Registers; 2], pairs: &mut [Pair], at: &Places) {
+        let (at, parts) = (at.of_mut(pairs), apart(self, lanes));
+        for k in (0..LANES).rev() {
+            // SAFETY: the token proves AVX2; the address is that of a pair, two f64 in a row.
+            unsafe { _mm_storeu_pd(at[k], parts[k]) }
+        }
+    }
+}
+
+impl Lanes for Avx2 {
     #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Registers; 2] {
         let [a, b, c, d] = run_of(self, pairs);
@@ -191,9 +250,13 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn max(self, a: Registers, b: Registers) -> Registers {
+    fn greatest(self, lanes: Registers) -> f64 {
         // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_max_pd(a.0[0], b.0[0]), _mm256_max_pd(a.0[1], b.0[1])] })
+        unsafe {
+            let four = _mm256_max_pd(lanes.0[0], lanes.0[1]);
+            let two = _mm_max_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
+            _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)))
+        }
     }
 
     #[inline(always)]
@@ -218,18 +281,17 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Registers; 2] {
-        let [a, b, c, d, e, f, g, h] = *slots;
-        let [x, y] = split(self, two(self, table, [a, b]), two(self, table, [c, d]));
-        let [z, w] = split(self, two(self, table, [e, f]), two(self, table, [g, h]));
-        [Registers([x, z]), Registers([y, w])]
+        // SAFETY: each address is that of a pair, two f64 in a row.
+        unsafe { eight(self, table.addresses(slots)) }
     }
 
     #[inline(always)]
-    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], [x, y]: [Registers; 2]) {
-        for k in 0..2 {
-            let [low, high] = join(self, x.0[k], y.0[k]);
-            add_two(self, table, [slots[4 * k], slots[4 * k + 1]], low);
-            add_two(self, table, [slots[4 * k + 2], slots[4 * k + 3]], high);
+    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Registers; 2]) {
+        let parts = apart(self, lanes);
+        for k in 0..LANES {
+            let at = table.values_mut(slots[k]);
+            // SAFETY: the token proves AVX2; the address is that of a pair, two f64 in a row.
+            unsafe { _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), parts[k])) }
         }
     }
 

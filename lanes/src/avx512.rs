@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Eight, Kernel, LANES, Lanes, Pair, Slot, Table};
+use super::{Arithmetic, Kernel, LANES, Lanes, Pair, Places, Slot, Table, Values};
 
 /// Proof that the processor has AVX-512F: only [`run`] makes one.
 #[derive(Clone, Copy)]
@@ -52,7 +52,7 @@ impl Neg for Register {
     }
 }
 
-impl Eight for Register {}
+impl Arithmetic for Register {}
 
 /// x and y of the pairs 0–3 and 4–7.
 #[inline(always)]
@@ -88,36 +88,54 @@ fn first_pairs(count: usize) -> [__mmask8; 2] {
     [first(2 * count), first((2 * count).saturating_sub(LANES))]
 }
 
-/// Four pairs of a table.
+/// Four pairs, each at its own address.
+///
+/// # Safety
+/// Two f64 in a row must be at each address.
 #[inline(always)]
-fn four(_: Avx512, table: &Table, slots: [Slot; 4]) -> __m512d {
-    // SAFETY: the token proves AVX-512F; each address is that of a pair, two f64 in a row.
+unsafe fn four(_: Avx512, at: [*const f64; 4]) -> __m512d {
+    // SAFETY: the token proves AVX-512F; the caller answers for the addresses.
     unsafe {
-        let a = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[0])));
-        let b = _mm256_castpd128_pd256(_mm_loadu_pd(table.values(slots[2])));
-        let a = _mm256_insertf128_pd::<1>(a, _mm_loadu_pd(table.values(slots[1])));
-        let b = _mm256_insertf128_pd::<1>(b, _mm_loadu_pd(table.values(slots[3])));
+        let a = _mm256_castpd128_pd256(_mm_loadu_pd(at[0]));
+        let b = _mm256_castpd128_pd256(_mm_loadu_pd(at[2]));
+        let a = _mm256_insertf128_pd::<1>(a, _mm_loadu_pd(at[1]));
+        let b = _mm256_insertf128_pd::<1>(b, _mm_loadu_pd(at[3]));
         _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(a), b)
     }
 }
 
-/// Adds to four pairs of a table, one after the other.
+/// x and y of eight pairs, each at its own address. The pairs of even and of odd lanes stand together, so that each
+/// quarter of a register needs its own values only.
+///
+/// # Safety
+/// Two f64 in a row must be at each address.
 #[inline(always)]
-fn add_four(_: Avx512, table: &mut Table, slots: [Slot; 4], lanes: __m512d) {
-    // SAFETY: the token proves AVX-512F; each address is that of a pair, two f64 in a row.
+unsafe fn eight(token: Avx512, [a, b, c, d, e, f, g, h]: [*const f64; LANES]) -> [Register; 2] {
+    // SAFETY: the token proves AVX-512F; the caller answers for the addresses.
     unsafe {
-        let [a, b] = [_mm512_castpd512_pd256(lanes), _mm512_extractf64x4_pd::<1>(lanes)];
-        let parts = [
-            _mm256_castpd256_pd128(a),
-            _mm256_extractf128_pd::<1>(a),
-            _mm256_castpd256_pd128(b),
-            _mm256_extractf128_pd::<1>(b),
-        ];
-        for (slot, part) in slots.into_iter().zip(parts) {
-            let at = table.values_mut(slot);
-            _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), part));
-        }
+        let (even, odd) = (four(token, [a, c, e, g]), four(token, [b, d, f, h]));
+        [Register(_mm512_unpacklo_pd(even, odd)), Register(_mm512_unpackhi_pd(even, odd))]
     }
+}
+
+/// Four pairs of a register.
+#[inline(always)]
+fn quarters(_: Avx512, four: __m512d) -> [__m128d; 4] {
+    // SAFETY: the token proves AVX-512F.
+    unsafe {
+        let (low, high) = (_mm512_castpd512_pd256(four), _mm512_extractf64x4_pd::<1>(four));
+        let [b, d] = [_mm256_extractf128_pd::<1>(low), _mm256_extractf128_pd::<1>(high)];
+        [_mm256_castpd256_pd128(low), b, _mm256_castpd256_pd128(high), d]
+    }
+}
+
+/// Eight pairs of x and y.
+#[inline(always)]
+fn apart(token: Avx512, [x, y]: [Register; 2]) -> [__m128d; LANES] {
+    // SAFETY: the token proves AVX-512F.
+    let (even, odd) = unsafe { (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0)) };
+    let ([a, c, e, g], [b, d, f, h]) = (quarters(token, even), quarters(token, odd));
+    [a, b, c, d, e, f, g, h]
 }
 
 /// The pairs 0–3 and 4–7 of a run.
@@ -139,7 +157,7 @@ fn add_run(_: Avx512, pairs: &mut [Pair; LANES], low: __m512d, high: __m512d) {
     }
 }
 
-impl Lanes for Avx512 {
+impl Values for Avx512 {
     type F = Register;
 
     #[inline(always)]
@@ -160,6 +178,41 @@ impl Lanes for Avx512 {
         unsafe { _mm512_storeu_pd(out.as_mut_ptr(), lanes.0) }
     }
 
+    #[inline(always)]
+    fn max(self, a: Register, b: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_max_pd(a.0, b.0) })
+    }
+
+    #[inline(always)]
+    fn min(self, a: Register, b: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_min_pd(a.0, b.0) })
+    }
+
+    #[inline(always)]
+    fn keep_above(self, values: Register, others: Register, limit: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(others.0, limit.0), values.0) })
+    }
+
+    #[inline(always)]
+    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Register; 2] {
+        // SAFETY: each address is that of a pair, two f64 in a row.
+        unsafe { eight(self, at.of(pairs)) }
+    }
+
+    #[inline(always)]
+    fn scatter_to(self, lanes: [Register; 2], pairs: &mut [Pair], at: &Places) {
+        let (at, parts) = (at.of_mut(pairs), apart(self, lanes));
+        for k in (0..LANES).rev() {
+            // SAFETY: the token proves AVX-512F; the address is that of a pair, two f64 in a row.
+            unsafe { _mm_storeu_pd(at[k], parts[k]) }
+        }
+    }
+}
+
+impl Lanes for Avx512 {
     #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Register; 2] {
         let [low, high] = run_of(self, pairs);
@@ -226,9 +279,9 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn max(self, a: Register, b: Register) -> Register {
+    fn greatest(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_max_pd(a.0, b.0) })
+        unsafe { _mm512_reduce_max_pd(lanes.0) }
     }
 
     #[inline(always)]
@@ -249,16 +302,18 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Register; 2] {
-        let [a, b, c, d, e, f, g, h] = *slots;
-        split(self, four(self, table, [a, b, c, d]), four(self, table, [e, f, g, h]))
+        // SAFETY: each address is that of a pair, two f64 in a row.
+        unsafe { eight(self, table.addresses(slots)) }
     }
 
     #[inline(always)]
     fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Register; 2]) {
-        let [a, b, c, d, e, f, g, h] = *slots;
-        let [low, high] = join(self, lanes);
-        add_four(self, table, [a, b, c, d], low);
-        add_four(self, table, [e, f, g, h], high);
+        let parts = apart(self, lanes);
+        for k in 0..LANES {
+            let at = table.values_mut(slots[k]);
+            // SAFETY: the token proves AVX-512F; the address is that of a pair, two f64 in a row.
+            unsafe { _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), parts[k])) }
+        }
     }
 
     #[inline(always)]

@@ -8,12 +8,16 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod first;
 mod path;
+mod places;
 mod portable;
 mod prefetch;
 mod table;
 
+pub use first::First;
 pub use path::{Path, dispatch, dispatch_on, path};
+pub use places::Places;
 pub use prefetch::prefetch;
 pub use table::{SLOTS, Slot, Table};
 
@@ -25,16 +29,16 @@ pub type Pair = nalgebra::Vector2<f64>;
 /// Number of lanes.
 pub const LANES: usize = 8;
 
-/// Eight `f64`.
-pub trait Eight:
+/// Numbers that are reckoned with as one.
+pub trait Arithmetic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
 }
 
-/// What a processor does to eight `f64` at once; a value of this type proves that the processor can.
-pub trait Lanes: Copy {
-    /// Eight values.
-    type F: Eight;
+/// What is reckoned with a value of each of eight lanes at once, or with that of the first lane only.
+pub trait Values: Copy {
+    /// Values of the lanes.
+    type F: Arithmetic;
 
     /// One value in all lanes.
     fn splat(self, value: f64) -> Self::F;
@@ -45,6 +49,30 @@ pub trait Lanes: Copy {
     /// Writes eight values.
     fn store(self, lanes: Self::F, out: &mut [f64; LANES]);
 
+    /// The greater of each lane; the second where the first is not a number.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+
+    /// The lesser of each lane; the second where the first is not a number.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+
+    /// Values where others are above a limit; zero elsewhere.
+    fn keep_above(self, values: Self::F, others: Self::F, limit: Self::F) -> Self::F;
+
+    /// Pairs of a list.
+    ///
+    /// # Panics
+    /// When a place is not below the length.
+    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Self::F; 2];
+
+    /// Writes pairs of a list, the last lane first: of lanes with one place the first one counts.
+    ///
+    /// # Panics
+    /// When a place is not below the length.
+    fn scatter_to(self, lanes: [Self::F; 2], pairs: &mut [Pair], at: &Places);
+}
+
+/// What a processor does to eight `f64` at once; a value of this type proves that the processor can.
+pub trait Lanes: Values {
     /// Eight pairs in a row, as x and y.
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Self::F; 2];
 
@@ -54,14 +82,14 @@ pub trait Lanes: Copy {
     /// Square root.
     fn sqrt(self, lanes: Self::F) -> Self::F;
 
-    /// The greater of each lane; the second where the first is not a number.
-    fn max(self, a: Self::F, b: Self::F) -> Self::F;
-
     /// Lanes in which the first is at most the second, as bits from the lowest on.
     fn at_most(self, a: Self::F, b: Self::F) -> u8;
 
     /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
     fn sum(self, lanes: Self::F) -> f64;
+
+    /// The greatest lane; none may be what is not a number.
+    fn greatest(self, lanes: Self::F) -> f64;
 
     /// Pairs of a table by their slots.
     fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Self::F; 2];
@@ -149,14 +177,6 @@ pub trait Lanes: Copy {
                 out.copy_from_slice(&padded[..count]);
             }
         }
-    }
-
-    /// The greatest lane.
-    #[inline(always)]
-    fn greatest(self, lanes: Self::F) -> f64 {
-        let mut values = [0.0; LANES];
-        self.store(lanes, &mut values);
-        values.into_iter().fold(f64::NEG_INFINITY, f64::max)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Eight, LANES, Lanes, Pair, Slot, Table};
+use super::{Arithmetic, LANES, Lanes, Pair, Places, Slot, Table, Values};
 
 /// Plain Rust.
 #[derive(Clone, Copy)]
@@ -59,9 +59,9 @@ impl Neg for Array {
     }
 }
 
-impl Eight for Array {}
+impl Arithmetic for Array {}
 
-impl Lanes for Portable {
+impl Values for Portable {
     type F = Array;
 
     #[inline(always)]
@@ -80,6 +80,35 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn max(self, a: Array, b: Array) -> Array {
+        a.with(b, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn min(self, a: Array, b: Array) -> Array {
+        a.with(b, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn keep_above(self, values: Array, others: Array, limit: Array) -> Array {
+        Array(std::array::from_fn(|k| if others.0[k] > limit.0[k] { values.0[k] } else { 0.0 }))
+    }
+
+    #[inline(always)]
+    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Array; 2] {
+        self.load_pairs(&std::array::from_fn(|k| pairs[at.index(k) as usize]))
+    }
+
+    #[inline(always)]
+    fn scatter_to(self, [x, y]: [Array; 2], pairs: &mut [Pair], at: &Places) {
+        for k in (0..LANES).rev() {
+            pairs[at.index(k) as usize] = Pair::new(x.0[k], y.0[k]);
+        }
+    }
+}
+
+impl Lanes for Portable {
+    #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Array; 2] {
         [Array(std::array::from_fn(|k| pairs[k].x)), Array(std::array::from_fn(|k| pairs[k].y))]
     }
@@ -97,8 +126,8 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn max(self, a: Array, b: Array) -> Array {
-        a.with(b, |a, b| if a > b { a } else { b })
+    fn greatest(self, lanes: Array) -> f64 {
+        lanes.0.into_iter().fold(f64::NEG_INFINITY, f64::max)
     }
 
     #[inline(always)]

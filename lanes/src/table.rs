@@ -70,10 +70,15 @@ impl Table {
         unsafe { self.pairs.0.get_unchecked_mut(slot.index()) }
     }
 
-    /// Address of the two values of a slot.
+    /// Addresses of the two values of each slot.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    pub(crate) fn values(&self, slot: Slot) -> *const f64 {
-        std::ptr::from_ref(self.at(slot)).cast()
+    pub(crate) fn addresses(&self, slots: &[Slot; LANES]) -> [*const f64; LANES] {
+        let mut addresses = [std::ptr::null(); LANES];
+        for (address, &slot) in addresses.iter_mut().zip(slots) {
+            *address = std::ptr::from_ref(self.at(slot)).cast();
+        }
+        addresses
     }
 
     /// Address of the two values of a slot.

@@ -1,6 +1,6 @@
 //! Every kind of lanes gives the bits of the portable one, operation by operation.
 
-use enmm_lanes::{Kernel, LANES, Lanes, Pair, Path, SLOTS, Slot, Table, dispatch_on};
+use enmm_lanes::{First, Kernel, LANES, Lanes, Pair, Path, Places, SLOTS, Slot, Table, Values, dispatch_on};
 
 /// Numbers of all sizes and both signs, and a zero.
 fn numbers(seed: u64) -> [f64; LANES] {
@@ -44,35 +44,17 @@ impl Kernel for Everything {
         let mut stored = [Pair::zeros(); 6];
         lanes.store_some_pairs([z, w], &mut stored);
         let one = lanes.splat(1.0);
-        let list = [
-            a + b,
-            a - b,
-            a * b,
-            a / (b * b + one),
-            -a,
-            lanes.sqrt(a * a),
-            lanes.max(a, b),
-            x,
-            y,
-            z,
-            w,
-            part,
-            g,
-            h,
-            i,
-            j,
-            k,
-            l,
-        ];
+        let values =
+            [a + b, a - b, a * b, a / (b * b + one), -a, lanes.sqrt(a * a), x, y, z, w, part, g, h, i, j, k, l];
         let mut bits = Vec::new();
-        for value in list {
+        let masks = [(a, b), (b, a), (a, a), (x, w), (lanes.sqrt(-a), b)].map(|(a, b)| lanes.at_most(a, b));
+        bits.extend(masks.map(u64::from));
+        for value in values {
             let mut out = [0.0; LANES];
             lanes.store(value, &mut out);
             bits.extend(out.map(f64::to_bits));
             bits.extend([lanes.sum(value), lanes.greatest(value)].map(f64::to_bits));
         }
-        let masks = [(a, b), (b, a), (a, a), (x, w), (lanes.sqrt(-a), b)].map(|(a, b)| lanes.at_most(a, b));
-        bits.extend(masks.map(u64::from));
         let pairs = table.first(SLOTS).iter().chain(&stored);
         bits.extend(pairs.flat_map(|p| [p.x.to_bits(), p.y.to_bits()]));
         lanes.clear(&mut table, 13);
@@ -81,13 +63,57 @@ impl Kernel for Everything {
     }
 }
 
+/// What the first lane alone can do as well: the values of each operation, and a list that was written to.
+fn common<V: Values>(lanes: V, seed: u64) -> (Vec<[f64; LANES]>, Vec<Pair>) {
+    let (a, b) = (lanes.load(&numbers(seed)), lanes.load(&numbers(seed + 1)));
+    let mut list: Vec<Pair> = numbers(seed + 2).iter().map(|&x| Pair::new(x, -3.0 * x)).collect();
+    let [x, y] = lanes.gather_from(&list, &Places::new(&[5, 0, 4, 4, 7, 3, 1, 2]));
+    lanes.scatter_to([x, a], &mut list, &Places::new(&[6, 2, 6, 3, 2, 1, 0, 5]));
+    let one = lanes.splat(1.0);
+    let of_two = [a + b, a - b, a * b, a / (b * b + one), lanes.max(a, b), lanes.min(a, b)];
+    let values = of_two.into_iter().chain([-a, lanes.keep_above(a, b, x), x, y]).map(|value| {
+        let mut out = [0.0; LANES];
+        lanes.store(value, &mut out);
+        out
+    });
+    (values.collect(), list)
+}
+
+struct Common(u64);
+
+impl Kernel for Common {
+    type Output = (Vec<[f64; LANES]>, Vec<Pair>);
+
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        common(lanes, self.0)
+    }
+}
+
 #[test]
 fn all_paths_give_the_bits_of_the_portable_one() {
+    let bits = |(values, list): (Vec<[f64; LANES]>, Vec<Pair>)| -> Vec<u64> {
+        let pairs = list.iter().flat_map(|p| [p.x, p.y]);
+        values.into_iter().flatten().chain(pairs).map(f64::to_bits).collect()
+    };
     for seed in 0..200 {
         let expected = dispatch_on(Path::Portable, Everything(seed));
+        let common = bits(dispatch_on(Path::Portable, Common(seed)));
         for path in Path::all() {
             assert!(dispatch_on(path, Everything(seed)) == expected, "{} at {seed}", path.name());
+            assert!(bits(dispatch_on(path, Common(seed))) == common, "{} at {seed}", path.name());
         }
+    }
+}
+
+#[test]
+fn the_first_lane_alone_has_the_bits_of_the_first_of_eight() {
+    for seed in 0..200 {
+        let (all, list) = dispatch_on(Path::Portable, Common(seed));
+        let (first, first_list) = common(First, seed);
+        for (all, first) in all.iter().zip(&first) {
+            assert_eq!(all[0].to_bits(), first[0].to_bits(), "at {seed}");
+        }
+        assert_eq!(list[6], first_list[6], "at {seed}");
     }
 }
 
@@ -95,4 +121,17 @@ fn all_paths_give_the_bits_of_the_portable_one() {
 #[should_panic(expected = "slot 4096")]
 fn a_slot_outside_the_table_is_refused() {
     Slot::new(SLOTS);
+}
+
+#[test]
+#[should_panic(expected = "place 7 of 7")]
+fn a_place_outside_the_list_is_refused() {
+    struct Beyond;
+    impl Kernel for Beyond {
+        type Output = ();
+        fn run<L: Lanes>(self, lanes: L) {
+            lanes.gather_from(&[Pair::zeros(); 7], &Places::new(&[0, 1, 2, 3, 7, 5, 6, 4]));
+        }
+    }
+    dispatch_on(Path::all()[Path::all().len() - 1], Beyond);
 }

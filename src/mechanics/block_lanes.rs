@@ -6,7 +6,7 @@
 
 use std::ops::{AddAssign, Range};
 
-use enmm_lanes::{Eight, LANES, Lanes};
+use enmm_lanes::{Arithmetic, LANES, Lanes};
 
 use crate::geometry::{Point, Vector};
 
@@ -86,7 +86,7 @@ pub struct Span<'a> {
     pub inertial: &'a [f64],
 }
 
-/// Eight covers of a span.
+/// Arithmetic covers of a span.
 struct Chunk<F> {
     q: [F; 2],
     w: [F; 2],
@@ -99,7 +99,7 @@ fn splat<L: Lanes>(lanes: L, v: Vector) -> [L::F; 2] {
     [lanes.splat(v.x), lanes.splat(v.y)]
 }
 
-impl<F: Eight> Chunk<F> {
+impl<F: Arithmetic> Chunk<F> {
     #[inline(always)]
     fn new<L: Lanes<F = F>>(lanes: L, from: &Reference, [star, u, v]: [[F; 2]; 3], [mass, inertial]: [F; 2]) -> Self {
         let (at, with) = (splat(lanes, from.place), splat(lanes, from.velocity));
@@ -165,7 +165,7 @@ struct Tally<F> {
     pushed: [F; 5],
 }
 
-impl<F: Eight> Tally<F> {
+impl<F: Arithmetic> Tally<F> {
     #[inline(always)]
     fn new<L: Lanes<F = F>>(lanes: L) -> Self {
         Self { sums: [lanes.splat(0.0); 10], pushed: [lanes.splat(0.0); 5] }
@@ -256,7 +256,7 @@ struct Shared<F> {
     spin: F,
 }
 
-impl<F: Eight> Shared<F> {
+impl<F: Arithmetic> Shared<F> {
     /// What covers have of it.
     #[inline(always)]
     fn at(&self, chunk: &Chunk<F>) -> [F; 2] {
@@ -560,7 +560,7 @@ impl End<'_> {
 }
 
 #[inline(always)]
-fn add_works<F: Eight>(chunk: &Chunk<F>, mass: F, s: [F; 2], sums: &mut [F; 6]) {
+fn add_works<F: Arithmetic>(chunk: &Chunk<F>, mass: F, s: [F; 2], sums: &mut [F; 6]) {
     let Chunk { q, w, inertial, .. } = chunk;
     let ms = [mass * s[0], mass * s[1]];
     let terms =
