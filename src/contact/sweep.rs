@@ -1,5 +1,6 @@
 //! The open–close iteration: Gauss–Seidel sweeps over contacts and supports (Eqs. 14–17).
 
+mod abreast;
 mod body;
 mod order;
 mod part;
@@ -8,18 +9,15 @@ mod support;
 
 pub use body::BlockPush;
 
-use enmm_lanes::{Kernel, Lanes, dispatch};
-use rayon::prelude::*;
-
 use crate::geometry::{NONE, Vector};
 use crate::mechanics::Metric;
 
-use self::body::{Body, Ground};
-use self::order::SweepOrder;
+use self::body::{Body, Ground, Push};
+use self::order::{Sequence, SweepOrder};
 use self::part::{Part, Pass, Work};
-use self::row::{Row, Watch};
+use self::row::{Row, RowView};
 use self::support::Bearings;
-use super::{BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
+use super::{Admitted, BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
 
 /// Share of the largest force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
@@ -52,7 +50,8 @@ pub struct SweepReport {
     pub unsettled: f64,
 }
 
-/// What the rows of a step are made from.
+/// Masses as the iteration sees them.
+#[derive(Clone, Copy)]
 struct SweepView<'a> {
     /// Masses.
     metric: &'a Metric,
@@ -72,57 +71,29 @@ pub struct Others<'a> {
 #[derive(Debug, Clone, Default)]
 pub struct OpenClose {
     order: SweepOrder,
-    /// Contacts in the order in which they are judged, and the number of them up to the end of each part of the order.
-    sequence: Vec<u32>,
-    ends: Vec<u32>,
+    sequence: Sequence,
     rows: Vec<Row>,
-    watch: Vec<Watch>,
-    /// Turns of the rows that are judged in a sweep, part by part.
-    list: Vec<u32>,
     bearings: Bearings,
     bolts: Vec<[Body; 2]>,
     /// √m times the velocity increments of the covers by their own impulses.
     own: Vec<Vector>,
     /// Impulse sums of the blocks.
-    push: Vec<BlockPush>,
-    /// Turn in which each block moved last.
-    moved: Vec<u32>,
+    push: Vec<Push>,
     /// First block and first cover of each run of blocks.
     cuts: Vec<[u32; 2]>,
     /// 1/√m of the covers along each axis.
     roots: Vec<Vector>,
 }
 
-/// Rows of some contacts are made: compiled for every kind of lanes.
-struct Load<'a> {
-    rows: &'a mut [Row],
-    watch: &'a mut [Watch],
-    sequence: &'a [u32],
-    contacts: &'a [VertexEdge],
-    view: &'a SweepView<'a>,
-    options: &'a SweepOptions,
-}
-
-impl Kernel for Load<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
-        for ((row, watch), &k) in self.rows.iter_mut().zip(self.watch).zip(self.sequence) {
-            row.load(&self.contacts[k as usize], k, self.view, self.options);
-            *watch = row.watch(&self.contacts[k as usize].pair);
-        }
-    }
-}
-
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.watch.as_slice());
-        let turns = [&self.sequence, &self.ends, &self.list, &self.moved].map(|list| size_of_val(list.as_slice()));
+        let Sequence { abreast, ends, first_contact } = &self.sequence;
+        let sequence =
+            size_of_val(abreast.as_slice()) + size_of_val(ends.as_slice()) + size_of_val(first_contact.as_slice());
         let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
         let push = size_of_val(self.push.as_slice());
-        rows + turns.iter().sum::<usize>() + own + push + self.order.bytes() + self.bearings.bytes()
+        size_of_val(self.rows.as_slice()) + sequence + own + push + self.order.bytes() + self.bearings.bytes()
     }
 
     /// Forgets the order, and takes the masses of a stage.
@@ -138,21 +109,22 @@ impl OpenClose {
         self.order.clear();
     }
 
-    /// Orders the contacts of a step, and the near pairs when they are new.
+    /// Orders what is admitted in a step, and the near pairs when they are new, and numbers the contacts by it.
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
         candidates: &[Candidate],
         metric: &Metric,
         block_covers: &[u32],
-        contacts: &[VertexEdge],
+        admitted: &mut Admitted,
     ) {
+        let view = SweepView { metric, roots: &self.roots };
         if self.order.is_empty() {
-            self.order.order(boundary, candidates, metric);
+            self.order.order(boundary, candidates, &view);
             self.cuts.clear();
             self.cuts.extend(self.order.leaf_block().iter().map(|&block| [block, block_covers[block as usize]]));
         }
-        self.order.arrange(contacts, &mut self.sequence, &mut self.ends);
+        self.order.arrange(admitted, &view, &mut self.sequence);
     }
 
     /// Sweeps until forces settle, from those that are expected, over contacts that have been arranged.
@@ -163,73 +135,65 @@ impl OpenClose {
         contacts: &mut [VertexEdge],
         others: &mut Others,
     ) -> SweepReport {
-        self.load(metric, options, contacts, others);
-        self.part(contacts, options, Work::Warm);
+        self.begin(metric, options, others);
+        self.pass(metric, contacts, options, Work::Load);
         for (bolt, bodies) in others.bolts.iter().zip(&self.bolts) {
-            let mut ground = whole(&mut self.own, &mut self.push, &mut self.moved);
+            let mut ground = whole(&mut self.own, &mut self.push);
             push_bolt(bodies, bolt.direction * (-bolt.force * options.kick), &mut ground);
         }
-        let report = self.sweeps(options, contacts, others);
+        let report = self.sweeps(metric, options, contacts, others);
         self.finish(contacts, others);
         report
     }
 
-    /// Rows of all that is judged; nothing has moved.
-    fn load(&mut self, metric: &Metric, options: &SweepOptions, contacts: &[VertexEdge], others: &Others) {
+    /// Nothing has moved but by supports.
+    fn begin(&mut self, metric: &Metric, options: &SweepOptions, others: &Others) {
         let view = SweepView { metric, roots: &self.roots };
-        let count = self.sequence.len();
-        self.rows.resize(count, Row::default());
-        self.watch.resize(count, Watch::default());
-        self.list.resize(count, 0);
-        let load = |((rows, watch), sequence): ((&mut [Row], &mut [Watch]), &[u32])| {
-            dispatch(Load { rows, watch, sequence, contacts, view: &view, options });
-        };
-        if options.serial || count < part::GRAIN {
-            load(((&mut self.rows, &mut self.watch), &self.sequence));
-        } else {
-            let (rows, grain) = (&mut self.rows, part::GRAIN / 2);
-            let rows = rows.par_chunks_mut(grain).zip(self.watch.par_chunks_mut(grain));
-            rows.zip(self.sequence.par_chunks(grain)).for_each(load);
-        }
+        self.rows.resize(self.sequence.first_contact.len() - 1, Row::default());
         self.own.clear();
         self.own.resize(self.roots.len(), Vector::zeros());
         self.push.clear();
-        self.push.resize(metric.total.len(), BlockPush::default());
-        self.moved.clear();
-        self.moved.resize(metric.total.len(), 0);
+        self.push.resize(metric.total.len(), Push::default());
         self.bolts.clear();
         self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Body::new(&b.pair, k, &view))));
         self.bearings.load(others.rows, options.kick, &mut self.own);
     }
 
     /// One pass over the rows, part by part.
-    fn part(&mut self, contacts: &[VertexEdge], options: &SweepOptions, work: Work) -> part::Swept {
-        let pass = Pass { contacts, kick: options.kick, tolerance: options.tolerance, serial: options.serial, work };
+    fn pass(&mut self, metric: &Metric, contacts: &[VertexEdge], options: &SweepOptions, work: Work) -> part::Swept {
+        let from = RowView { contacts, view: SweepView { metric, roots: &self.roots }, options };
         Part {
+            abreast: &mut self.sequence.abreast,
             rows: &mut self.rows,
-            watch: &mut self.watch,
-            list: &mut self.list,
-            first_row: 0,
-            ends: &self.ends,
+            first: [0; 2],
+            ends: &self.sequence.ends,
             cuts: &self.cuts,
-            ground: whole(&mut self.own, &mut self.push, &mut self.moved),
+            ground: whole(&mut self.own, &mut self.push),
         }
-        .run(&pass)
+        .run(&Pass { from, first_contact: &self.sequence.first_contact, work })
     }
 
     /// Sweeps over all contacts until they settle; between two such sweeps only those are judged that have something to
     /// answer, until none has.
-    fn sweeps(&mut self, options: &SweepOptions, contacts: &[VertexEdge], others: &mut Others) -> SweepReport {
+    fn sweeps(
+        &mut self,
+        metric: &Metric,
+        options: &SweepOptions,
+        contacts: &[VertexEdge],
+        others: &mut Others,
+    ) -> SweepReport {
         let mut report = SweepReport::default();
         let mut all = true;
         let any = !(self.rows.is_empty() && self.bearings.is_empty() && self.bolts.is_empty());
         while any && report.sweeps < options.sweeps_max {
             all |= report.sweeps + 1 == options.sweeps_max;
-            let largest = row::largest(&self.watch);
-            let turn = report.sweeps * (self.rows.len() as u32 + 1) + 1;
-            let swept = self.part(contacts, options, Work::Sweep { all, floor: LIGHT * largest, turn });
+            let manifolds = self.sequence.abreast.iter();
+            let largest = manifolds.map(|abreast| abreast.force).fold(f64::MIN_POSITIVE, f64::max);
+            let turns = part::ROUNDS * self.sequence.abreast.len() as u32;
+            let turn = report.sweeps * (turns + 1) + 1;
+            let swept = self.pass(metric, contacts, options, Work::Sweep { all, floor: LIGHT * largest, turn });
             let support_change = self.bearings.sweep(&mut self.own);
-            let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + self.rows.len() as u32);
+            let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
             let change = swept.change.max(support_change).max(bolt_change);
             report.sweeps += 1;
             report.judged += swept.judged;
@@ -251,15 +215,15 @@ impl OpenClose {
         let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
         let floor = floor.max(LIGHT * largest);
         let mut change = 0.0f64;
-        let mut ground = whole(&mut self.own, &mut self.push, &mut self.moved);
+        let mut ground = whole(&mut self.own, &mut self.push);
         for (bolt, bodies) in bolts.iter_mut().zip(&self.bolts) {
-            let [a, b] = [0, 1].map(|k| bodies[k].velocity(&bodies[k].places(&ground), &ground));
+            let [a, b] = [0, 1].map(|k| bodies[k].velocity(&ground));
             let force = bolt.answer(bolt.approach + (a - b).dot(&bolt.direction), dt, kick, theta);
             let step = force - bolt.force;
             if step != 0.0 {
                 push_bolt(bodies, bolt.direction * (-step * kick), &mut ground);
-                for block in bodies.iter().map(Body::block).filter(|&block| block != NONE) {
-                    ground.mark([block; 2], turn);
+                for block in bodies.iter().map(|body| body.block).filter(|&block| block != NONE) {
+                    ground.mark(block, turn);
                 }
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
@@ -280,18 +244,19 @@ impl OpenClose {
             *increment = own.component_mul(root);
         }
         for ((push, sums), total) in push.iter_mut().zip(&self.push).zip(&metric.total) {
-            *push = BlockPush { weighted: sums.weighted * *total, ..*sums };
+            let [impulse, weighted, moment] = *sums;
+            *push = BlockPush { impulse, weighted: weighted * *total, moment: moment.x };
         }
     }
 }
 
 fn push_bolt(bodies: &[Body; 2], impulse: Vector, ground: &mut Ground) {
     for (body, impulse) in bodies.iter().zip([impulse, -impulse]) {
-        body.push(impulse, &body.places(ground), ground);
+        body.push(impulse, ground);
     }
 }
 
 /// All blocks.
-fn whole<'a>(own: &'a mut [Vector], push: &'a mut [BlockPush], moved: &'a mut [u32]) -> Ground<'a> {
-    Ground { own, first_cover: 0, push, moved, first_block: 0 }
+fn whole<'a>(own: &'a mut [Vector], push: &'a mut [Push]) -> Ground<'a> {
+    Ground { own, first_cover: 0, push, first_block: 0 }
 }

@@ -21,6 +21,15 @@ pub(super) const REACH: f64 = 0.005;
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
 
+/// How the contacts of a step are numbered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ContactOrder {
+    /// By nodes and sides.
+    Nodes,
+    /// As the open–close iteration judges them.
+    Judged,
+}
+
 impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
     pub(super) fn locate(&mut self) {
@@ -71,13 +80,13 @@ impl Step<'_> {
     }
 
     /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
-    pub(super) fn touch(&mut self, dt: f64) {
-        self.entrance(self.reach(dt), self.state.dt_last, Some(dt));
+    pub(super) fn touch(&mut self, dt: f64, order: ContactOrder) {
+        self.entrance(self.reach(dt), self.state.dt_last, Some(dt), order);
     }
 
     /// Contacts nearer than `reach` (m), in an explicit step of `dt` (s) with how they answer; covers have moved for
     /// `dt_last` (s) with the velocities of the state.
-    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>) {
+    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>, order: ContactOrder) {
         let clock = Instant::now();
         let damping = match self.regime {
             Regime::Dynamic { damping } => Some(damping),
@@ -112,8 +121,16 @@ impl Step<'_> {
             in_situ: slope.in_situ.as_ref(),
             serial: scratch.serial,
         };
-        let candidates = &state.near.candidates;
-        contact::entrance_edges(&narrow, candidates, &mut scratch.admitted, &mut scratch.contacts);
+        let (candidates, admitted) = (&state.near.candidates, &mut scratch.admitted);
+        contact::admit(&narrow, candidates, admitted);
+        match order {
+            ContactOrder::Nodes => admitted.number(),
+            ContactOrder::Judged => {
+                let (boundary, block_covers) = (&slope.boundary, &slope.covers.block_covers);
+                scratch.open_close.arrange(boundary, candidates, &scratch.metric, block_covers, admitted);
+            }
+        }
+        contact::make_contacts(&narrow, admitted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -149,7 +166,6 @@ impl Step<'_> {
         let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        open_close.arrange(&slope.boundary, &self.state.near.candidates, metric, &slope.covers.block_covers, contacts);
         let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();

@@ -1,18 +1,22 @@
 //! Geometry, law, stiffness and history of an admitted contact.
 
-use enmm_lanes::{Kernel, Lanes, dispatch};
+use enmm_lanes::{Kernel, Lanes, dispatch, prefetch};
 use rayon::prelude::*;
 
 use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::{Approach, GRAIN, Narrow, Pick, right_of};
+use super::{Admitted, Approach, GRAIN, Narrow, Pick, right_of};
+
+/// Turns by which histories are asked for before they are read.
+const AHEAD: usize = 6;
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
     narrow: &'a Narrow<'a>,
     picks: &'a [Pick],
+    pick_of: &'a [u32],
     contacts: &'a mut [VertexEdge],
 }
 
@@ -21,29 +25,40 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
-            *contact = self.narrow.contact(pick);
-            if let Some(approach) = &self.narrow.approach {
+        let Self { narrow, picks, pick_of, contacts } = self;
+        for (k, contact) in contacts.iter_mut().enumerate() {
+            narrow.fetch(picks, &pick_of[k..]);
+            *contact = narrow.contact(&picks[pick_of[k] as usize]);
+            if let Some(approach) = &narrow.approach {
                 contact.approach = contact.relative(approach.predicted);
-                self.narrow.centre(contact, approach);
+                narrow.centre(contact, approach);
             }
         }
     }
 }
 
+/// Makes the contacts of all that is admitted, in the order of their numbers.
+pub fn make_contacts(narrow: &Narrow, admitted: &Admitted, contacts: &mut Vec<VertexEdge>) {
+    let Admitted { picks, pick_of, .. } = admitted;
+    contacts.resize(picks.len(), VertexEdge::default());
+    if narrow.serial || picks.len() <= GRAIN {
+        return dispatch(Make { narrow, picks, pick_of, contacts });
+    }
+    let parts = contacts.par_chunks_mut(GRAIN).zip(pick_of.par_chunks(GRAIN));
+    parts.for_each(|(contacts, pick_of)| dispatch(Make { narrow, picks, pick_of, contacts }));
+}
+
 impl Narrow<'_> {
-    /// Makes the contacts of some picks in place, from the contact `made` on; returns where they end.
-    pub(super) fn make(&self, picks: &[Pick], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
-        let end = made + picks.len();
-        contacts.resize(contacts.len().max(end), VertexEdge::default());
-        let contacts = &mut contacts[made..end];
-        if self.serial || picks.len() <= GRAIN {
-            dispatch(Make { narrow: self, picks, contacts });
-        } else {
-            let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
-            parts.for_each(|(contacts, picks)| dispatch(Make { narrow: self, picks, contacts }));
+    /// Asks for what contacts a few turns ahead will read: their picks, and the histories of those that are nearer.
+    #[inline(always)]
+    fn fetch(&self, picks: &[Pick], pick_of: &[u32]) {
+        let ahead = |turns: usize| pick_of.get(turns).map(|&pick| &picks[pick as usize]);
+        if let Some(pick) = ahead(2 * AHEAD) {
+            prefetch(std::slice::from_ref(pick));
         }
-        end
+        if let Some(held) = ahead(AHEAD).and_then(|pick| pick.held) {
+            prefetch(&self.history[held as usize..held as usize + 1]);
+        }
     }
 
     #[inline(always)]

@@ -12,13 +12,14 @@ use crate::mechanics::{BlockMotion, Metric, StressField};
 
 use frame::{EdgeFrame, Over};
 
-use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
+use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw};
 
+pub use contact::make_contacts;
 pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
 const RUN: usize = 4096;
-/// Runs that are judged before their contacts are made.
+/// Runs that are judged before they are put together.
 const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
@@ -149,38 +150,72 @@ struct Pick {
     admitted: bool,
 }
 
-/// What the vertex rule admits in one step: buffers of [`entrance_edges`].
+/// What the vertex rule admits in one step, and the contacts that are made of it.
 #[derive(Debug, Clone, Default)]
 pub struct Admitted {
     runs: Vec<Vec<Pick>>,
+    /// Ordered by node and side.
     picks: Vec<Pick>,
+    /// The pick of each contact, and the contact of each pick.
+    pick_of: Vec<u32>,
+    contact_of: Vec<u32>,
 }
 
 impl Admitted {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
         let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
-        of_runs + size_of_val(self.picks.as_slice())
+        let numbers = size_of_val(self.pick_of.as_slice()) + size_of_val(self.contact_of.as_slice());
+        of_runs + size_of_val(self.picks.as_slice()) + numbers
+    }
+
+    /// Nodes and sides of what is admitted, sorted.
+    pub fn nodes_and_sides(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
+        self.picks.iter().map(|pick| [pick.node, pick.side])
+    }
+
+    /// The contact of each pick.
+    pub fn contact_of(&self) -> &[u32] {
+        &self.contact_of
+    }
+
+    /// Numbers the contacts as the picks.
+    pub fn number(&mut self) {
+        self.pick_of.clear();
+        self.pick_of.extend(0..self.picks.len() as u32);
+        self.contact_of.clone_from(&self.pick_of);
+    }
+
+    /// Numbers the contacts otherwise: each pick gets another number below their count.
+    pub fn renumber(&mut self, contacts: impl Iterator<Item = u32>) {
+        self.contact_of.clear();
+        self.contact_of.extend(contacts);
+        self.pick_of.resize(self.picks.len(), 0);
+        for (&contact, pick) in self.contact_of.iter().zip(0..) {
+            self.pick_of[contact as usize] = pick;
+        }
     }
 }
 
-/// Judges every candidate and fills the contacts that take part in this step, ordered by node and side.
-pub fn entrance_edges(
-    narrow: &Narrow,
-    candidates: &[Candidate],
-    admitted: &mut Admitted,
-    contacts: &mut Vec<VertexEdge>,
-) {
-    let mut made = 0;
-    // In pieces: what is admitted of all candidates together would be as large as the contacts.
-    let runs = if narrow.serial { 1 } else { RUNS };
+/// Judges every candidate: what is admitted takes part in this step.
+pub fn admit(narrow: &Narrow, candidates: &[Candidate], admitted: &mut Admitted) {
+    let Admitted { runs, picks, .. } = admitted;
+    picks.clear();
+    if narrow.serial || candidates.len() <= RUN {
+        return narrow.judge(candidates, picks);
+    }
+    // In pieces, so that what is admitted is not there twice.
     let mut rest = candidates;
     while !rest.is_empty() {
-        let (piece, others) = rest.split_at(first_of_run(rest, runs));
-        made = narrow.enter(piece, admitted, contacts, made);
+        let (piece, others) = rest.split_at(first_of_run(rest, RUNS));
+        runs.resize_with(piece.len().div_ceil(RUN), Vec::new);
+        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
+            run.clear();
+            narrow.judge(&piece[first_of_run(piece, k)..first_of_run(piece, k + 1)], run);
+        });
+        runs.iter().for_each(|run| picks.extend_from_slice(run));
         rest = others;
     }
-    contacts.truncate(made);
 }
 
 /// Where run `k` begins: at a multiple of its length, moved on to the next node.
@@ -193,29 +228,6 @@ fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
 }
 
 impl Narrow<'_> {
-    /// Judges some candidates and makes their contacts, from the contact `made` on; returns where they end.
-    fn enter(
-        &self,
-        candidates: &[Candidate],
-        admitted: &mut Admitted,
-        contacts: &mut Vec<VertexEdge>,
-        made: usize,
-    ) -> usize {
-        let Admitted { runs, picks } = admitted;
-        picks.clear();
-        if self.serial || candidates.len() <= RUN {
-            self.judge(candidates, picks);
-            return self.make(picks, contacts, made);
-        }
-        runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
-        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            run.clear();
-            self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
-        });
-        runs.iter().for_each(|run| picks.extend_from_slice(run));
-        self.make(picks, contacts, made)
-    }
-
     /// Appends the picks that the vertex rule admits of some candidates.
     fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<Pick>) {
         let mut picks = [Pick::default(); SIDES_MAX + 1];

@@ -1,37 +1,45 @@
 //! The order in which contacts are judged: a function of the near pairs, hence of the state, never of the threads.
 //!
-//! Blocks are cut into runs of like work, which are the leaves of a binary tree. What lies within a run is judged
-//! before what lies between two runs, so that both halves of any part of the tree can be swept at once. Within a part
-//! pairs of blocks come by colour: no two of a colour share a free block, and a few of them are judged abreast, so that
-//! a contact seldom waits for the one before it.
+//! All contacts of two blocks are a manifold. Blocks are cut into runs of like work, which are the leaves of a binary
+//! tree. What lies within a run is judged before what lies between two runs, so that both halves of any part of the
+//! tree can be swept at once. Within a part manifolds come by colour: no two of a colour share a free block, or a cover
+//! of a held one, so that eight of them are judged abreast.
 
-use crate::contact::{Boundary, Candidate, VertexEdge};
-use crate::geometry::NONE;
-use crate::mechanics::Metric;
+use std::cmp::Reverse;
+
+use enmm_lanes::LANES;
+
+use crate::contact::{Admitted, Boundary, Candidate};
+
+use super::SweepView;
+use super::abreast::Abreast;
 
 /// Near pairs of nodes and sides above which a run of blocks is cut.
-const LEAF: usize = 1024;
+const LEAF: usize = 4096;
 /// Most runs of blocks.
 const LEAVES_MAX: usize = 4096;
-/// Pairs of blocks of one colour that are judged abreast.
-const ABREAST: usize = 4;
+/// The last colour: its manifolds may share what they push, and are judged one by one.
+const SHARED: u32 = u64::BITS - 1;
 
-/// Where every near pair of a node and a side has its turn.
+/// In what manifold every near pair of a node and a side is.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOrder {
-    /// Near nodes and sides, sorted.
+    /// Near nodes and sides, sorted, the first candidate of each, and its manifold.
     keys: Vec<u64>,
-    /// Turn of each.
-    turn: Vec<u32>,
-    /// Turn after the last one of each part of the tree, parts in the order in which they are swept.
-    part_end: Vec<u32>,
+    first_candidate: Vec<u32>,
+    manifold: Vec<u32>,
+    /// Manifolds in the order in which they are judged.
+    manifolds: Vec<Manifold>,
     /// First block of each run of blocks, and the number of blocks.
     leaf_block: Vec<u32>,
     entries: Vec<Entry>,
-    manifolds: Vec<Manifold>,
     leaf: Vec<u32>,
-    colours: Vec<u64>,
-    taken: Vec<u32>,
+    colours: Colours,
+    /// Of a step: the manifold of each pick, and the number of contacts of each manifold, then the place of its next.
+    of_pick: Vec<u32>,
+    count: Vec<u32>,
+    /// Manifolds of a colour that have contacts.
+    touching: Vec<u32>,
 }
 
 /// A near node and side, by the blocks that they belong to.
@@ -42,32 +50,57 @@ struct Entry {
     key: u32,
 }
 
-/// All near nodes and sides of two blocks: a range of the entries.
+/// All near nodes and sides of two blocks, a free one first when there is one: a range of the entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Manifold {
     part: u32,
     colour: u32,
-    held: bool,
     first: u32,
     end: u32,
+    blocks: [u32; 2],
+}
+
+/// Colours that free blocks and covers of held ones have got in a part, a bit each.
+#[derive(Debug, Clone, Default)]
+struct Colours {
+    of_block: Vec<u64>,
+    of_cover: Vec<u64>,
+    /// Covers of held blocks of the manifold in hand, and all that have a colour.
+    covers: Vec<u32>,
+    seen: Vec<u32>,
+}
+
+/// Manifolds of a step in the order in which they are judged.
+#[derive(Debug, Clone, Default)]
+pub struct Sequence {
+    /// Eight abreast.
+    pub abreast: Vec<Abreast>,
+    /// The number of them up to the end of each part.
+    pub ends: Vec<u32>,
+    /// First contact of each row, and the number of contacts. A row has as many as there are manifolds with so many
+    /// contacts, in the first lanes.
+    pub first_contact: Vec<u32>,
 }
 
 impl SweepOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.turn.as_slice());
-        let making = size_of_val(self.entries.as_slice()) + size_of_val(self.manifolds.as_slice());
-        order + making + size_of_val(self.colours.as_slice())
+        let Self { first_candidate, manifold, leaf, of_pick, count, touching, .. } = self;
+        let lists = [first_candidate, manifold, leaf, of_pick, count, touching, &self.leaf_block];
+        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.manifolds.as_slice());
+        let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
+        let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
+        order + lists + colours + size_of_val(self.entries.as_slice())
     }
 
     /// Whether it has to be made.
     pub fn is_empty(&self) -> bool {
-        self.part_end.is_empty()
+        self.leaf_block.is_empty()
     }
 
     /// Makes the next step order anew.
     pub fn clear(&mut self) {
-        self.part_end.clear();
+        self.leaf_block.clear();
     }
 
     /// First block of each run of blocks, and the number of blocks at the end.
@@ -76,27 +109,38 @@ impl SweepOrder {
     }
 
     /// Orders near pairs, sorted by node and side.
-    pub fn order(&mut self, boundary: &Boundary, candidates: &[Candidate], metric: &Metric) {
+    pub fn order(&mut self, boundary: &Boundary, candidates: &[Candidate], view: &SweepView) {
         self.keys.clear();
+        self.first_candidate.clear();
         self.entries.clear();
+        let mut first = 0;
         for run in candidates.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
             let point = boundary.node_point[run[0].node as usize] as usize;
             let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
+            self.first_candidate.push(first);
             self.entries.push(Entry { part: 0, blocks: [own.min(other), own.max(other)], key });
+            first += run.len() as u32;
         }
-        self.cut(metric);
+        self.first_candidate.push(first);
+        self.cut(view);
         for entry in &mut self.entries {
             entry.part = part_of(entry.blocks.map(|b| self.leaf[b as usize]));
         }
         self.entries.sort_unstable();
-        self.colour(metric);
-        self.take_turns();
+        self.colour(boundary, candidates, view);
+        self.manifold.resize(self.keys.len(), 0);
+        for (index, manifold) in (0u32..).zip(&self.manifolds) {
+            for entry in &self.entries[manifold.first as usize..manifold.end as usize] {
+                self.manifold[entry.key as usize] = index;
+            }
+        }
     }
 
     /// Cuts the blocks into runs of like work.
-    fn cut(&mut self, metric: &Metric) {
+    fn cut(&mut self, view: &SweepView) {
+        let metric = view.metric;
         let blocks = metric.total.len();
         self.leaf.clear();
         self.leaf.resize(blocks, 0);
@@ -117,77 +161,125 @@ impl SweepOrder {
         self.leaf_block.resize(leaves + 1, blocks as u32);
     }
 
-    /// Gives every pair of blocks the first colour that no earlier pair of its part has given to one of its blocks.
-    fn colour(&mut self, metric: &Metric) {
+    /// Gives every manifold the first colour that no earlier one of its part has given to what they both push.
+    fn colour(&mut self, boundary: &Boundary, candidates: &[Candidate], view: &SweepView) {
         self.manifolds.clear();
-        self.colours.clear();
-        self.colours.resize(metric.total.len(), 0);
+        self.colours.begin(view);
         let (mut first, mut part_first) = (0, 0);
         for run in self.entries.chunk_by(|a, b| (a.part, a.blocks) == (b.part, b.blocks)) {
-            let (part, blocks) = (run[0].part, run[0].blocks.map(|b| b as usize));
+            let part = run[0].part;
             if self.manifolds.last().is_some_and(|m| m.part != part) {
-                let old = &self.entries[part_first as usize..first as usize];
-                old.iter().flat_map(|e| e.blocks).for_each(|b| self.colours[b as usize] = 0);
+                self.colours.forget(&self.entries[part_first as usize..first as usize]);
                 part_first = first;
             }
-            let free = blocks.map(|b| metric.is_free(b));
-            let used: u64 = (0..2).filter(|&k| free[k]).map(|k| self.colours[blocks[k]]).fold(0, |a, b| a | b);
-            let colour = (!used).trailing_zeros().min(u64::BITS - 1);
-            (0..2).filter(|&k| free[k]).for_each(|k| self.colours[blocks[k]] |= 1 << colour);
+            let [a, b] = run[0].blocks;
+            let blocks = if view.metric.is_free(a as usize) { [a, b] } else { [b, a] };
+            self.colours.covers.clear();
+            for entry in run {
+                let range = [0, 1].map(|k| self.first_candidate[entry.key as usize + k] as usize);
+                self.colours.meet(boundary, &candidates[range[0]..range[1]], view);
+            }
+            let colour = self.colours.give(blocks, view);
             let end = first + run.len() as u32;
-            self.manifolds.push(Manifold { part, colour, held: free != [true; 2], first, end });
+            self.manifolds.push(Manifold { part, colour, first, end, blocks });
             first = end;
         }
         self.manifolds.sort_unstable();
     }
 
-    /// Counts turns through parts and colours, a few manifolds abreast.
-    fn take_turns(&mut self) {
-        self.turn.clear();
-        self.turn.resize(self.keys.len(), 0);
-        self.part_end.clear();
-        let mut turn = 0;
-        for class in self.manifolds.chunk_by(|a, b| (a.part, a.colour, a.held) == (b.part, b.colour, b.held)) {
-            self.part_end.resize(class[0].part as usize, turn);
-            for abreast in class.chunks(ABREAST) {
-                let longest = abreast.iter().map(|m| m.end - m.first).max().unwrap_or(0);
-                for k in 0..longest {
-                    for entry in abreast.iter().map(|m| m.first + k).zip(abreast).filter(|(e, m)| *e < m.end) {
-                        self.turn[self.entries[entry.0 as usize].key as usize] = turn;
-                        turn += 1;
-                    }
+    /// Puts the manifolds of a step in the order in which they are judged, and numbers the contacts by it.
+    pub fn arrange(&mut self, admitted: &mut Admitted, view: &SweepView, sequence: &mut Sequence) {
+        self.count_contacts(admitted);
+        let Sequence { abreast, ends, first_contact } = sequence;
+        abreast.clear();
+        ends.clear();
+        first_contact.clear();
+        let (mut first, mut contacts) = (0, 0);
+        for class in self.manifolds.chunk_by(|a, b| (a.part, a.colour) == (b.part, b.colour)) {
+            ends.resize(class[0].part as usize, abreast.len() as u32);
+            let all = first..first + class.len() as u32;
+            first = all.end;
+            self.touching.clear();
+            self.touching.extend(all.filter(|&m| self.count[m as usize] > 0));
+            self.touching.sort_unstable_by_key(|&m| (Reverse(self.count[m as usize]), m));
+            for some in self.touching.chunks(if class[0].colour == SHARED { 1 } else { LANES }) {
+                let first_row = first_contact.len() as u32;
+                let counts = some.iter().map(|&m| self.count[m as usize]);
+                for row in 0..self.count[some[0] as usize] {
+                    first_contact.push(contacts);
+                    contacts += counts.clone().filter(|&count| count > row).count() as u32;
+                }
+                let manifolds = some.iter().map(|&m| (self.manifolds[m as usize].blocks, self.count[m as usize]));
+                abreast.push(Abreast::new(first_row, manifolds, view));
+                for (&m, lane) in some.iter().zip(0..) {
+                    self.count[m as usize] = first_row * LANES as u32 + lane;
                 }
             }
         }
-        let leaves = self.leaf_block.len() - 1;
-        self.part_end.resize(2 * leaves - 1, turn);
+        ends.resize(2 * (self.leaf_block.len() - 1) - 1, abreast.len() as u32);
+        first_contact.push(contacts);
+        let (of_pick, next) = (&self.of_pick, &mut self.count);
+        admitted.renumber(of_pick.iter().map(|&m| {
+            let place = next[m as usize];
+            next[m as usize] += LANES as u32;
+            first_contact[(place / LANES as u32) as usize] + place % LANES as u32
+        }));
     }
 
-    /// The contacts of a step in the order of their turns, and the number of them up to the end of each part.
-    pub fn arrange(&mut self, contacts: &[VertexEdge], sequence: &mut Vec<u32>, ends: &mut Vec<u32>) {
-        self.taken.clear();
-        self.taken.resize(self.turn.len(), NONE);
+    /// Finds the manifold of each pick, and the number of contacts of each manifold.
+    fn count_contacts(&mut self, admitted: &Admitted) {
+        self.count.clear();
+        self.count.resize(self.manifolds.len(), 0);
+        self.of_pick.clear();
         let mut k = 0;
-        for (index, contact) in contacts.iter().enumerate() {
-            let key = key_of(contact.history.node, contact.history.side);
+        for [node, side] in admitted.nodes_and_sides() {
+            let key = key_of(node, side);
             while self.keys[k] < key {
                 k += 1;
             }
-            self.taken[self.turn[k] as usize] = index as u32;
+            self.of_pick.push(self.manifold[k]);
+            self.count[self.manifold[k] as usize] += 1;
         }
-        // Which turns are taken is hard to foresee: no branch depends on it.
-        sequence.resize(contacts.len() + 1, NONE);
-        ends.clear();
-        let (mut from, mut count) = (0, 0);
-        for &end in &self.part_end {
-            for &index in &self.taken[from as usize..end as usize] {
-                sequence[count] = index;
-                count += usize::from(index != NONE);
+    }
+}
+
+impl Colours {
+    /// No colours yet.
+    fn begin(&mut self, view: &SweepView) {
+        self.seen.clear();
+        self.of_block.clear();
+        self.of_block.resize(view.metric.total.len(), 0);
+        self.of_cover.clear();
+        self.of_cover.resize(view.roots.len(), 0);
+    }
+
+    /// Another part begins after some entries.
+    fn forget(&mut self, entries: &[Entry]) {
+        entries.iter().flat_map(|entry| entry.blocks).for_each(|block| self.of_block[block as usize] = 0);
+        self.seen.drain(..).for_each(|cover| self.of_cover[cover as usize] = 0);
+    }
+
+    /// Covers of held blocks that a node and the near edges of a side may push.
+    fn meet(&mut self, boundary: &Boundary, edges: &[Candidate], view: &SweepView) {
+        let points = edges.iter().map(|c| c.edge).chain([boundary.node_point[edges[0].node as usize]]);
+        for point in points.map(|point| point as usize) {
+            if !view.metric.is_free(boundary.block[point] as usize) {
+                self.covers.extend(boundary.covers[point]);
             }
-            ends.push(count as u32);
-            from = end;
         }
-        sequence.truncate(count);
+    }
+
+    /// The first colour that a manifold in hand may have.
+    fn give(&mut self, blocks: [u32; 2], view: &SweepView) -> u32 {
+        let free = blocks.map(|block| view.metric.is_free(block as usize));
+        let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k] as usize]);
+        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover as usize]);
+        let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);
+        let colour = (!used).trailing_zeros().min(SHARED);
+        (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k] as usize] |= 1 << colour);
+        self.covers.iter().for_each(|&cover| self.of_cover[cover as usize] |= 1 << colour);
+        self.seen.extend_from_slice(&self.covers);
+        colour
     }
 }
 

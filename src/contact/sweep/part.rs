@@ -1,34 +1,32 @@
 //! A part of the order: its halves, which share no block and may be swept at once, and then what lies between them.
 
-use enmm_lanes::{Kernel, Lanes, dispatch};
+use enmm_lanes::{Kernel, LANES, Lanes, dispatch};
 
-use crate::contact::VertexEdge;
-
+use super::abreast::{Abreast, Measure};
 use super::body::Ground;
-use super::row::{Row, Watch, larger};
+use super::row::{Row, RowView};
 
-/// Rows below which both halves of a part stay in one thread.
-pub const GRAIN: usize = 2048;
+/// Rounds of a sweep over what belongs to one part, while its rows are in the cache.
+pub const ROUNDS: u32 = 2;
 
-/// Change of a force, over what counts as settled, from which its bodies have moved.
-const MOVES: f64 = 0.3;
+/// Contacts below which both halves of a part stay in one thread.
+const GRAIN: usize = 2048;
 
-/// What is done with the rows.
+/// What is done with the manifolds.
 #[derive(Debug, Clone, Copy)]
 pub enum Work {
-    /// The forces so far push.
-    Warm,
-    /// Rows are judged: `all`, or those with a body that has moved since. Changes are measured against `floor` (N/m) at
-    /// least; `turn` is that of the first row.
+    /// Rows are made, and push with the forces that are expected.
+    Load,
+    /// Contacts are judged, in the first round `all` or those with a body that has moved since. Changes are measured
+    /// against `floor` (N/m) at least; `turn` is the first one.
     Sweep { all: bool, floor: f64, turn: u32 },
 }
 
 /// What all parts share.
 pub struct Pass<'a> {
-    pub contacts: &'a [VertexEdge],
-    pub kick: f64,
-    pub tolerance: f64,
-    pub serial: bool,
+    pub from: RowView<'a>,
+    /// First contact of each row, and the number of contacts.
+    pub first_contact: &'a [u32],
     pub work: Work,
 }
 
@@ -43,25 +41,24 @@ pub struct Swept {
 
 impl Swept {
     fn and(self, other: Self) -> Self {
-        Self { change: larger(self.change, other.change), judged: self.judged + other.judged }
+        Self { change: self.change.max(other.change), judged: self.judged + other.judged }
     }
 }
 
-/// Rows of a part, and the blocks that they push.
+/// Manifolds of a part, and the blocks that they push.
 pub struct Part<'a> {
+    pub abreast: &'a mut [Abreast],
     pub rows: &'a mut [Row],
-    pub watch: &'a mut [Watch],
-    pub list: &'a mut [u32],
-    /// Turn of the first row.
-    pub first_row: u32,
-    /// Turns at which the parts within this one end; itself is the last.
+    /// First manifolds and first row.
+    pub first: [u32; 2],
+    /// Where the parts within this one end; itself is the last.
     pub ends: &'a [u32],
     /// First block and cover of each run of blocks, and their ends.
     pub cuts: &'a [[u32; 2]],
     pub ground: Ground<'a>,
 }
 
-/// Work on the rows of a part from `from` on, which belong to no half: compiled for every kind of lanes.
+/// Work on the manifolds of a part from `from` on, which belong to no half: compiled for every kind of lanes.
 struct Own<'p, 'a, 'v> {
     part: &'p mut Part<'a>,
     from: usize,
@@ -72,8 +69,8 @@ impl Kernel for Own<'_, '_, '_> {
     type Output = Swept;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) -> Swept {
-        self.part.own(self.from, self.pass)
+    fn run<L: Lanes>(self, lanes: L) -> Swept {
+        self.part.own(lanes, self.from, self.pass)
     }
 }
 
@@ -83,9 +80,10 @@ impl Part<'_> {
         if self.ends.len() < 2 {
             return dispatch(Own { part: self, from: 0, pass });
         }
-        let between = (self.ends[self.ends.len() - 2] - self.first_row) as usize;
+        let between = (self.ends[self.ends.len() - 2] - self.first[0]) as usize;
+        let small = self.rows.len() * LANES < GRAIN;
         let (mut first, mut second) = self.halves();
-        let (a, b) = if pass.serial || between < GRAIN {
+        let (a, b) = if pass.from.options.serial || small {
             (first.run(pass), second.run(pass))
         } else {
             rayon::join(|| first.run(pass), || second.run(pass))
@@ -95,80 +93,69 @@ impl Part<'_> {
 
     fn halves(&mut self) -> (Part<'_>, Part<'_>) {
         let (half, whole) = (self.ends.len() / 2, self.ends.len() - 1);
-        let [count, between] = [half - 1, whole - 1].map(|k| (self.ends[k] - self.first_row) as usize);
+        let [count, between] = [half - 1, whole - 1].map(|k| (self.ends[k] - self.first[0]) as usize);
+        let row = |abreast: &[Abreast], k: usize| match abreast.get(k) {
+            Some(abreast) => (abreast.first_row - self.first[1]) as usize,
+            None => self.rows.len(),
+        };
+        let [row_count, row_between] = [row(self.abreast, count), row(self.abreast, between)];
         let middle = self.cuts.len() / 2;
         let [block, cover] = self.cuts[middle];
-        let (rows, rows_rest) = self.rows[..between].split_at_mut(count);
-        let (watch, watch_rest) = self.watch[..between].split_at_mut(count);
-        let (list, list_rest) = self.list[..between].split_at_mut(count);
+        let (abreast, abreast_rest) = self.abreast[..between].split_at_mut(count);
+        let (rows, rows_rest) = self.rows[..row_between].split_at_mut(row_count);
         let (ground, ground_rest) = self.ground.split(block, cover);
-        let first = Part {
-            rows,
-            watch,
-            list,
-            ground,
-            first_row: self.first_row,
-            ends: &self.ends[..half],
-            cuts: &self.cuts[..=middle],
-        };
+        let first =
+            Part { abreast, rows, first: self.first, ends: &self.ends[..half], cuts: &self.cuts[..=middle], ground };
         let second = Part {
+            abreast: abreast_rest,
             rows: rows_rest,
-            watch: watch_rest,
-            list: list_rest,
-            ground: ground_rest,
-            first_row: self.ends[half - 1],
+            first: [self.ends[half - 1], self.first[1] + row_count as u32],
             ends: &self.ends[half..whole],
             cuts: &self.cuts[middle..],
+            ground: ground_rest,
         };
         (first, second)
     }
 
-    /// Does the work on the rows from `from` on, which belong to no half.
+    /// Does the work on the manifolds from `from` on, which belong to no half.
     #[inline(always)]
-    fn own(&mut self, from: usize, pass: &Pass) -> Swept {
+    fn own<L: Lanes>(&mut self, lanes: L, from: usize, pass: &Pass) -> Swept {
+        let mut swept = Swept::default();
         match pass.work {
-            Work::Warm => {
-                let ground = &mut self.ground;
-                self.rows[from..].iter().for_each(|row| row.warm(pass.kick, ground));
-                Swept::default()
-            }
+            Work::Load => self.load(lanes, from, pass),
             Work::Sweep { all, floor, turn } => {
-                let due = self.list_due(from, all);
-                let change = self.judge(due, pass, floor, turn + self.first_row);
-                Swept { change, judged: due as u64 }
+                let first = turn + ROUNDS * (self.first[0] + from as u32);
+                let count = (self.abreast.len() - from) as u32;
+                for round in 0..ROUNDS {
+                    let turn = first + round * count;
+                    swept = swept.and(self.sweep(lanes, from, pass, all && round == 0, floor, turn));
+                }
             }
         }
+        swept
     }
 
-    /// Lists the rows from `from` on that are judged in a sweep; returns their number.
     #[inline(always)]
-    fn list_due(&mut self, from: usize, all: bool) -> usize {
-        let ground = self.ground.all();
-        let mut count = 0;
-        for (k, watch) in self.watch.iter().enumerate().skip(from) {
-            self.list[count] = k as u32;
-            count += usize::from(all || watch.is_due(&ground));
+    fn load<L: Lanes>(&mut self, lanes: L, from: usize, pass: &Pass) {
+        let Self { abreast, rows, first, ground, .. } = self;
+        for abreast in &mut abreast[from..] {
+            let rows = &mut rows[abreast.rows_after(first[1])];
+            abreast.load(lanes, rows, &pass.first_contact[abreast.first_row as usize..], &pass.from, ground);
         }
-        count
     }
 
-    /// Judges the rows listed, the first row having its turn at `first`; returns the largest change of a force over
-    /// its size.
+    /// One round, of which the first manifolds have the given turn.
     #[inline(always)]
-    fn judge(&mut self, due: usize, pass: &Pass, floor: f64, first: u32) -> f64 {
-        let mut ground = self.ground.all();
-        let moves = MOVES * pass.tolerance;
-        let mut change = 0.0;
-        for &k in &self.list[..due] {
-            let (row, watch) = (&mut self.rows[k as usize], &mut self.watch[k as usize]);
-            let [step, force] = row.judge(pass.kick, pass.contacts, &mut ground);
-            let share = step / larger(force, floor);
-            change = larger(share, change);
-            watch.judged(first + k, force);
-            // The sign of the difference, since a comparison ends as a branch.
-            let moved = ((moves - share).to_bits() >> 63) as u32;
-            ground.mark(watch.blocks, (first + k) * moved);
+    fn sweep<L: Lanes>(&mut self, lanes: L, from: usize, pass: &Pass, all: bool, floor: f64, turn: u32) -> Swept {
+        let Self { abreast, rows, first, ground, .. } = self;
+        let mut swept = Swept::default();
+        for (abreast, turn) in abreast[from..].iter_mut().zip(turn..) {
+            if all || abreast.is_due(lanes, ground) {
+                let rows = &mut rows[abreast.rows_after(first[1])];
+                let change = abreast.judge(lanes, rows, &pass.from, Measure { floor, turn }, ground);
+                swept = swept.and(Swept { change, judged: u64::from(abreast.contacts) });
+            }
         }
-        change
+        swept
     }
 }

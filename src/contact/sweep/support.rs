@@ -3,8 +3,6 @@
 use crate::contact::{Support, SupportRow};
 use crate::geometry::{NONE, Vector};
 
-use super::row::larger;
-
 /// A support as the iteration sees it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Bearing {
@@ -162,8 +160,8 @@ impl Bearings {
         for (row, step) in self.rows.iter_mut().zip(&self.change) {
             row.push(step * self.kick, own);
             row.force += step;
-            change = larger(step.abs(), change);
-            largest = larger(row.force.abs(), largest);
+            change = step.abs().max(change);
+            largest = row.force.abs().max(largest);
         }
         change / largest
     }

@@ -1,0 +1,326 @@
+//! Eight manifolds of one colour that are judged abreast: what their blocks have in common, kept in registers.
+
+use std::ops::Range;
+
+use enmm_lanes::{First, LANES, Lanes, Places, Values};
+
+use crate::geometry::NONE;
+
+use super::SweepView;
+use super::body::{Ground, common_share};
+use super::row::{Eight, Row, RowView};
+
+/// Change of a force, over what counts as settled, from which its bodies have moved.
+const MOVES: f64 = 0.3;
+
+/// Up to eight manifolds; lanes beyond them repeat the first one without taking part. Numbers begin at lines of the
+/// cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Abreast {
+    /// (1 + S/M)/M (m/kg), C, and 1 for blocks that keep impulses; all 0 for others.
+    common: [Eight; 2],
+    spin: [Eight; 2],
+    unit: [Eight; 2],
+    /// Turn of the last move that each has answered.
+    answered: Eight,
+    /// The same is `share`·turn + `shift` when it has been judged: a single contact has answered what it did itself,
+    /// manifolds without a free block have always something to answer, lanes without a manifold never.
+    share: Eight,
+    shift: Eight,
+    /// Both blocks of each manifold that keep its impulses, a free one in the place of a held one.
+    blocks: [[u32; LANES]; 2],
+    /// Block of the first points of its contacts.
+    first_block: [u32; LANES],
+    /// Where the sums of the blocks begin in a run of blocks.
+    sums: [Places; 2],
+    /// First row.
+    pub first_row: u32,
+    /// Number of rows, the contacts of the longest manifold, and of those with more than one contact.
+    pub rows: u32,
+    wide: u32,
+    /// Number of contacts.
+    pub contacts: u32,
+    /// Largest force (N/m).
+    pub force: f64,
+}
+
+/// By what changes are measured, and when.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure {
+    /// Force (N/m) that counts at least as the size of a force.
+    pub floor: f64,
+    /// Turn of the manifolds; turns grow.
+    pub turn: u32,
+}
+
+/// One block of each manifold under impulses (Eq. 17), and what it answers with.
+pub struct Side<L: Values> {
+    /// P (N·s/m).
+    pub impulse: [L::F; 2],
+    /// Z/M (m/s).
+    pub weighted: [L::F; 2],
+    /// L (N·m·s/m).
+    pub moment: L::F,
+    /// Turn in which it last moved by more than what has settled.
+    moved: L::F,
+    /// (1 + S/M)/M (m/kg).
+    pub common: L::F,
+    /// C.
+    pub spin: L::F,
+    /// 1 for a block that keeps impulses.
+    pub unit: L::F,
+}
+
+impl Abreast {
+    /// Manifolds by their blocks, a free one first when there is one, and numbers of contacts, the longest first; their
+    /// rows begin at `first_row`.
+    #[inline(always)]
+    pub fn new(first_row: u32, manifolds: impl ExactSizeIterator<Item = ([u32; 2], u32)>, view: &SweepView) -> Self {
+        let mut abreast = Self {
+            first_row,
+            rows: 0,
+            wide: 0,
+            contacts: 0,
+            blocks: [[NONE; LANES]; 2],
+            first_block: [NONE; LANES],
+            sums: [Places::default(); 2],
+            common: [[0.0; LANES]; 2],
+            spin: [[0.0; LANES]; 2],
+            unit: [[0.0; LANES]; 2],
+            answered: [0.0; LANES],
+            share: [0.0; LANES],
+            shift: [f64::INFINITY; LANES],
+            force: 0.0,
+        };
+        let count = manifolds.len();
+        for (lane, (blocks, contacts)) in manifolds.enumerate() {
+            abreast.take(lane, blocks, contacts, view);
+        }
+        for blocks in &mut abreast.blocks {
+            let first = blocks[0];
+            blocks[count..].fill(first);
+        }
+        abreast
+    }
+
+    #[inline(always)]
+    fn take(&mut self, lane: usize, blocks: [u32; 2], contacts: u32, view: &SweepView) {
+        let [a, b] = blocks;
+        let free = blocks.map(|block| view.metric.is_free(block as usize));
+        self.first_block[lane] = a;
+        self.contacts += contacts;
+        if lane == 1 {
+            self.wide = contacts;
+        }
+        self.rows = self.rows.max(contacts);
+        self.share[lane] = f64::from(free[0]);
+        self.shift[lane] = if free[0] && contacts == 1 { 0.0 } else { -1.0 };
+        let keepers = [a, if free[1] { b } else { a }];
+        for k in 0..2 {
+            self.blocks[k][lane] = keepers[k];
+            if k == 0 || a != b {
+                self.spin[k][lane] = view.metric.spin[blocks[k] as usize];
+            }
+            if free[k] && a != b {
+                (self.common[k][lane], self.unit[k][lane]) = (common_share(view, blocks[k] as usize), 1.0);
+            }
+        }
+    }
+
+    /// Its rows among those from `first` on.
+    #[inline(always)]
+    pub fn rows_after(&self, first: u32) -> Range<usize> {
+        let start = (self.first_row - first) as usize;
+        start..start + self.rows as usize
+    }
+
+    /// Whether a contact of two blocks has its second point first.
+    #[inline(always)]
+    pub fn is_turned(&self, lane: usize, blocks: [u32; 2]) -> bool {
+        blocks[0] != self.first_block[lane]
+    }
+
+    /// Whether a block has moved since the manifolds were judged.
+    #[inline(always)]
+    pub fn is_due<L: Lanes>(&self, lanes: L, ground: &Ground) -> bool {
+        let moments = &ground.push.as_flattened()[2..];
+        let [a, b] = [lanes.gather_from(moments, &self.sums[0])[1], lanes.gather_from(moments, &self.sums[1])[1]];
+        lanes.at_most(lanes.max(a, b), lanes.load(&self.answered)) != u8::MAX
+    }
+
+    /// Makes the rows and pushes with the forces that are expected of the contacts.
+    #[inline(always)]
+    pub fn load<L: Lanes>(
+        &mut self,
+        lanes: L,
+        rows: &mut [Row],
+        first_contact: &[u32],
+        from: &RowView,
+        ground: &mut Ground,
+    ) {
+        for (sums, blocks) in self.sums.iter_mut().zip(&self.blocks) {
+            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - ground.first_block)));
+        }
+        for (row, ends) in rows.iter_mut().zip(first_contact.windows(2)) {
+            row.load([ends[0], ends[1]], self, from, ground.first_cover);
+        }
+        let (wide, narrow) = rows.split_at(self.wide as usize);
+        let mut all = self.begin(lanes, ground);
+        for row in wide {
+            all.warm(lanes, row, from, ground);
+        }
+        if !narrow.is_empty() {
+            let mut first = all.first(lanes);
+            for row in narrow {
+                first.warm(First, row, from, ground);
+            }
+            all.rejoin(lanes, &first);
+        }
+        self.leave(lanes, &all.sides, ground);
+        self.force = lanes.greatest(all.largest);
+    }
+
+    /// Judges the manifolds row by row; returns the largest change of a force over its size.
+    #[inline(always)]
+    pub fn judge<L: Lanes>(
+        &mut self,
+        lanes: L,
+        rows: &mut [Row],
+        from: &RowView,
+        Measure { floor, turn }: Measure,
+        ground: &mut Ground,
+    ) -> f64 {
+        let (wide, narrow) = rows.split_at_mut(self.wide as usize);
+        let mut all = self.begin(lanes, ground);
+        for row in wide {
+            all.judge(lanes, row, from, floor, ground);
+        }
+        if !narrow.is_empty() {
+            let mut first = all.first(lanes);
+            for row in narrow {
+                first.judge(First, row, from, floor, ground);
+            }
+            all.rejoin(lanes, &first);
+        }
+        let turn = lanes.splat(f64::from(turn));
+        let moved = lanes.keep_above(turn, all.change, lanes.splat(MOVES * from.options.tolerance));
+        for side in &mut all.sides {
+            side.moved = lanes.max(moved, side.moved);
+        }
+        self.leave(lanes, &all.sides, ground);
+        let answered = lanes.load(&self.share) * turn + lanes.load(&self.shift);
+        lanes.store(answered, &mut self.answered);
+        self.force = lanes.greatest(all.largest);
+        lanes.greatest(all.change)
+    }
+
+    #[inline(always)]
+    fn begin<L: Lanes>(&self, lanes: L, ground: &Ground) -> Visit<L> {
+        let sides = [self.side(lanes, 0, ground), self.side(lanes, 1, ground)];
+        Visit { sides, largest: lanes.splat(0.0), change: lanes.splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn side<L: Lanes>(&self, lanes: L, k: usize, ground: &Ground) -> Side<L> {
+        let (push, at) = (ground.push.as_flattened(), &self.sums[k]);
+        let [moment, moved] = lanes.gather_from(&push[2..], at);
+        Side {
+            impulse: lanes.gather_from(push, at),
+            weighted: lanes.gather_from(&push[1..], at),
+            moment,
+            moved,
+            common: lanes.load(&self.common[k]),
+            spin: lanes.load(&self.spin[k]),
+            unit: lanes.load(&self.unit[k]),
+        }
+    }
+
+    /// Leaves the sums with the blocks: the second ones first, since a first one may stand in the place of a held one.
+    #[inline(always)]
+    fn leave<L: Lanes>(&self, lanes: L, sides: &[Side<L>; 2], ground: &mut Ground) {
+        let push = ground.push.as_flattened_mut();
+        for k in [1, 0] {
+            let (side, at) = (&sides[k], &self.sums[k]);
+            lanes.scatter_to(side.impulse, push, at);
+            lanes.scatter_to(side.weighted, &mut push[1..], at);
+            lanes.scatter_to([side.moment, side.moved], &mut push[2..], at);
+        }
+    }
+}
+
+/// Manifolds in hand.
+struct Visit<L: Values> {
+    sides: [Side<L>; 2],
+    /// Largest force (N/m), and largest change of a force over its size.
+    largest: L::F,
+    change: L::F,
+}
+
+impl<L: Values> Visit<L> {
+    #[inline(always)]
+    fn warm(&mut self, lanes: L, row: &Row, from: &RowView, ground: &mut Ground) {
+        let force = row.warm(lanes, from.options.kick, &mut self.sides, ground.own);
+        self.largest = lanes.max(force, self.largest);
+    }
+
+    #[inline(always)]
+    fn judge(&mut self, lanes: L, row: &mut Row, from: &RowView, floor: f64, ground: &mut Ground) {
+        let [step, force] = row.judge(lanes, from.options.kick, from.contacts, &mut self.sides, ground.own);
+        self.largest = lanes.max(force, self.largest);
+        self.change = lanes.max(step / lanes.max(force, lanes.splat(floor)), self.change);
+    }
+
+    /// The first lane.
+    #[inline(always)]
+    fn first(&self, lanes: L) -> Visit<First> {
+        let [a, b] = &self.sides;
+        let (largest, change) = (first(lanes, self.largest), first(lanes, self.change));
+        Visit { sides: [a.first(lanes), b.first(lanes)], largest, change }
+    }
+
+    /// Takes back the first lane.
+    #[inline(always)]
+    fn rejoin(&mut self, lanes: L, first: &Visit<First>) {
+        for (side, first) in self.sides.iter_mut().zip(&first.sides) {
+            for k in 0..2 {
+                put_first(lanes, &mut side.impulse[k], first.impulse[k]);
+                put_first(lanes, &mut side.weighted[k], first.weighted[k]);
+            }
+            put_first(lanes, &mut side.moment, first.moment);
+        }
+        put_first(lanes, &mut self.largest, first.largest);
+        put_first(lanes, &mut self.change, first.change);
+    }
+}
+
+impl<L: Values> Side<L> {
+    /// The first lane.
+    #[inline(always)]
+    fn first(&self, lanes: L) -> Side<First> {
+        Side {
+            impulse: [first(lanes, self.impulse[0]), first(lanes, self.impulse[1])],
+            weighted: [first(lanes, self.weighted[0]), first(lanes, self.weighted[1])],
+            moment: first(lanes, self.moment),
+            moved: first(lanes, self.moved),
+            common: first(lanes, self.common),
+            spin: first(lanes, self.spin),
+            unit: first(lanes, self.unit),
+        }
+    }
+}
+
+#[inline(always)]
+fn first<L: Values>(lanes: L, numbers: L::F) -> <First as Values>::F {
+    let mut values = [0.0; LANES];
+    lanes.store(numbers, &mut values);
+    First.load(&values)
+}
+
+#[inline(always)]
+fn put_first<L: Values>(lanes: L, numbers: &mut L::F, first: <First as Values>::F) {
+    let mut values = [0.0; LANES];
+    lanes.store(*numbers, &mut values);
+    First.store(first, &mut values);
+    *numbers = lanes.load(&values);
+}
