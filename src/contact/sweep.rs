@@ -88,9 +88,11 @@ pub struct OpenClose {
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let Sequence { abreast, ends, first_contact } = &self.sequence;
-        let sequence =
-            size_of_val(abreast.as_slice()) + size_of_val(ends.as_slice()) + size_of_val(first_contact.as_slice());
+        let Sequence { abreast, ends, first_turn, contacts } = &self.sequence;
+        let sequence = size_of_val(abreast.as_slice())
+            + size_of_val(ends.as_slice())
+            + size_of_val(first_turn.as_slice())
+            + size_of_val(contacts.as_slice());
         let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
         let push = size_of_val(self.push.as_slice());
         size_of_val(self.rows.as_slice()) + sequence + own + push + self.order.bytes() + self.bearings.bytes()
@@ -109,14 +111,14 @@ impl OpenClose {
         self.order.clear();
     }
 
-    /// Orders what is admitted in a step, and the near pairs when they are new, and numbers the contacts by it.
+    /// Orders what is admitted in a step, and the near pairs when they are new.
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
         candidates: &[Candidate],
         metric: &Metric,
         block_covers: &[u32],
-        admitted: &mut Admitted,
+        admitted: &Admitted,
     ) {
         let view = SweepView { metric, roots: &self.roots };
         if self.order.is_empty() {
@@ -149,7 +151,7 @@ impl OpenClose {
     /// Nothing has moved but by supports.
     fn begin(&mut self, metric: &Metric, options: &SweepOptions, others: &Others) {
         let view = SweepView { metric, roots: &self.roots };
-        self.rows.resize(self.sequence.first_contact.len() - 1, Row::default());
+        self.rows.resize(self.sequence.first_turn.len() - 1, Row::default());
         self.own.clear();
         self.own.resize(self.roots.len(), Vector::zeros());
         self.push.clear();
@@ -161,7 +163,12 @@ impl OpenClose {
 
     /// One pass over the rows, part by part.
     fn pass(&mut self, metric: &Metric, contacts: &[VertexEdge], options: &SweepOptions, work: Work) -> part::Swept {
-        let from = RowView { contacts, view: SweepView { metric, roots: &self.roots }, options };
+        let from = RowView {
+            contacts,
+            turns: &self.sequence.contacts,
+            view: SweepView { metric, roots: &self.roots },
+            options,
+        };
         Part {
             abreast: &mut self.sequence.abreast,
             rows: &mut self.rows,
@@ -170,7 +177,7 @@ impl OpenClose {
             cuts: &self.cuts,
             ground: whole(&mut self.own, &mut self.push),
         }
-        .run(&Pass { from, first_contact: &self.sequence.first_contact, work })
+        .run(&Pass { from, first_turn: &self.sequence.first_turn, work })
     }
 
     /// Sweeps over all contacts until they settle; between two such sweeps only those are judged that have something to
@@ -234,7 +241,7 @@ impl OpenClose {
 
     /// Forces and states of all that was judged.
     fn finish(&self, contacts: &mut [VertexEdge], others: &mut Others) {
-        self.rows.iter().for_each(|row| row.finish(contacts));
+        self.rows.iter().for_each(|row| row.finish(&self.sequence.contacts, contacts));
         self.bearings.finish(others.rows);
     }
 

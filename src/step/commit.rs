@@ -15,10 +15,9 @@ impl Step<'_> {
     pub(super) fn commit(&mut self, dt: f64) -> StepReport {
         let clock = Instant::now();
         let totals = self.finish(dt);
-        let stored = if self.report { report::stored(self.slope, self.state, self.scratch) } else { 0.0 };
         self.settle_contacts(dt);
         let works = self.works(dt, &totals);
-        let report = if self.report { self.report(dt, &works, stored) } else { StepReport::default() };
+        let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
         self.capture_stage_force(dt);
         self.commit_columns(dt);
         if self.report {
@@ -91,9 +90,8 @@ impl Step<'_> {
         }
     }
 
-    /// Energies at the start of this sub-step, of which the springs of contacts and supports have stored one, and the
-    /// unbalanced ratio.
-    fn report(&mut self, dt: f64, works: &Ledger, stored: f64) -> StepReport {
+    /// Energies at the start of this sub-step and the unbalanced ratio.
+    fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
         self.fill_damped();
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
         let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.metric, &state.displacement, velocity);
@@ -102,7 +100,7 @@ impl Step<'_> {
         ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
         ledger.strain = report::strain(slope, state);
         ledger.potential = report::potential(slope, state);
-        ledger.stored = stored;
+        ledger.stored = report::stored(slope, state, scratch);
         ledger.bolt_stored = report::bolt_stored(slope, state);
         let contacts = scratch.contacts.iter();
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;

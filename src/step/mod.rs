@@ -23,8 +23,6 @@ use crate::contact::{SweepReport, VertexEdge};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
 
-use self::touch::ContactOrder;
-
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
 const UNSETTLED: f64 = 0.1;
 /// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
@@ -123,7 +121,7 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) ->
         step.implicit_contacts(dt);
     } else {
         step.set_out(dt);
-        step.touch(dt, ContactOrder::Nodes);
+        step.touch(dt);
     }
     (state, scratch)
 }
@@ -192,7 +190,7 @@ impl Step<'_> {
             return self.implicit_interval(implicit, dt);
         }
         self.set_out(dt);
-        self.touch(dt, ContactOrder::Judged);
+        self.touch(dt);
         self.answer(dt);
         let swept = self.open_close(dt);
         if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
@@ -223,7 +221,7 @@ impl Step<'_> {
             let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
             self.state.near.candidates.clear();
             self.state.near.candidates.extend_from_slice(piece);
-            self.touch(dt, ContactOrder::Nodes);
+            self.touch(dt);
             self.scratch.contacts.iter().for_each(&mut *see);
             rest = others;
         }

@@ -16,7 +16,8 @@ const OFFSET_FADE: f64 = 0.5;
 /// Some contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every kind
 /// of lanes.
 struct Settle<'a> {
-    contacts: &'a mut [VertexEdge],
+    contacts: &'a [VertexEdge],
+    histories: &'a mut [ContactHistory],
     outcomes: &'a mut [ContactOutcome],
     laws: &'a [JointLaw],
     /// Velocities (m/s) of the covers before and after the forces.
@@ -33,12 +34,12 @@ impl Kernel for Settle<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         let Self { laws, velocities, dt, kick, fade, .. } = self;
-        for (contact, outcome) in self.contacts.iter_mut().zip(self.outcomes) {
+        for ((contact, history), outcome) in self.contacts.iter().zip(self.histories).zip(self.outcomes) {
             let [before, after] = velocities.map(|velocity| contact.relative(velocity));
             let (stored, slipped) = contact.shear_after(after[1] * dt);
             *outcome = works(contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
-            contact.history = remembered(contact, &laws[contact.law as usize], stored, slipped);
-            contact.history.offset *= fade;
+            *history = remembered(contact, &laws[contact.law as usize], stored, slipped);
+            history.offset *= fade;
         }
     }
 }
@@ -74,21 +75,19 @@ impl Step<'_> {
     /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
     pub(super) fn settle_contacts(&mut self, dt: f64) {
         let state = &mut *self.state;
-        let Scratch { admitted, contacts, predicted, outcomes, serial, .. } = &mut *self.scratch;
+        let Scratch { contacts, predicted, outcomes, serial, .. } = &mut *self.scratch;
+        state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len(), ContactOutcome::default());
         let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
         let (kick, fade) = (0.5 * (state.dt_last + dt), (-dt / OFFSET_FADE).exp());
-        let settle = |(contacts, outcomes): (&mut [VertexEdge], &mut [ContactOutcome])| {
-            dispatch(Settle { contacts, outcomes, laws, velocities, dt, kick, fade });
+        let settle = |((contacts, histories), outcomes)| {
+            dispatch(Settle { contacts, histories, outcomes, laws, velocities, dt, kick, fade });
         };
         if *serial || contacts.len() <= CONTACTS {
-            settle((contacts, outcomes));
-            state.contacts.clear();
-            state.contacts.extend(admitted.contact_of().iter().map(|&contact| contacts[contact as usize].history));
+            settle(((contacts, &mut state.contacts), outcomes));
         } else {
-            contacts.par_chunks_mut(CONTACTS).zip(outcomes.par_chunks_mut(CONTACTS)).for_each(settle);
-            let numbers = admitted.contact_of().par_iter().with_min_len(CONTACTS);
-            numbers.map(|&contact| contacts[contact as usize].history).collect_into_vec(&mut state.contacts);
+            let parts = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
+            parts.zip(outcomes.par_chunks_mut(CONTACTS)).for_each(settle);
         }
         let counters = &mut state.counters;
         for outcome in &*outcomes {

@@ -21,15 +21,6 @@ pub(super) const REACH: f64 = 0.005;
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
 
-/// How the contacts of a step are numbered.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ContactOrder {
-    /// By nodes and sides.
-    Nodes,
-    /// As the open–close iteration judges them.
-    Judged,
-}
-
 impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
     pub(super) fn locate(&mut self) {
@@ -80,13 +71,13 @@ impl Step<'_> {
     }
 
     /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
-    pub(super) fn touch(&mut self, dt: f64, order: ContactOrder) {
-        self.entrance(self.reach(dt), self.state.dt_last, Some(dt), order);
+    pub(super) fn touch(&mut self, dt: f64) {
+        self.entrance(self.reach(dt), self.state.dt_last, Some(dt));
     }
 
     /// Contacts nearer than `reach` (m), in an explicit step of `dt` (s) with how they answer; covers have moved for
     /// `dt_last` (s) with the velocities of the state.
-    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>, order: ContactOrder) {
+    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>) {
         let clock = Instant::now();
         let damping = match self.regime {
             Regime::Dynamic { damping } => Some(damping),
@@ -121,16 +112,8 @@ impl Step<'_> {
             in_situ: slope.in_situ.as_ref(),
             serial: scratch.serial,
         };
-        let (candidates, admitted) = (&state.near.candidates, &mut scratch.admitted);
-        contact::admit(&narrow, candidates, admitted);
-        match order {
-            ContactOrder::Nodes => admitted.number(),
-            ContactOrder::Judged => {
-                let (boundary, block_covers) = (&slope.boundary, &slope.covers.block_covers);
-                scratch.open_close.arrange(boundary, candidates, &scratch.metric, block_covers, admitted);
-            }
-        }
-        contact::make_contacts(&narrow, admitted, &mut scratch.contacts);
+        contact::admit(&narrow, &state.near.candidates, &mut scratch.admitted);
+        contact::make_contacts(&narrow, &scratch.admitted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -163,9 +146,11 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
+        let Scratch { open_close, admitted, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
+        let (candidates, block_covers) = (&self.state.near.candidates, &slope.covers.block_covers);
+        open_close.arrange(&slope.boundary, candidates, metric, block_covers, admitted);
         let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();

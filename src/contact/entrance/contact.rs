@@ -1,6 +1,6 @@
 //! Geometry, law, stiffness and history of an admitted contact.
 
-use enmm_lanes::{Kernel, Lanes, dispatch, prefetch};
+use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
@@ -9,14 +9,10 @@ use crate::geometry::{Point, Vector};
 
 use super::{Admitted, Approach, GRAIN, Narrow, Pick, right_of};
 
-/// Turns by which histories are asked for before they are read.
-const AHEAD: usize = 6;
-
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
     narrow: &'a Narrow<'a>,
     picks: &'a [Pick],
-    pick_of: &'a [u32],
     contacts: &'a mut [VertexEdge],
 }
 
@@ -25,10 +21,9 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { narrow, picks, pick_of, contacts } = self;
-        for (k, contact) in contacts.iter_mut().enumerate() {
-            narrow.fetch(picks, &pick_of[k..]);
-            *contact = narrow.contact(&picks[pick_of[k] as usize]);
+        let Self { narrow, picks, contacts } = self;
+        for (contact, pick) in contacts.iter_mut().zip(picks) {
+            *contact = narrow.contact(pick);
             if let Some(approach) = &narrow.approach {
                 contact.approach = contact.relative(approach.predicted);
                 narrow.centre(contact, approach);
@@ -37,30 +32,18 @@ impl Kernel for Make<'_> {
     }
 }
 
-/// Makes the contacts of all that is admitted, in the order of their numbers.
+/// Makes the contacts of all that is admitted, ordered by node and side.
 pub fn make_contacts(narrow: &Narrow, admitted: &Admitted, contacts: &mut Vec<VertexEdge>) {
-    let Admitted { picks, pick_of, .. } = admitted;
+    let picks = &admitted.picks;
     contacts.resize(picks.len(), VertexEdge::default());
     if narrow.serial || picks.len() <= GRAIN {
-        return dispatch(Make { narrow, picks, pick_of, contacts });
+        return dispatch(Make { narrow, picks, contacts });
     }
-    let parts = contacts.par_chunks_mut(GRAIN).zip(pick_of.par_chunks(GRAIN));
-    parts.for_each(|(contacts, pick_of)| dispatch(Make { narrow, picks, pick_of, contacts }));
+    let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
+    parts.for_each(|(contacts, picks)| dispatch(Make { narrow, picks, contacts }));
 }
 
 impl Narrow<'_> {
-    /// Asks for what contacts a few turns ahead will read: their picks, and the histories of those that are nearer.
-    #[inline(always)]
-    fn fetch(&self, picks: &[Pick], pick_of: &[u32]) {
-        let ahead = |turns: usize| pick_of.get(turns).map(|&pick| &picks[pick as usize]);
-        if let Some(pick) = ahead(2 * AHEAD) {
-            prefetch(std::slice::from_ref(pick));
-        }
-        if let Some(held) = ahead(AHEAD).and_then(|pick| pick.held) {
-            prefetch(&self.history[held as usize..held as usize + 1]);
-        }
-    }
-
     #[inline(always)]
     fn contact(&self, pick: &Pick) -> VertexEdge {
         let (boundary, node) = (self.boundary, pick.node as usize);

@@ -150,50 +150,24 @@ struct Pick {
     admitted: bool,
 }
 
-/// What the vertex rule admits in one step, and the contacts that are made of it.
+/// What the vertex rule admits in one step: one contact is made of each pick.
 #[derive(Debug, Clone, Default)]
 pub struct Admitted {
     runs: Vec<Vec<Pick>>,
     /// Ordered by node and side.
     picks: Vec<Pick>,
-    /// The pick of each contact, and the contact of each pick.
-    pick_of: Vec<u32>,
-    contact_of: Vec<u32>,
 }
 
 impl Admitted {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
         let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
-        let numbers = size_of_val(self.pick_of.as_slice()) + size_of_val(self.contact_of.as_slice());
-        of_runs + size_of_val(self.picks.as_slice()) + numbers
+        of_runs + size_of_val(self.picks.as_slice())
     }
 
     /// Nodes and sides of what is admitted, sorted.
     pub fn nodes_and_sides(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
         self.picks.iter().map(|pick| [pick.node, pick.side])
-    }
-
-    /// The contact of each pick.
-    pub fn contact_of(&self) -> &[u32] {
-        &self.contact_of
-    }
-
-    /// Numbers the contacts as the picks.
-    pub fn number(&mut self) {
-        self.pick_of.clear();
-        self.pick_of.extend(0..self.picks.len() as u32);
-        self.contact_of.clone_from(&self.pick_of);
-    }
-
-    /// Numbers the contacts otherwise: each pick gets another number below their count.
-    pub fn renumber(&mut self, contacts: impl Iterator<Item = u32>) {
-        self.contact_of.clear();
-        self.contact_of.extend(contacts);
-        self.pick_of.resize(self.picks.len(), 0);
-        for (&contact, pick) in self.contact_of.iter().zip(0..) {
-            self.pick_of[contact as usize] = pick;
-        }
     }
 }
 

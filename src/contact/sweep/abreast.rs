@@ -155,14 +155,14 @@ impl Abreast {
         &mut self,
         lanes: L,
         rows: &mut [Row],
-        first_contact: &[u32],
+        first_turn: &[u32],
         from: &RowView,
         ground: &mut Ground,
     ) {
         for (sums, blocks) in self.sums.iter_mut().zip(&self.blocks) {
             (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - ground.first_block)));
         }
-        for (row, ends) in rows.iter_mut().zip(first_contact.windows(2)) {
+        for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
             row.load([ends[0], ends[1]], self, from, ground.first_cover);
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
@@ -266,7 +266,7 @@ impl<L: Values> Visit<L> {
 
     #[inline(always)]
     fn judge(&mut self, lanes: L, row: &mut Row, from: &RowView, floor: f64, ground: &mut Ground) {
-        let [step, force] = row.judge(lanes, from.options.kick, from.contacts, &mut self.sides, ground.own);
+        let [step, force] = row.judge(lanes, from, &mut self.sides, ground.own);
         self.largest = lanes.max(force, self.largest);
         self.change = lanes.max(step / lanes.max(force, lanes.splat(floor)), self.change);
     }

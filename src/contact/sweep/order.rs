@@ -77,9 +77,11 @@ pub struct Sequence {
     pub abreast: Vec<Abreast>,
     /// The number of them up to the end of each part.
     pub ends: Vec<u32>,
-    /// First contact of each row, and the number of contacts. A row has as many as there are manifolds with so many
-    /// contacts, in the first lanes.
-    pub first_contact: Vec<u32>,
+    /// First turn of each row, and the number of turns. A row has as many contacts as there are manifolds with so many,
+    /// in the first lanes.
+    pub first_turn: Vec<u32>,
+    /// Contact of each turn.
+    pub contacts: Vec<u32>,
 }
 
 impl SweepOrder {
@@ -187,14 +189,14 @@ impl SweepOrder {
         self.manifolds.sort_unstable();
     }
 
-    /// Puts the manifolds of a step in the order in which they are judged, and numbers the contacts by it.
-    pub fn arrange(&mut self, admitted: &mut Admitted, view: &SweepView, sequence: &mut Sequence) {
+    /// Puts the manifolds of a step, and the contacts that are made of what is admitted, in the order of their turns.
+    pub fn arrange(&mut self, admitted: &Admitted, view: &SweepView, sequence: &mut Sequence) {
         self.count_contacts(admitted);
-        let Sequence { abreast, ends, first_contact } = sequence;
+        let Sequence { abreast, ends, first_turn, contacts } = sequence;
         abreast.clear();
         ends.clear();
-        first_contact.clear();
-        let (mut first, mut contacts) = (0, 0);
+        first_turn.clear();
+        let (mut first, mut turns) = (0, 0);
         for class in self.manifolds.chunk_by(|a, b| (a.part, a.colour) == (b.part, b.colour)) {
             ends.resize(class[0].part as usize, abreast.len() as u32);
             let all = first..first + class.len() as u32;
@@ -203,11 +205,11 @@ impl SweepOrder {
             self.touching.extend(all.filter(|&m| self.count[m as usize] > 0));
             self.touching.sort_unstable_by_key(|&m| (Reverse(self.count[m as usize]), m));
             for some in self.touching.chunks(if class[0].colour == SHARED { 1 } else { LANES }) {
-                let first_row = first_contact.len() as u32;
+                let first_row = first_turn.len() as u32;
                 let counts = some.iter().map(|&m| self.count[m as usize]);
                 for row in 0..self.count[some[0] as usize] {
-                    first_contact.push(contacts);
-                    contacts += counts.clone().filter(|&count| count > row).count() as u32;
+                    first_turn.push(turns);
+                    turns += counts.clone().filter(|&count| count > row).count() as u32;
                 }
                 let manifolds = some.iter().map(|&m| (self.manifolds[m as usize].blocks, self.count[m as usize]));
                 abreast.push(Abreast::new(first_row, manifolds, view));
@@ -217,13 +219,14 @@ impl SweepOrder {
             }
         }
         ends.resize(2 * (self.leaf_block.len() - 1) - 1, abreast.len() as u32);
-        first_contact.push(contacts);
-        let (of_pick, next) = (&self.of_pick, &mut self.count);
-        admitted.renumber(of_pick.iter().map(|&m| {
-            let place = next[m as usize];
-            next[m as usize] += LANES as u32;
-            first_contact[(place / LANES as u32) as usize] + place % LANES as u32
-        }));
+        first_turn.push(turns);
+        contacts.resize(turns as usize, 0);
+        for (&m, contact) in self.of_pick.iter().zip(0..) {
+            let place = &mut self.count[m as usize];
+            let turn = first_turn[(*place / LANES as u32) as usize] + *place % LANES as u32;
+            contacts[turn as usize] = contact;
+            *place += LANES as u32;
+        }
     }
 
     /// Finds the manifold of each pick, and the number of contacts of each manifold.

@@ -25,8 +25,8 @@ pub enum Work {
 /// What all parts share.
 pub struct Pass<'a> {
     pub from: RowView<'a>,
-    /// First contact of each row, and the number of contacts.
-    pub first_contact: &'a [u32],
+    /// First turn of each row, and the number of turns.
+    pub first_turn: &'a [u32],
     pub work: Work,
 }
 
@@ -140,7 +140,7 @@ impl Part<'_> {
         let Self { abreast, rows, first, ground, .. } = self;
         for abreast in &mut abreast[from..] {
             let rows = &mut rows[abreast.rows_after(first[1])];
-            abreast.load(lanes, rows, &pass.first_contact[abreast.first_row as usize..], &pass.from, ground);
+            abreast.load(lanes, rows, &pass.first_turn[abreast.first_row as usize..], &pass.from, ground);
         }
     }
 

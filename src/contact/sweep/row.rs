@@ -50,16 +50,17 @@ pub struct Row {
     cohesion: Eight,
     /// Normal force (N/m) at or below which each is open.
     open: Eight,
-    /// First contact and the one after the last.
-    contacts: [u32; 2],
+    /// First turn and the one after the last.
+    turns: [u32; 2],
     /// Whether spring or strength of one of them follow a curve.
     curved: bool,
 }
 
 /// What a row is made from.
 pub struct RowView<'a> {
-    /// Contacts of the step.
+    /// Contacts of the step, and the one of each turn.
     pub contacts: &'a [VertexEdge],
+    pub turns: &'a [u32],
     /// Masses.
     pub view: SweepView<'a>,
     /// Choices.
@@ -67,20 +68,26 @@ pub struct RowView<'a> {
 }
 
 impl Row {
-    /// Takes contacts from the first to the one after the last, with the forces that are expected of them.
+    /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected.
     #[inline(always)]
-    pub fn load(&mut self, contacts: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
-        self.contacts = contacts;
+    pub fn load(&mut self, turns: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
+        self.turns = turns;
         for points in &mut self.points {
             points.covers = [Places::default(); 3];
         }
         self.curved = false;
-        let contacts = self.of(from.contacts);
-        for (lane, contact) in contacts.iter().enumerate() {
-            self.take(lane, contact, abreast, from, first_cover);
+        let contacts = self.of(from.turns);
+        for (lane, &contact) in contacts.iter().enumerate() {
+            self.take(lane, &from.contacts[contact as usize], abreast, from, first_cover);
         }
         (contacts.len()..LANES).for_each(|lane| self.leave_out(lane));
         debug_assert!(self.is_apart(contacts.len()), "two manifolds of one colour share a cover");
+    }
+
+    /// Its contacts.
+    #[inline(always)]
+    fn of<'a>(&self, turns: &'a [u32]) -> &'a [u32] {
+        &turns[self.turns[0] as usize..self.turns[1] as usize]
     }
 
     /// Whether no two of the first `count` lanes push the same cover.
@@ -92,12 +99,6 @@ impl Row {
                 .map(move |(covers, _)| covers.index(lane))
         };
         (0..count).all(|a| (0..a).all(|b| covers(a).all(|i| covers(b).all(|j| i != j))))
-    }
-
-    /// Its contacts.
-    #[inline(always)]
-    fn of<'a>(&self, contacts: &'a [VertexEdge]) -> &'a [VertexEdge] {
-        &contacts[self.contacts[0] as usize..self.contacts[1] as usize]
     }
 
     #[inline(always)]
@@ -158,12 +159,11 @@ impl Row {
 
     /// Leaves forces and states in the contacts.
     #[inline(always)]
-    pub fn finish(&self, contacts: &mut [VertexEdge]) {
-        let contacts = &mut contacts[self.contacts[0] as usize..self.contacts[1] as usize];
-        for (lane, contact) in contacts.iter_mut().enumerate() {
+    pub fn finish(&self, turns: &[u32], contacts: &mut [VertexEdge]) {
+        for (lane, &contact) in self.of(turns).iter().enumerate() {
             let bears = self.asked[lane] > self.open[lane];
             let torn = !bears & (self.asked[lane] != 0.0);
-            contact.end([self.force[0][lane], self.force[1][lane]], bears, torn);
+            contacts[contact as usize].end([self.force[0][lane], self.force[1][lane]], bears, torn);
         }
     }
 
@@ -184,8 +184,7 @@ impl Row {
     pub fn judge<L: Values>(
         &mut self,
         lanes: L,
-        kick: f64,
-        contacts: &[VertexEdge],
+        from: &RowView,
         sides: &mut [Side<L>; 2],
         own: &mut [Vector],
     ) -> [L::F; 2] {
@@ -203,7 +202,7 @@ impl Row {
         if self.curved {
             let mut limits = [0.0; LANES];
             lanes.store(limit, &mut limits);
-            self.follow(contacts, &mut limits);
+            self.follow(from, &mut limits);
             (normal, limit) = (lanes.load(&self.asked), lanes.load(&limits));
         }
         // No branch depends on what bears, slips or changes: it would be known too late.
@@ -211,7 +210,7 @@ impl Row {
         let limit = lanes.keep_above(limit, normal, open);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
-        let impulse = turned(lanes, [x, y], step, kick);
+        let impulse = turned(lanes, [x, y], step, from.options.kick);
         self.push(lanes, impulse, &before, sides, own);
         lanes.store(force[0], &mut self.force[0]);
         lanes.store(force[1], &mut self.force[1]);
@@ -237,8 +236,9 @@ impl Row {
     /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.
     #[cold]
     #[inline(never)]
-    fn follow(&mut self, contacts: &[VertexEdge], limits: &mut Eight) {
-        for (lane, contact) in self.of(contacts).iter().enumerate() {
+    fn follow(&mut self, from: &RowView, limits: &mut Eight) {
+        for (lane, &contact) in self.of(from.turns).iter().enumerate() {
+            let contact = &from.contacts[contact as usize];
             let closes = contact.closure_max.is_finite();
             if closes {
                 self.asked[lane] = contact.closure().solve(self.asked[lane], self.answers[0].kept[lane]);

@@ -16,7 +16,7 @@ use crate::geometry::Vector;
 use crate::mechanics::Metric;
 use crate::state::{Implicit, Rule, Scratch, Slope};
 
-use super::touch::{CUTOFF, ContactOrder, REACH};
+use super::touch::{CUTOFF, REACH};
 use super::{Regime, Step, StepReport, applied, ramp};
 
 /// Factor on a sub-step that has not settled.
@@ -154,7 +154,7 @@ impl Step<'_> {
         scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let reach = REACH * self.slope.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
         let moved_for = if self.state.step > 0 { self.slope.dt } else { 0.0 };
-        self.entrance(reach.min(CUTOFF * self.slope.covers.mesh.size), moved_for, None, ContactOrder::Nodes);
+        self.entrance(reach.min(CUTOFF * self.slope.covers.mesh.size), moved_for, None);
         self.load_supports(dt);
         let buffers = &mut self.scratch.implicit;
         buffers.forces_before.clear();
