@@ -17,7 +17,7 @@ use self::order::{Sequence, SweepOrder};
 use self::part::{Part, Pass, Work};
 use self::row::{Row, RowView};
 use self::support::Bearings;
-use super::{Admitted, BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
 
 /// Share of the largest force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
@@ -111,14 +111,14 @@ impl OpenClose {
         self.order.clear();
     }
 
-    /// Orders what is admitted in a step, and the near pairs when they are new.
+    /// Orders the contacts of a step, and the near pairs when they are new.
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
         candidates: &[Candidate],
         metric: &Metric,
         block_covers: &[u32],
-        admitted: &Admitted,
+        contacts: &[VertexEdge],
     ) {
         let view = SweepView { metric, roots: &self.roots };
         if self.order.is_empty() {
@@ -126,7 +126,7 @@ impl OpenClose {
             self.cuts.clear();
             self.cuts.extend(self.order.leaf_block().iter().map(|&block| [block, block_covers[block as usize]]));
         }
-        self.order.arrange(admitted, &view, &mut self.sequence);
+        self.order.arrange(contacts, &view, &mut self.sequence);
     }
 
     /// Sweeps until forces settle, from those that are expected, over contacts that have been arranged.

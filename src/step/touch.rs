@@ -112,8 +112,8 @@ impl Step<'_> {
             in_situ: slope.in_situ.as_ref(),
             serial: scratch.serial,
         };
-        contact::admit(&narrow, &state.near.candidates, &mut scratch.admitted);
-        contact::make_contacts(&narrow, &scratch.admitted, &mut scratch.contacts);
+        let candidates = &state.near.candidates;
+        contact::entrance_edges(&narrow, candidates, &mut scratch.admitted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -146,11 +146,11 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let Scratch { open_close, admitted, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
+        let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
         let (candidates, block_covers) = (&self.state.near.candidates, &slope.covers.block_covers);
-        open_close.arrange(&slope.boundary, candidates, metric, block_covers, admitted);
+        open_close.arrange(&slope.boundary, candidates, metric, block_covers, contacts);
         let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();

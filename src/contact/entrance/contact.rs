@@ -7,7 +7,7 @@ use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::{Admitted, Approach, GRAIN, Narrow, Pick, right_of};
+use super::{Approach, GRAIN, Narrow, Pick, right_of};
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
@@ -21,29 +21,31 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { narrow, picks, contacts } = self;
-        for (contact, pick) in contacts.iter_mut().zip(picks) {
-            *contact = narrow.contact(pick);
-            if let Some(approach) = &narrow.approach {
+        for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
+            *contact = self.narrow.contact(pick);
+            if let Some(approach) = &self.narrow.approach {
                 contact.approach = contact.relative(approach.predicted);
-                narrow.centre(contact, approach);
+                self.narrow.centre(contact, approach);
             }
         }
     }
 }
 
-/// Makes the contacts of all that is admitted, ordered by node and side.
-pub fn make_contacts(narrow: &Narrow, admitted: &Admitted, contacts: &mut Vec<VertexEdge>) {
-    let picks = &admitted.picks;
-    contacts.resize(picks.len(), VertexEdge::default());
-    if narrow.serial || picks.len() <= GRAIN {
-        return dispatch(Make { narrow, picks, contacts });
-    }
-    let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
-    parts.for_each(|(contacts, picks)| dispatch(Make { narrow, picks, contacts }));
-}
-
 impl Narrow<'_> {
+    /// Makes the contacts of some picks in place, from the contact `made` on; returns where they end.
+    pub(super) fn make(&self, picks: &[Pick], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
+        let end = made + picks.len();
+        contacts.resize(contacts.len().max(end), VertexEdge::default());
+        let contacts = &mut contacts[made..end];
+        if self.serial || picks.len() <= GRAIN {
+            dispatch(Make { narrow: self, picks, contacts });
+        } else {
+            let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
+            parts.for_each(|(contacts, picks)| dispatch(Make { narrow: self, picks, contacts }));
+        }
+        end
+    }
+
     #[inline(always)]
     fn contact(&self, pick: &Pick) -> VertexEdge {
         let (boundary, node) = (self.boundary, pick.node as usize);

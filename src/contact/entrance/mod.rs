@@ -12,14 +12,13 @@ use crate::mechanics::{BlockMotion, Metric, StressField};
 
 use frame::{EdgeFrame, Over};
 
-use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw};
+use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
 
-pub use contact::make_contacts;
 pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
 const RUN: usize = 4096;
-/// Runs that are judged before they are put together.
+/// Runs that are judged before their contacts are made.
 const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
@@ -150,11 +149,10 @@ struct Pick {
     admitted: bool,
 }
 
-/// What the vertex rule admits in one step: one contact is made of each pick.
+/// What the vertex rule admits in one step: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
 pub struct Admitted {
     runs: Vec<Vec<Pick>>,
-    /// Ordered by node and side.
     picks: Vec<Pick>,
 }
 
@@ -164,32 +162,25 @@ impl Admitted {
         let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
         of_runs + size_of_val(self.picks.as_slice())
     }
-
-    /// Nodes and sides of what is admitted, sorted.
-    pub fn nodes_and_sides(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
-        self.picks.iter().map(|pick| [pick.node, pick.side])
-    }
 }
 
-/// Judges every candidate: what is admitted takes part in this step.
-pub fn admit(narrow: &Narrow, candidates: &[Candidate], admitted: &mut Admitted) {
-    let Admitted { runs, picks, .. } = admitted;
-    picks.clear();
-    if narrow.serial || candidates.len() <= RUN {
-        return narrow.judge(candidates, picks);
-    }
-    // In pieces, so that what is admitted is not there twice.
+/// Judges every candidate and fills the contacts that take part in this step, ordered by node and side.
+pub fn entrance_edges(
+    narrow: &Narrow,
+    candidates: &[Candidate],
+    admitted: &mut Admitted,
+    contacts: &mut Vec<VertexEdge>,
+) {
+    let mut made = 0;
+    // In pieces: what is admitted of all candidates together would be as large as the contacts.
+    let runs = if narrow.serial { 1 } else { RUNS };
     let mut rest = candidates;
     while !rest.is_empty() {
-        let (piece, others) = rest.split_at(first_of_run(rest, RUNS));
-        runs.resize_with(piece.len().div_ceil(RUN), Vec::new);
-        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            run.clear();
-            narrow.judge(&piece[first_of_run(piece, k)..first_of_run(piece, k + 1)], run);
-        });
-        runs.iter().for_each(|run| picks.extend_from_slice(run));
+        let (piece, others) = rest.split_at(first_of_run(rest, runs));
+        made = narrow.enter(piece, admitted, contacts, made);
         rest = others;
     }
+    contacts.truncate(made);
 }
 
 /// Where run `k` begins: at a multiple of its length, moved on to the next node.
@@ -202,6 +193,29 @@ fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
 }
 
 impl Narrow<'_> {
+    /// Judges some candidates and makes their contacts, from the contact `made` on; returns where they end.
+    fn enter(
+        &self,
+        candidates: &[Candidate],
+        admitted: &mut Admitted,
+        contacts: &mut Vec<VertexEdge>,
+        made: usize,
+    ) -> usize {
+        let Admitted { runs, picks } = admitted;
+        picks.clear();
+        if self.serial || candidates.len() <= RUN {
+            self.judge(candidates, picks);
+            return self.make(picks, contacts, made);
+        }
+        runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
+        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
+            run.clear();
+            self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
+        });
+        runs.iter().for_each(|run| picks.extend_from_slice(run));
+        self.make(picks, contacts, made)
+    }
+
     /// Appends the picks that the vertex rule admits of some candidates.
     fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<Pick>) {
         let mut picks = [Pick::default(); SIDES_MAX + 1];

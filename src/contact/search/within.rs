@@ -75,7 +75,7 @@ impl<L: Lanes> Within<L> {
         let ([x, dx], [y, dy]) = (self.along_axis(p.x, x), self.along_axis(p.y, y));
         let [zero, one, least] = [lanes.splat(0.0), lanes.splat(1.0), lanes.splat(f64::MIN_POSITIVE)];
         let along = (x * dx + y * dy) / lanes.max(dx * dx + dy * dy, least);
-        let along = -lanes.max(-lanes.max(along, zero), -one);
+        let along = lanes.min(lanes.max(along, zero), one);
         let (x, y) = (x - dx * along, y - dy * along);
         lanes.at_most(x * x + y * y, self.square)
     }

@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use enmm_lanes::LANES;
 
-use crate::contact::{Admitted, Boundary, Candidate};
+use crate::contact::{Boundary, Candidate, VertexEdge};
 
 use super::SweepView;
 use super::abreast::Abreast;
@@ -35,8 +35,9 @@ pub struct SweepOrder {
     entries: Vec<Entry>,
     leaf: Vec<u32>,
     colours: Colours,
-    /// Of a step: the manifold of each pick, and the number of contacts of each manifold, then the place of its next.
-    of_pick: Vec<u32>,
+    /// Of a step: the manifold of each contact, and the number of contacts of each manifold, then the place of its
+    /// next.
+    of_contact: Vec<u32>,
     count: Vec<u32>,
     /// Manifolds of a colour that have contacts.
     touching: Vec<u32>,
@@ -87,8 +88,8 @@ pub struct Sequence {
 impl SweepOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { first_candidate, manifold, leaf, of_pick, count, touching, .. } = self;
-        let lists = [first_candidate, manifold, leaf, of_pick, count, touching, &self.leaf_block];
+        let Self { first_candidate, manifold, leaf, of_contact, count, touching, .. } = self;
+        let lists = [first_candidate, manifold, leaf, of_contact, count, touching, &self.leaf_block];
         let order = size_of_val(self.keys.as_slice()) + size_of_val(self.manifolds.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
@@ -189,9 +190,9 @@ impl SweepOrder {
         self.manifolds.sort_unstable();
     }
 
-    /// Puts the manifolds of a step, and the contacts that are made of what is admitted, in the order of their turns.
-    pub fn arrange(&mut self, admitted: &Admitted, view: &SweepView, sequence: &mut Sequence) {
-        self.count_contacts(admitted);
+    /// Puts the manifolds and the contacts of a step in the order of their turns.
+    pub fn arrange(&mut self, touching: &[VertexEdge], view: &SweepView, sequence: &mut Sequence) {
+        self.count_contacts(touching);
         let Sequence { abreast, ends, first_turn, contacts } = sequence;
         abreast.clear();
         ends.clear();
@@ -221,7 +222,7 @@ impl SweepOrder {
         ends.resize(2 * (self.leaf_block.len() - 1) - 1, abreast.len() as u32);
         first_turn.push(turns);
         contacts.resize(turns as usize, 0);
-        for (&m, contact) in self.of_pick.iter().zip(0..) {
+        for (&m, contact) in self.of_contact.iter().zip(0..) {
             let place = &mut self.count[m as usize];
             let turn = first_turn[(*place / LANES as u32) as usize] + *place % LANES as u32;
             contacts[turn as usize] = contact;
@@ -229,18 +230,18 @@ impl SweepOrder {
         }
     }
 
-    /// Finds the manifold of each pick, and the number of contacts of each manifold.
-    fn count_contacts(&mut self, admitted: &Admitted) {
+    /// Finds the manifold of each contact, and the number of contacts of each manifold.
+    fn count_contacts(&mut self, contacts: &[VertexEdge]) {
         self.count.clear();
         self.count.resize(self.manifolds.len(), 0);
-        self.of_pick.clear();
+        self.of_contact.clear();
         let mut k = 0;
-        for [node, side] in admitted.nodes_and_sides() {
-            let key = key_of(node, side);
+        for contact in contacts {
+            let key = key_of(contact.history.node, contact.history.side);
             while self.keys[k] < key {
                 k += 1;
             }
-            self.of_pick.push(self.manifold[k]);
+            self.of_contact.push(self.manifold[k]);
             self.count[self.manifold[k] as usize] += 1;
         }
     }
