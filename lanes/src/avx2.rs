@@ -207,6 +207,16 @@ impl Values for Avx2 {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Registers, b: Registers) -> u8 {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[0], b.0[0]));
+            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[1], b.0[1]));
+            (low | high << 4) as u8
+        }
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Registers; 2] {
         // SAFETY: each address is that of a pair, two f64 in a row.
         unsafe { eight(self, at.of(pairs)) }
@@ -256,16 +266,6 @@ impl Lanes for Avx2 {
             let four = _mm256_max_pd(lanes.0[0], lanes.0[1]);
             let two = _mm_max_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
             _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)))
-        }
-    }
-
-    #[inline(always)]
-    fn at_most(self, a: Registers, b: Registers) -> u8 {
-        // SAFETY: the token proves AVX2.
-        unsafe {
-            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[0], b.0[0]));
-            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[1], b.0[1]));
-            (low | high << 4) as u8
         }
     }
 

@@ -197,6 +197,12 @@ impl Values for Avx512 {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Register, b: Register) -> u8 {
+        // SAFETY: the token proves AVX-512F.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Register; 2] {
         // SAFETY: each address is that of a pair, two f64 in a row.
         unsafe { eight(self, at.of(pairs)) }
@@ -282,12 +288,6 @@ impl Lanes for Avx512 {
     fn greatest(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
         unsafe { _mm512_reduce_max_pd(lanes.0) }
-    }
-
-    #[inline(always)]
-    fn at_most(self, a: Register, b: Register) -> u8 {
-        // SAFETY: the token proves AVX-512F.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
     }
 
     #[inline(always)]

@@ -74,6 +74,11 @@ impl Values for First {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Value, b: Value) -> u8 {
+        u8::from(a.0 <= b.0)
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Value; 2] {
         let pair = pairs[at.index(0) as usize];
         [Value(pair.x), Value(pair.y)]

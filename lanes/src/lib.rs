@@ -58,6 +58,9 @@ pub trait Values: Copy {
     /// Values where others are above a limit; zero elsewhere.
     fn keep_above(self, values: Self::F, others: Self::F, limit: Self::F) -> Self::F;
 
+    /// Lanes in which the first is at most the second, as bits from the lowest on.
+    fn at_most(self, a: Self::F, b: Self::F) -> u8;
+
     /// Pairs of a list.
     ///
     /// # Panics
@@ -81,9 +84,6 @@ pub trait Lanes: Values {
 
     /// Square root.
     fn sqrt(self, lanes: Self::F) -> Self::F;
-
-    /// Lanes in which the first is at most the second, as bits from the lowest on.
-    fn at_most(self, a: Self::F, b: Self::F) -> u8;
 
     /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
     fn sum(self, lanes: Self::F) -> f64;

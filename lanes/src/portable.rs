@@ -95,6 +95,11 @@ impl Values for Portable {
     }
 
     #[inline(always)]
+    fn at_most(self, a: Array, b: Array) -> u8 {
+        (0..LANES).fold(0, |bits, k| bits | u8::from(a.0[k] <= b.0[k]) << k)
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Array; 2] {
         self.load_pairs(&std::array::from_fn(|k| pairs[at.index(k) as usize]))
     }
@@ -128,11 +133,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn greatest(self, lanes: Array) -> f64 {
         lanes.0.into_iter().fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    #[inline(always)]
-    fn at_most(self, a: Array, b: Array) -> u8 {
-        (0..LANES).fold(0, |bits, k| bits | u8::from(a.0[k] <= b.0[k]) << k)
     }
 
     #[inline(always)]

@@ -85,7 +85,7 @@ impl Body {
             covers,
             weights,
             block: block as u32,
-            lever: Vector::new(-pair.arms[k].y, pair.arms[k].x),
+            lever: turned_arm(pair.arms[k]),
             part: pair.z[k] * metric.inverse_total[block],
             common: common_share(view, block),
             spin: metric.spin[block],
@@ -115,6 +115,12 @@ impl Body {
             push[2].x += self.lever.dot(&impulse);
         }
     }
+}
+
+/// J90 of an arm (m).
+#[inline(always)]
+pub fn turned_arm(arm: Vector) -> Vector {
+    Vector::new(-arm.y, arm.x)
 }
 
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.

@@ -1,13 +1,18 @@
 //! Contacts abreast, one of each of eight manifolds, as the iteration judges them (Eqs. 14, 15, 17).
 
-use enmm_lanes::{LANES, Places, Values};
+use enmm_lanes::{LANES, Places, Values, prefetch};
 
-use crate::contact::{Limits, VertexEdge};
+use crate::contact::{Limits, Pair, VertexEdge};
 use crate::geometry::Vector;
 
 use super::abreast::{Abreast, Side};
-use super::body::Body;
+use super::body::turned_arm;
 use super::{SweepOptions, SweepView};
+
+/// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
+const FAR: usize = 16_384;
+/// Turns by which a contact is fetched ahead.
+const AHEAD: usize = 8;
 
 /// A number of each lane.
 pub type Eight = [f64; LANES];
@@ -25,14 +30,18 @@ struct Answer<T> {
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
 struct Points {
-    /// w/√m along each axis, 0 where held.
-    weights: [[Eight; 2]; 3],
+    /// w/√m.
+    weights: [Eight; 3],
     /// J90·(arm from the block's centroid) (m).
     lever: [Eight; 2],
     /// z/M (m/kg).
     part: Eight,
     /// Covers, from the first one of the part of the order on.
     covers: [Places; 3],
+    /// Lanes, a bit each, whose covers are held along one axis alone, by axis; no weight is on what is held along both.
+    held: [[u8; 2]; 3],
+    /// Whether one of them is.
+    holds: bool,
 }
 
 /// Contacts of eight manifolds. A lane without one bears nothing and repeats the covers of the first lane.
@@ -44,14 +53,15 @@ pub struct Row {
     answers: [Answer<Eight>; 2],
     /// Forces normal and shear (N/m).
     force: [Eight; 2],
-    /// Normal forces that were asked for last (N/m).
-    asked: Eight,
     friction: Eight,
     cohesion: Eight,
     /// Normal force (N/m) at or below which each is open.
     open: Eight,
     /// First turn and the one after the last.
     turns: [u32; 2],
+    /// Lanes, a bit each, that do not bear, and those that push when they are asked for a normal force.
+    shut: u8,
+    pressed: u8,
     /// Whether spring or strength of one of them follow a curve.
     curved: bool,
 }
@@ -67,16 +77,30 @@ pub struct RowView<'a> {
     pub options: &'a SweepOptions,
 }
 
+impl RowView<'_> {
+    /// Asks the memory for the contacts of the turns from the first to the one after the last.
+    #[inline(always)]
+    fn fetch(&self, [first, end]: [usize; 2]) {
+        let count = self.turns.len();
+        for &contact in &self.turns[first.min(count)..end.min(count)] {
+            prefetch(&self.contacts[contact as usize..=contact as usize]);
+        }
+    }
+}
+
 impl Row {
     /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected.
     #[inline(always)]
     pub fn load(&mut self, turns: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
         self.turns = turns;
         for points in &mut self.points {
-            points.covers = [Places::default(); 3];
+            (points.covers, points.held, points.holds) = ([Places::default(); 3], [[0; 2]; 3], false);
         }
         self.curved = false;
         let contacts = self.of(from.turns);
+        if from.turns.len() > FAR {
+            from.fetch(turns.map(|turn| turn as usize + AHEAD));
+        }
         for (lane, &contact) in contacts.iter().enumerate() {
             self.take(lane, &from.contacts[contact as usize], abreast, from, first_cover);
         }
@@ -94,9 +118,7 @@ impl Row {
     fn is_apart(&self, count: usize) -> bool {
         let covers = |lane: usize| {
             let covers = self.points.iter().flat_map(|points| points.covers.iter().zip(&points.weights));
-            covers
-                .filter(move |(_, weights)| weights[0][lane] != 0.0 || weights[1][lane] != 0.0)
-                .map(move |(covers, _)| covers.index(lane))
+            covers.filter(move |(_, weights)| weights[lane] != 0.0).map(move |(covers, _)| covers.index(lane))
         };
         (0..count).all(|a| (0..a).all(|b| covers(a).all(|i| covers(b).all(|j| i != j))))
     }
@@ -112,15 +134,15 @@ impl Row {
         self.answers[1].take(lane, shear);
         let turned = abreast.is_turned(lane, contact.pair.blocks);
         let [first, second] = if turned { [1, 0] } else { [0, 1] };
-        self.points[0].take(lane, &Body::new(&contact.pair, first, &from.view), first_cover);
-        self.points[1].take(lane, &Body::new(&contact.pair, second, &from.view), first_cover);
+        self.points[0].take(lane, &contact.pair, first, &from.view, first_cover);
+        self.points[1].take(lane, &contact.pair, second, &from.view, first_cover);
         if contact.pair.blocks[0] == contact.pair.blocks[1] {
             self.join_points(lane);
         }
         let normal = if turned { -contact.normal } else { contact.normal };
         (self.normal[0][lane], self.normal[1][lane]) = (normal.x, normal.y);
         let force = contact.expected();
-        (self.force[0][lane], self.force[1][lane], self.asked[lane]) = (force[0], force[1], 0.0);
+        (self.force[0][lane], self.force[1][lane]) = (force[0], force[1]);
         let Limits { friction, cohesion, tension, rough } = &contact.limits;
         (self.friction[lane], self.cohesion[lane]) = (*friction, *cohesion);
         self.open[lane] = if *tension > 0.0 { (-tension).next_down() } else { 0.0 };
@@ -135,7 +157,7 @@ impl Row {
             self.answers[k].take(lane, Answer { rest: 0.0, rate: 0.0, kept: 0.0 });
             (self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0);
         }
-        (self.asked[lane], self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0, 0.0);
+        (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
     }
 
     /// Both points lie in one block: its motion as a whole is felt and pushed by their difference, and covers that they
@@ -151,9 +173,7 @@ impl Row {
         for (i, j) in
             (0..9).map(|k| (k / 3, k % 3)).filter(|&(i, j)| a.covers[i].index(lane) == b.covers[j].index(lane))
         {
-            for k in 0..2 {
-                a.weights[i][k][lane] -= std::mem::take(&mut b.weights[j][k][lane]);
-            }
+            a.weights[i][lane] -= std::mem::take(&mut b.weights[j][lane]);
         }
     }
 
@@ -161,8 +181,8 @@ impl Row {
     #[inline(always)]
     pub fn finish(&self, turns: &[u32], contacts: &mut [VertexEdge]) {
         for (lane, &contact) in self.of(turns).iter().enumerate() {
-            let bears = self.asked[lane] > self.open[lane];
-            let torn = !bears & (self.asked[lane] != 0.0);
+            let bears = self.shut >> lane & 1 == 0;
+            let torn = !bears & (self.pressed >> lane & 1 == 0);
             contacts[contact as usize].end([self.force[0][lane], self.force[1][lane]], bears, torn);
         }
     }
@@ -198,15 +218,16 @@ impl Row {
         let shear = self.answers[1].ask(lanes, x * velocity[1] - y * velocity[0], old[1]);
         let zero = lanes.splat(0.0);
         let mut limit = lanes.max(normal * lanes.load(&self.friction) + lanes.load(&self.cohesion), zero);
-        lanes.store(normal, &mut self.asked);
         if self.curved {
-            let mut limits = [0.0; LANES];
+            let (mut asked, mut limits) = ([0.0; LANES], [0.0; LANES]);
+            lanes.store(normal, &mut asked);
             lanes.store(limit, &mut limits);
-            self.follow(from, &mut limits);
-            (normal, limit) = (lanes.load(&self.asked), lanes.load(&limits));
+            self.follow(from, &mut asked, &mut limits);
+            (normal, limit) = (lanes.load(&asked), lanes.load(&limits));
         }
         // No branch depends on what bears, slips or changes: it would be known too late.
         let open = lanes.load(&self.open);
+        (self.shut, self.pressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
         let limit = lanes.keep_above(limit, normal, open);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
@@ -236,15 +257,15 @@ impl Row {
     /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.
     #[cold]
     #[inline(never)]
-    fn follow(&mut self, from: &RowView, limits: &mut Eight) {
+    fn follow(&self, from: &RowView, asked: &mut Eight, limits: &mut Eight) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
             let contact = &from.contacts[contact as usize];
             let closes = contact.closure_max.is_finite();
             if closes {
-                self.asked[lane] = contact.closure().solve(self.asked[lane], self.answers[0].kept[lane]);
+                asked[lane] = contact.closure().solve(asked[lane], self.answers[0].kept[lane]);
             }
             if closes || contact.limits.rough.is_some() {
-                limits[lane] = contact.limits.shear(self.asked[lane]);
+                limits[lane] = contact.limits.shear(asked[lane]);
             }
         }
     }
@@ -252,48 +273,65 @@ impl Row {
 
 impl Points {
     #[inline(always)]
-    fn take(&mut self, lane: usize, body: &Body, first_cover: u32) {
-        for k in 0..3 {
-            self.covers[k].set(lane, body.covers[k] - first_cover);
-            (self.weights[k][0][lane], self.weights[k][1][lane]) = (body.weights[k].x, body.weights[k].y);
+    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SweepView, first_cover: u32) {
+        for (j, &cover) in pair.covers[k].iter().enumerate() {
+            let root = view.roots[cover as usize];
+            self.covers[j].set(lane, cover - first_cover);
+            self.weights[j][lane] = pair.weights[k][j] * root.x.max(root.y);
+            if root.x != root.y {
+                let axis = usize::from(root.y == 0.0);
+                self.held[j][axis] |= 1 << lane;
+                self.holds = true;
+            }
         }
-        (self.lever[0][lane], self.lever[1][lane]) = (body.lever.x, body.lever.y);
-        self.part[lane] = body.part;
+        let block = pair.blocks[k] as usize;
+        let (lever, part) = if view.metric.is_free(block) {
+            (turned_arm(pair.arms[k]), pair.z[k] * view.metric.inverse_total[block])
+        } else {
+            (Vector::zeros(), 0.0)
+        };
+        (self.lever[0][lane], self.lever[1][lane], self.part[lane]) = (lever.x, lever.y, part);
     }
 
     #[inline(always)]
     fn leave_out(&mut self, lane: usize) {
         for k in 0..3 {
             self.covers[k].set(lane, self.covers[k].index(0));
-            (self.weights[k][0][lane], self.weights[k][1][lane]) = (0.0, 0.0);
+            self.weights[k][lane] = 0.0;
         }
         (self.lever[0][lane], self.lever[1][lane], self.part[lane]) = (0.0, 0.0, 0.0);
     }
 
-    /// What their covers have of their own.
+    /// What their covers have of their own: nothing where they are held, whatever was pushed there.
     #[inline(always)]
     fn own<L: Values>(&self, lanes: L, own: &[Vector]) -> [[L::F; 2]; 3] {
-        [
+        let mut found = [
             lanes.gather_from(own, &self.covers[0]),
             lanes.gather_from(own, &self.covers[1]),
             lanes.gather_from(own, &self.covers[2]),
-        ]
-    }
-
-    #[inline(always)]
-    fn weight<L: Values>(&self, lanes: L, k: usize) -> [L::F; 2] {
-        [lanes.load(&self.weights[k][0]), lanes.load(&self.weights[k][1])]
+        ];
+        if self.holds {
+            for (found, held) in found.iter_mut().zip(&self.held) {
+                for (found, &held) in found.iter_mut().zip(held) {
+                    let mut values = [0.0; LANES];
+                    lanes.store(*found, &mut values);
+                    hold(&mut values, held);
+                    *found = lanes.load(&values);
+                }
+            }
+        }
+        found
     }
 
     /// Velocities (m/s) that all impulses so far give them.
     #[inline(always)]
     fn velocity<L: Values>(&self, lanes: L, own: &[[L::F; 2]; 3], side: &Side<L>) -> [L::F; 2] {
-        let [w, u, v] = [self.weight(lanes, 0), self.weight(lanes, 1), self.weight(lanes, 2)];
+        let [w, u, v] = [lanes.load(&self.weights[0]), lanes.load(&self.weights[1]), lanes.load(&self.weights[2])];
         let share = side.common - lanes.load(&self.part);
         let turn = side.spin * side.moment;
         let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
-        let x = (w[0] * own[0][0] + u[0] * own[1][0]) + v[0] * own[2][0];
-        let y = (w[1] * own[0][1] + u[1] * own[1][1]) + v[1] * own[2][1];
+        let x = (w * own[0][0] + u * own[1][0]) + v * own[2][0];
+        let y = (w * own[0][1] + u * own[1][1]) + v * own[2][1];
         let common = [
             side.impulse[0] * share - side.unit * side.weighted[0] + lever[0] * turn,
             side.impulse[1] * share - side.unit * side.weighted[1] + lever[1] * turn,
@@ -312,8 +350,8 @@ impl Points {
         own: &mut [Vector],
     ) {
         for (k, before) in before.iter().enumerate() {
-            let [u, v] = self.weight(lanes, k);
-            lanes.scatter_to([before[0] + u * x, before[1] + v * y], own, &self.covers[k]);
+            let w = lanes.load(&self.weights[k]);
+            lanes.scatter_to([before[0] + w * x, before[1] + w * y], own, &self.covers[k]);
         }
         let part = lanes.load(&self.part);
         let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
@@ -333,6 +371,15 @@ impl Answer<Eight> {
     #[inline(always)]
     fn ask<L: Values>(&self, lanes: L, velocity: L::F, force: L::F) -> L::F {
         lanes.load(&self.rest) - lanes.load(&self.rate) * velocity + lanes.load(&self.kept) * force
+    }
+}
+
+/// Leaves nothing in lanes with a bit.
+#[cold]
+#[inline(never)]
+fn hold(values: &mut Eight, held: u8) {
+    for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
+        values[lane] = 0.0;
     }
 }
 
