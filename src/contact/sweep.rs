@@ -9,6 +9,9 @@ mod support;
 
 pub use body::BlockPush;
 
+use enmm_lanes::LANES;
+use rayon::prelude::*;
+
 use crate::geometry::{NONE, Vector};
 use crate::mechanics::Metric;
 
@@ -19,6 +22,8 @@ use self::row::{Row, RowView};
 use self::support::Bearings;
 use super::{BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
 
+/// Contacts whose forces one thread takes from the rows.
+const CONTACTS: usize = 1024;
 /// Share of the largest force below which a contact is light: its changes are measured against that force.
 const LIGHT: f64 = 0.02;
 
@@ -88,11 +93,12 @@ pub struct OpenClose {
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let Sequence { abreast, ends, first_turn, contacts } = &self.sequence;
+        let Sequence { abreast, ends, first_turn, contacts, places } = &self.sequence;
         let sequence = size_of_val(abreast.as_slice())
             + size_of_val(ends.as_slice())
             + size_of_val(first_turn.as_slice())
-            + size_of_val(contacts.as_slice());
+            + size_of_val(contacts.as_slice())
+            + size_of_val(places.as_slice());
         let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
         let push = size_of_val(self.push.as_slice());
         size_of_val(self.rows.as_slice()) + sequence + own + push + self.order.bytes() + self.bearings.bytes()
@@ -144,7 +150,8 @@ impl OpenClose {
             push_bolt(bodies, bolt.direction * (-bolt.force * options.kick), &mut ground);
         }
         let report = self.sweeps(metric, options, contacts, others);
-        self.finish(contacts, others);
+        self.finish(contacts, options.serial);
+        self.bearings.finish(others.rows);
         report
     }
 
@@ -239,10 +246,20 @@ impl OpenClose {
         change
     }
 
-    /// Forces and states of all that was judged.
-    fn finish(&self, contacts: &mut [VertexEdge], others: &mut Others) {
-        self.rows.iter().for_each(|row| row.finish(&self.sequence.contacts, contacts));
-        self.bearings.finish(others.rows);
+    /// Forces and states of all contacts.
+    fn finish(&self, contacts: &mut [VertexEdge], serial: bool) {
+        let finish = |(contacts, places): (&mut [VertexEdge], &[u32])| {
+            for (contact, &place) in contacts.iter_mut().zip(places) {
+                let place = place as usize;
+                self.rows[place / LANES].finish(place % LANES, contact);
+            }
+        };
+        let places = &self.sequence.places;
+        if serial || contacts.len() <= CONTACTS {
+            finish((contacts, places));
+        } else {
+            contacts.par_chunks_mut(CONTACTS).zip(places.par_chunks(CONTACTS)).for_each(finish);
+        }
     }
 
     /// Writes the velocity increments (m/s) of the covers by their own impulses, and the impulse sums of the blocks.

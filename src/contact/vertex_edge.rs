@@ -2,7 +2,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Closure, Limits, Pair};
+use super::{Answer, Closure, Limits, Pair};
 
 /// What a contact does at the end of a step.
 #[doc(alias = "sliding")]
@@ -47,42 +47,42 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// A contact during one step: geometry, compliance and forces.
+/// A contact during one step: geometry, how it answers, and forces. What the sweeps read comes first.
 #[derive(Debug, Clone, Copy, Default)]
+#[repr(C, align(64))]
 pub struct VertexEdge {
-    /// What it remembers; forces are updated by the sweeps.
-    pub history: ContactHistory,
     /// The node and the place on the edge that it faces.
     pub pair: Pair,
     /// Outward unit normal of the edge.
     pub normal: Vector,
+    /// How the springs normal and shear answer in an explicit step.
+    pub answers: [Answer; 2],
+    /// Forces (N/m), normal and shear, that an explicit step starts from.
+    pub expected: [f64; 2],
+    /// Limits of the joint law for this length.
+    pub limits: Limits,
+    /// Greatest closure of the normal spring (m); infinite for a linear one.
+    pub closure_max: f64,
+    /// What it remembers; forces are updated by the sweeps.
+    pub history: ContactHistory,
+    /// Springs normal (initial stiffness) and shear (N/m per metre).
+    pub stiffness: [f64; 2],
     /// Gap along the normal that the springs see (m); negative in penetration.
     pub gap: f64,
     /// Penetration of the node (m), with no allowance.
     pub penetration: f64,
     /// Tributary length (m).
     pub length: f64,
-    /// Springs normal (initial stiffness) and shear (N/m per metre).
-    pub stiffness: [f64; 2],
-    /// Greatest closure of the normal spring (m); infinite for a linear one.
-    pub closure_max: f64,
-    /// Inverse effective masses normal and shear (m/kg).
-    pub compliance: [f64; 2],
-    /// Limits of the joint law for this length.
-    pub limits: Limits,
     /// Law of the joint.
     pub law: u32,
-    /// Predicted relative velocity normal and shear without contact forces (m/s).
-    pub approach: [f64; 2],
-    /// Share of the step's motion, normal and shear, that the springs feel ahead: θ, or that of a joint's own spring.
-    pub forward: [f64; 2],
-    /// Motion (m) normal and shear that is added to what the springs feel: minus a share of that of the last step.
-    pub lag: [f64; 2],
     /// Whether the normal force asked for more tension than the joint has.
     pub torn: bool,
     /// Whether the contact is seen for the first time.
     pub fresh: bool,
 }
+
+// Six lines of the cache; sweeps read four.
+const _: () = assert!(size_of::<VertexEdge>() == 384 && std::mem::offset_of!(VertexEdge, history) == 256);
 
 impl VertexEdge {
     /// Unit tangent of the edge.
@@ -94,23 +94,18 @@ impl VertexEdge {
 
 /// Share of their last change by which forces are expected to change again: from 0.7 on resting contacts swing.
 const EXPECTED: f64 = 0.5;
-/// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
-const CENTRED: f64 = 0.25;
 
 impl VertexEdge {
-    /// Centres the springs whose stiffness is a `physical` property of the joint (Eqs. 52, 53).
-    ///
-    /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
-    /// stiffer one gets a dashpot that grows towards that of θ. The step is `dt` and the force acts for `kick` (s);
-    /// `last` is the motion (m) normal and shear in the last step, and `damping` 2ξ·√M of the two blocks against each
-    /// other (kg½/m½): what a spring takes of their bouncing.
-    pub fn centre(&mut self, physical: [bool; 2], dt: f64, kick: f64, last: [f64; 2], damping: f64) {
-        for k in (0..2).filter(|k| physical[*k]) {
-            let stiff = self.stiffness[k] * self.compliance[k] * dt * kick;
-            let dashpot = if stiff > 1.0 { self.forward[k] * (1.0 - 1.0 / stiff) } else { 0.0 };
-            self.forward[k] = CENTRED + dashpot + damping / (self.stiffness[k].sqrt() * dt);
-            self.lag[k] = -CENTRED * last[k];
-        }
+    /// Whether spring or strength follow a curve.
+    #[inline(always)]
+    pub fn is_curved(&self) -> bool {
+        self.closure_max.is_finite() || matches!(self.limits, Limits::BartonBandis { .. })
+    }
+
+    /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
+    #[inline(always)]
+    pub fn shear_limit(&self, normal: f64) -> f64 {
+        self.limits.shear(normal, self.length)
     }
 
     /// The normal spring.
@@ -143,23 +138,22 @@ impl VertexEdge {
         if self.history.state == ContactState::Open {
             return (0.0, 0.0);
         }
-        let limit = self.limits.shear(self.history.normal_force);
+        let limit = self.shear_limit(self.history.normal_force);
         let trial = self.history.shear_stored - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
 
-    /// Forces (N/m), normal and shear, that a step starts from: a contact that stays closed goes on half as it has
-    /// changed, within its limit.
+    /// Expects forces: a contact that stays closed goes on half as it has changed, within its limit.
     #[inline(always)]
-    pub fn expected(&self) -> [f64; 2] {
+    pub fn expect(&mut self) {
         let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
         let normal = normal_force + EXPECTED * trend[0];
-        if normal <= 0.0 || normal_force <= trend[0].max(0.0) {
-            return [normal_force, shear_force];
+        self.expected = [normal_force, shear_force];
+        if normal > 0.0 && normal_force > trend[0].max(0.0) {
+            let limit = self.shear_limit(normal);
+            self.expected = [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)];
         }
-        let limit = self.limits.shear(normal);
-        [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)]
     }
 
     /// Takes the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and notes how they have changed.
@@ -174,7 +168,7 @@ impl VertexEdge {
     /// than it has. No branch depends on what they are: that is hard to foresee.
     #[inline(always)]
     pub fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool) {
-        let slips = shear.abs() >= self.limits.shear(normal);
+        let slips = shear.abs() >= self.shear_limit(normal);
         let states = [ContactState::Open, ContactState::Open, ContactState::Lock, ContactState::Slip];
         self.history.state = states[2 * usize::from(bears) + usize::from(slips)];
         // The sum turns a zero from below into zero.
@@ -185,9 +179,9 @@ impl VertexEdge {
     /// Clamps the forces that the springs ask for to what the joint can carry.
     #[inline(always)]
     pub fn decide(&mut self, normal: f64, shear: f64) {
-        let torn = normal < -self.limits.tension;
-        let bears = !torn && (normal > 0.0 || self.limits.tension > 0.0);
-        let limit = self.limits.shear(normal);
+        let torn = normal < -self.limits.tension();
+        let bears = !torn && (normal > 0.0 || self.limits.tension() > 0.0);
+        let limit = self.shear_limit(normal);
         let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0; 2] };
         self.bear(force, bears, torn);
     }

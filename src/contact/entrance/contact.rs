@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{Closure, ContactHistory, ContactState, Pair, VertexEdge};
+use crate::contact::{Closure, ContactHistory, ContactState, Pair, Spring, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
@@ -22,11 +22,7 @@ impl Kernel for Make<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
-            *contact = self.narrow.contact(pick);
-            if let Some(approach) = &self.narrow.approach {
-                contact.approach = contact.relative(approach.predicted);
-                self.narrow.centre(contact, approach);
-            }
+            self.narrow.make_one(pick, contact);
         }
     }
 }
@@ -47,7 +43,7 @@ impl Narrow<'_> {
     }
 
     #[inline(always)]
-    fn contact(&self, pick: &Pick) -> VertexEdge {
+    fn make_one(&self, pick: &Pick, contact: &mut VertexEdge) {
         let (boundary, node) = (self.boundary, pick.node as usize);
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
@@ -68,30 +64,38 @@ impl Narrow<'_> {
         let history = ContactHistory { edge: pick.edge, ..history };
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
-        VertexEdge {
+        *contact = VertexEdge {
+            pair,
+            normal,
+            answers: Default::default(),
+            expected: [0.0; 2],
             limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
+            closure_max,
             gap: pick.gap + history.offset - history.rest,
             penetration: -pick.gap,
             history,
-            pair,
-            normal,
-            length,
             stiffness,
-            closure_max,
-            compliance,
+            length,
             law,
-            approach: [0.0; 2],
-            forward: [self.theta; 2],
-            lag: [0.0; 2],
             torn: false,
             fresh: pick.held.is_none(),
+        };
+        if let Some(approach) = &self.approach {
+            self.answer(contact, compliance, approach);
         }
     }
 
-    /// Centres the springs of a dynamic stage that are a joint's own.
+    /// How a contact with these inverse effective masses (m/kg) answers in an explicit step. A joint's own springs are
+    /// centred in a dynamic stage.
     #[inline(always)]
-    fn centre(&self, contact: &mut VertexEdge, approach: &Approach) {
-        let Approach { dt, kick, damping, .. } = *approach;
+    fn answer(&self, contact: &mut VertexEdge, compliance: [f64; 2], approach: &Approach) {
+        let Approach { predicted, dt, kick, damping } = *approach;
+        let speed = contact.relative(predicted);
+        let spring = |k: usize| {
+            let (stiffness, compliance, approach) = (contact.stiffness[k], compliance[k], speed[k]);
+            Spring { stiffness, compliance, approach, forward: self.theta, lag: 0.0, dt, kick }
+        };
+        let (mut normal, mut shear) = (spring(0), spring(1));
         let physical = self.laws[contact.law as usize].penalty.map(|penalty| !penalty);
         if let Some(ratio) = damping
             && physical != [false; 2]
@@ -99,8 +103,15 @@ impl Narrow<'_> {
             let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
             let inverse: f64 = contact.pair.blocks.map(|b| self.metric.inverse_total[b as usize]).iter().sum();
             let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
-            contact.centre(physical, dt, kick, last, bouncing);
+            let centre =
+                |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };
+            (normal, shear) = (centre(0, normal), centre(1, shear));
         }
+        let curved = contact.closure_max.is_finite();
+        let normal =
+            if curved { normal.curved(-contact.gap) } else { normal.linear(-contact.stiffness[0] * contact.gap) };
+        contact.answers = [normal, shear.linear(contact.history.shear_stored)];
+        contact.expect();
     }
 
     /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.

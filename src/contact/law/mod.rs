@@ -37,54 +37,61 @@ pub struct JointLaw {
 }
 
 /// Forces (N/m) that a contact of some length can carry.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Limits {
-    /// tan φ.
-    pub friction: f64,
-    /// Cohesive shear force (N/m).
-    pub cohesion: f64,
-    /// Tensile force (N/m).
-    pub tension: f64,
-    /// What a Barton–Bandis joint has instead of friction and cohesion.
-    pub rough: Option<RoughLimit>,
-}
-
-/// Shear strength of a Barton–Bandis joint of some length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoughLimit {
-    /// Roughness.
-    pub roughness: Roughness,
-    /// Tributary length (m), which turns the normal force into a stress.
-    pub length: f64,
-    /// Factor on the shear strength.
-    pub factor: f64,
+pub enum Limits {
+    /// Friction on a straight line.
+    MohrCoulomb {
+        /// tan φ.
+        friction: f64,
+        /// Cohesive shear force (N/m).
+        cohesion: f64,
+        /// Tensile force (N/m).
+        tension: f64,
+    },
+    /// Friction on a curve, without cohesion and tension.
+    BartonBandis {
+        /// Roughness.
+        roughness: Roughness,
+        /// Factor on the shear strength.
+        factor: f64,
+    },
 }
 
-impl RoughLimit {
-    /// Greatest shear force (N/m) under a normal force (N/m).
-    fn shear(&self, normal: f64) -> f64 {
-        if normal <= 0.0 { 0.0 } else { normal * self.roughness.friction(normal / self.length) * self.factor }
+impl Default for Limits {
+    fn default() -> Self {
+        Self::MohrCoulomb { friction: 0.0, cohesion: 0.0, tension: 0.0 }
     }
 }
 
 impl Limits {
-    /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
+    /// Greatest shear force (N/m) of a contact of tributary `length` (m) under a normal force (N/m, compression
+    /// positive).
     #[inline(always)]
-    pub fn shear(&self, normal: f64) -> f64 {
-        match &self.rough {
-            None => (normal * self.friction + self.cohesion).max(0.0),
-            Some(rough) => rough.shear(normal),
+    pub fn shear(&self, normal: f64, length: f64) -> f64 {
+        match self {
+            Self::MohrCoulomb { friction, cohesion, .. } => (normal * friction + cohesion).max(0.0),
+            Self::BartonBandis { .. } if normal <= 0.0 => 0.0,
+            Self::BartonBandis { roughness, factor } => normal * roughness.friction(normal / length) * factor,
         }
     }
 
-    /// Limits of joints whose strength is multiplied by `factor`.
+    /// Greatest tensile force (N/m).
     #[inline(always)]
-    pub fn times(self, factor: f64) -> Self {
-        Self {
-            friction: self.friction * factor,
-            cohesion: self.cohesion * factor,
-            tension: self.tension * factor,
-            rough: self.rough.map(|rough| RoughLimit { factor: rough.factor * factor, ..rough }),
+    pub fn tension(&self) -> f64 {
+        match self {
+            Self::MohrCoulomb { tension, .. } => *tension,
+            Self::BartonBandis { .. } => 0.0,
+        }
+    }
+
+    /// Limits of joints whose strength is multiplied by `by`.
+    #[inline(always)]
+    pub fn times(self, by: f64) -> Self {
+        match self {
+            Self::MohrCoulomb { friction, cohesion, tension } => {
+                Self::MohrCoulomb { friction: friction * by, cohesion: cohesion * by, tension: tension * by }
+            }
+            Self::BartonBandis { roughness, factor } => Self::BartonBandis { roughness, factor: factor * by },
         }
     }
 }
@@ -93,13 +100,15 @@ impl JointLaw {
     /// Limits of a contact of tributary length `length` (m), peak while `intact`.
     #[inline(always)]
     pub fn limits(&self, length: f64, intact: bool) -> Limits {
+        if let Some(roughness) = self.roughness {
+            return Limits::BartonBandis { roughness, factor: 1.0 };
+        }
         let [friction, cohesion, tension] = if intact {
             [self.friction, self.cohesion, self.tension]
         } else {
             [self.residual_friction, self.residual_cohesion, self.residual_tension]
         };
-        let rough = self.roughness.map(|roughness| RoughLimit { roughness, length, factor: 1.0 });
-        Limits { friction, cohesion: cohesion * length, tension: tension * length, rough }
+        Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length }
     }
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness

@@ -163,7 +163,7 @@ impl Abreast {
             (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - ground.first_block)));
         }
         for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
-            row.load([ends[0], ends[1]], self, from, ground.first_cover);
+            row.load(lanes, [ends[0], ends[1]], self, from, ground.first_cover);
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
         let mut all = self.begin(lanes, ground);

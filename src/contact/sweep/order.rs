@@ -35,9 +35,7 @@ pub struct SweepOrder {
     entries: Vec<Entry>,
     leaf: Vec<u32>,
     colours: Colours,
-    /// Of a step: the manifold of each contact, and the number of contacts of each manifold, then the place of its
-    /// next.
-    of_contact: Vec<u32>,
+    /// Of a step: the number of contacts of each manifold, then the place of its next.
     count: Vec<u32>,
     /// Manifolds of a colour that have contacts.
     touching: Vec<u32>,
@@ -83,13 +81,15 @@ pub struct Sequence {
     pub first_turn: Vec<u32>,
     /// Contact of each turn.
     pub contacts: Vec<u32>,
+    /// Place of each contact: its row times the number of lanes, and its lane.
+    pub places: Vec<u32>,
 }
 
 impl SweepOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { first_candidate, manifold, leaf, of_contact, count, touching, .. } = self;
-        let lists = [first_candidate, manifold, leaf, of_contact, count, touching, &self.leaf_block];
+        let Self { first_candidate, manifold, leaf, count, touching, leaf_block, .. } = self;
+        let lists = [first_candidate, manifold, leaf, count, touching, leaf_block];
         let order = size_of_val(self.keys.as_slice()) + size_of_val(self.manifolds.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
@@ -192,8 +192,8 @@ impl SweepOrder {
 
     /// Puts the manifolds and the contacts of a step in the order of their turns.
     pub fn arrange(&mut self, touching: &[VertexEdge], view: &SweepView, sequence: &mut Sequence) {
-        self.count_contacts(touching);
-        let Sequence { abreast, ends, first_turn, contacts } = sequence;
+        let Sequence { abreast, ends, first_turn, contacts, places } = sequence;
+        self.count_contacts(touching, places);
         abreast.clear();
         ends.clear();
         first_turn.clear();
@@ -222,26 +222,27 @@ impl SweepOrder {
         ends.resize(2 * (self.leaf_block.len() - 1) - 1, abreast.len() as u32);
         first_turn.push(turns);
         contacts.resize(turns as usize, 0);
-        for (&m, contact) in self.of_contact.iter().zip(0..) {
-            let place = &mut self.count[m as usize];
+        for (place, contact) in places.iter_mut().zip(0..) {
+            let next = &mut self.count[*place as usize];
+            *place = *next;
+            *next += LANES as u32;
             let turn = first_turn[(*place / LANES as u32) as usize] + *place % LANES as u32;
             contacts[turn as usize] = contact;
-            *place += LANES as u32;
         }
     }
 
     /// Finds the manifold of each contact, and the number of contacts of each manifold.
-    fn count_contacts(&mut self, contacts: &[VertexEdge]) {
+    fn count_contacts(&mut self, contacts: &[VertexEdge], manifolds: &mut Vec<u32>) {
         self.count.clear();
         self.count.resize(self.manifolds.len(), 0);
-        self.of_contact.clear();
+        manifolds.clear();
         let mut k = 0;
         for contact in contacts {
             let key = key_of(contact.history.node, contact.history.side);
             while self.keys[k] < key {
                 k += 1;
             }
-            self.of_contact.push(self.manifold[k]);
+            manifolds.push(self.manifold[k]);
             self.count[self.manifold[k] as usize] += 1;
         }
     }

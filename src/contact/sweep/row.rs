@@ -1,8 +1,8 @@
 //! Contacts abreast, one of each of eight manifolds, as the iteration judges them (Eqs. 14, 15, 17).
 
-use enmm_lanes::{LANES, Places, Values, prefetch};
+use enmm_lanes::{LANES, Lanes, Places, Values, prefetch};
 
-use crate::contact::{Limits, Pair, VertexEdge};
+use crate::contact::{Answer, Limits, Pair, VertexEdge};
 use crate::geometry::Vector;
 
 use super::abreast::{Abreast, Side};
@@ -16,15 +16,6 @@ const AHEAD: usize = 8;
 
 /// A number of each lane.
 pub type Eight = [f64; LANES];
-
-/// What the spring along one axis answers: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all
-/// impulses so far. For a curved spring it is the closure (m) that the force then follows from.
-#[derive(Debug, Clone, Copy, Default)]
-struct Answer<T> {
-    rest: T,
-    rate: T,
-    kept: T,
-}
 
 /// One material point of each contact. Numbers begin at lines of the cache.
 #[derive(Debug, Clone, Copy, Default)]
@@ -91,7 +82,7 @@ impl RowView<'_> {
 impl Row {
     /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected.
     #[inline(always)]
-    pub fn load(&mut self, turns: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
+    pub fn load<L: Lanes>(&mut self, lanes: L, turns: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
         self.turns = turns;
         for points in &mut self.points {
             (points.covers, points.held, points.holds) = ([Places::default(); 3], [[0; 2]; 3], false);
@@ -105,6 +96,10 @@ impl Row {
             self.take(lane, &from.contacts[contact as usize], abreast, from, first_cover);
         }
         (contacts.len()..LANES).for_each(|lane| self.leave_out(lane));
+        self.divide(lanes);
+        if self.curved {
+            self.take_curved(from);
+        }
         debug_assert!(self.is_apart(contacts.len()), "two manifolds of one colour share a cover");
     }
 
@@ -125,13 +120,9 @@ impl Row {
 
     #[inline(always)]
     fn take(&mut self, lane: usize, contact: &VertexEdge, abreast: &Abreast, from: &RowView, first_cover: u32) {
-        let options = from.options;
-        let closes = contact.closure_max.is_finite();
-        let pressed = -contact.stiffness[0] * contact.gap;
-        let normal = if closes { closing(contact, options) } else { spring(contact, options, 0, pressed) };
-        let shear = spring(contact, options, 1, contact.history.shear_stored);
-        self.answers[0].take(lane, normal);
-        self.answers[1].take(lane, shear);
+        for (answers, answer) in self.answers.iter_mut().zip(&contact.answers) {
+            answers.take(lane, answer);
+        }
         let turned = abreast.is_turned(lane, contact.pair.blocks);
         let [first, second] = if turned { [1, 0] } else { [0, 1] };
         self.points[0].take(lane, &contact.pair, first, &from.view, first_cover);
@@ -141,12 +132,36 @@ impl Row {
         }
         let normal = if turned { -contact.normal } else { contact.normal };
         (self.normal[0][lane], self.normal[1][lane]) = (normal.x, normal.y);
-        let force = contact.expected();
-        (self.force[0][lane], self.force[1][lane]) = (force[0], force[1]);
-        let Limits { friction, cohesion, tension, rough } = &contact.limits;
-        (self.friction[lane], self.cohesion[lane]) = (*friction, *cohesion);
-        self.open[lane] = if *tension > 0.0 { (-tension).next_down() } else { 0.0 };
-        self.curved |= closes || rough.is_some();
+        (self.force[0][lane], self.force[1][lane]) = (contact.expected[0], contact.expected[1]);
+        let (friction, cohesion, tension) = match contact.limits {
+            Limits::MohrCoulomb { friction, cohesion, tension } => (friction, cohesion, tension),
+            Limits::BartonBandis { .. } => (0.0, 0.0, 0.0),
+        };
+        (self.friction[lane], self.cohesion[lane]) = (friction, cohesion);
+        self.open[lane] = if tension > 0.0 { (-tension).next_down() } else { 0.0 };
+        self.curved |= contact.is_curved();
+    }
+
+    /// Makes forces of what the springs ask for.
+    #[inline(always)]
+    fn divide<L: Lanes>(&mut self, lanes: L) {
+        let one = lanes.splat(1.0);
+        for Answer { rest, rate, kept } in &mut self.answers {
+            let share = one / (one + lanes.load(kept));
+            lanes.store(lanes.load(rest) * share, rest);
+            lanes.store(lanes.load(rate) * share, rate);
+            lanes.store(lanes.load(kept) * share, kept);
+        }
+    }
+
+    /// Takes again what curved springs ask for, which is no force.
+    #[cold]
+    #[inline(never)]
+    fn take_curved(&mut self, from: &RowView) {
+        let contacts = self.of(from.turns).iter().map(|&contact| &from.contacts[contact as usize]);
+        for (lane, contact) in contacts.enumerate().filter(|(_, contact)| contact.closure_max.is_finite()) {
+            self.answers[0].take(lane, &contact.answers[0]);
+        }
     }
 
     /// Leaves a lane without contact.
@@ -154,7 +169,7 @@ impl Row {
     fn leave_out(&mut self, lane: usize) {
         for k in 0..2 {
             self.points[k].leave_out(lane);
-            self.answers[k].take(lane, Answer { rest: 0.0, rate: 0.0, kept: 0.0 });
+            self.answers[k].take(lane, &Answer::default());
             (self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0);
         }
         (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
@@ -177,14 +192,12 @@ impl Row {
         }
     }
 
-    /// Leaves forces and states in the contacts.
+    /// Leaves force and state in the contact of a lane.
     #[inline(always)]
-    pub fn finish(&self, turns: &[u32], contacts: &mut [VertexEdge]) {
-        for (lane, &contact) in self.of(turns).iter().enumerate() {
-            let bears = self.shut >> lane & 1 == 0;
-            let torn = !bears & (self.pressed >> lane & 1 == 0);
-            contacts[contact as usize].end([self.force[0][lane], self.force[1][lane]], bears, torn);
-        }
+    pub fn finish(&self, lane: usize, contact: &mut VertexEdge) {
+        let bears = self.shut >> lane & 1 == 0;
+        let torn = !bears & (self.pressed >> lane & 1 == 0);
+        contact.end([self.force[0][lane], self.force[1][lane]], bears, torn);
     }
 
     /// Pushes with the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
@@ -260,12 +273,11 @@ impl Row {
     fn follow(&self, from: &RowView, asked: &mut Eight, limits: &mut Eight) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
             let contact = &from.contacts[contact as usize];
-            let closes = contact.closure_max.is_finite();
-            if closes {
+            if contact.closure_max.is_finite() {
                 asked[lane] = contact.closure().solve(asked[lane], self.answers[0].kept[lane]);
             }
-            if closes || contact.limits.rough.is_some() {
-                limits[lane] = contact.limits.shear(asked[lane]);
+            if contact.is_curved() {
+                limits[lane] = contact.shear_limit(asked[lane]);
             }
         }
     }
@@ -363,7 +375,7 @@ impl Points {
 
 impl Answer<Eight> {
     #[inline(always)]
-    fn take(&mut self, lane: usize, answer: Answer<f64>) {
+    fn take(&mut self, lane: usize, answer: &Answer) {
         (self.rest[lane], self.rate[lane], self.kept[lane]) = (answer.rest, answer.rate, answer.kept);
     }
 
@@ -394,22 +406,4 @@ fn turned<L: Values>(lanes: L, [x, y]: [L::F; 2], along: [L::F; 2], kick: f64) -
 #[inline(always)]
 fn larger_size<L: Values>(lanes: L, [a, b]: [L::F; 2]) -> L::F {
     lanes.max(lanes.max(a, -a), lanes.max(b, -b))
-}
-
-/// The linear spring along axis `k` that bears `stored` (N/m) at the step's start.
-#[inline(always)]
-fn spring(contact: &VertexEdge, options: &SweepOptions, k: usize, stored: f64) -> Answer<f64> {
-    let a = contact.stiffness[k] * contact.forward[k] * options.dt;
-    let aw = a * contact.compliance[k] * options.kick;
-    let asked = stored - contact.stiffness[k] * contact.lag[k] - a * contact.approach[k];
-    let share = 1.0 / (1.0 + aw);
-    Answer { rest: asked * share, rate: a * share, kept: aw * share }
-}
-
-/// A curved normal spring.
-#[inline(always)]
-fn closing(contact: &VertexEdge, options: &SweepOptions) -> Answer<f64> {
-    let reach = contact.forward[0] * options.dt;
-    let rest = -contact.gap - contact.lag[0] - reach * contact.approach[0];
-    Answer { rest, rate: reach, kept: reach * contact.compliance[0] * options.kick }
 }

@@ -137,7 +137,7 @@ fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
 /// The same with the shear limit of an earlier normal force.
 fn judge_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
     let [normal, shear] = springs(contact, moved);
-    let limit = contact.limits.shear(pressing);
+    let limit = contact.shear_limit(pressing);
     contact.decide(normal, shear);
     contact.history.shear_force = shear.clamp(-limit, limit);
 }

@@ -1,0 +1,66 @@
+//! The spring of a contact along one axis, as an explicit step meets it (Eq. 14).
+
+/// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
+const CENTRED: f64 = 0.25;
+
+/// What a spring asks for: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all impulses so far.
+/// Of a linear spring it is the force times 1 + `kept`, of a curved one the closure (m) that the force follows from.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Answer<T = f64> {
+    /// Force (N/m), or closure (m).
+    pub rest: T,
+    /// The same per velocity (N·s/m², or s).
+    pub rate: T,
+    /// The same per force (1, or m²/N).
+    pub kept: T,
+}
+
+/// A spring normal or shear, and what acts on it in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// Stiffness (N/m per metre).
+    pub stiffness: f64,
+    /// Inverse effective mass of the contact (m/kg).
+    pub compliance: f64,
+    /// Predicted relative velocity without contact forces (m/s).
+    pub approach: f64,
+    /// Share of the step's motion that it feels ahead: θ, or that of a joint's own spring.
+    pub forward: f64,
+    /// Motion (m) that is added to what it feels: minus a share of that of the last step.
+    pub lag: f64,
+    /// Time (s) for which places move.
+    pub dt: f64,
+    /// Time (s) for which forces act.
+    pub kick: f64,
+}
+
+impl Spring {
+    /// Centres a stiffness that is a property of the joint (Eqs. 52, 53).
+    ///
+    /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
+    /// stiffer one gets a dashpot that grows towards that of θ. The motion in the last step was `last` (m), and
+    /// `damping` is 2ξ·√M of the two blocks against each other (kg½/m½): what the spring takes of their bouncing.
+    #[must_use]
+    pub fn centred(self, last: f64, damping: f64) -> Self {
+        let stiff = self.stiffness * self.compliance * self.dt * self.kick;
+        let dashpot = if stiff > 1.0 { self.forward * (1.0 - 1.0 / stiff) } else { 0.0 };
+        let forward = CENTRED + dashpot + damping / (self.stiffness.sqrt() * self.dt);
+        Self { forward, lag: -CENTRED * last, ..self }
+    }
+
+    /// The answer of a linear spring that bears `stored` (N/m) at the step's start.
+    #[inline(always)]
+    pub fn linear(&self, stored: f64) -> Answer {
+        let a = self.stiffness * self.forward * self.dt;
+        let aw = a * self.compliance * self.kick;
+        Answer { rest: stored - self.stiffness * self.lag - a * self.approach, rate: a, kept: aw }
+    }
+
+    /// The answer of a curved spring that is closed by `closure` (m) at the step's start.
+    #[inline(always)]
+    pub fn curved(&self, closure: f64) -> Answer {
+        let reach = self.forward * self.dt;
+        let rest = closure - self.lag - reach * self.approach;
+        Answer { rest, rate: reach, kept: reach * self.compliance * self.kick }
+    }
+}
