@@ -46,7 +46,7 @@ pub struct Scratch {
     pub search: SearchGrid,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
-    /// What they did in this step.
+    /// What they did in this step, by run.
     pub outcomes: Vec<ContactOutcome>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
@@ -78,17 +78,19 @@ pub struct Scratch {
     pub seconds: Seconds,
 }
 
-/// What a contact did in a step.
+/// What a run of contacts did in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactOutcome {
-    /// Work of its forces (J/m).
+    /// Work of their forces (J/m).
     pub work: f64,
     /// What friction took of it (J/m).
     pub friction: f64,
-    /// Penetration (m) that its springs resist.
+    /// Largest penetration (m) that springs resist.
     pub penetration: f64,
-    /// Depth (m) at which it was seen for the first time in this step; 0 for others.
-    pub deep: f64,
+    /// Number of those that were seen for the first time in this step, and deep.
+    pub deep: u64,
+    /// The largest of their depths (m).
+    pub deepest: f64,
 }
 
 /// Sums over the covers of a patch.

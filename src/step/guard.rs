@@ -64,12 +64,15 @@ impl Step<'_> {
         }
         let limit = slope.penetration_limit;
         let scratch = &*self.scratch;
-        match scratch.outcomes.iter().position(|outcome| outcome.penetration > limit) {
-            Some(k) => Err(StepError {
-                block: scratch.contacts[k].pair.blocks[0],
-                place: scratch.place[slope.boundary.node_point[scratch.contacts[k].history.node as usize] as usize],
+        if scratch.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
+            return Ok(());
+        }
+        match scratch.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
+            Some(contact) => Err(StepError {
+                block: contact.pair.blocks[0],
+                place: scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize],
                 time: self.time,
-                failure: Failure::Penetration { depth: scratch.outcomes[k].penetration, limit },
+                failure: Failure::Penetration { depth: contact.loaded_penetration(), limit },
             }),
             None => Ok(()),
         }

@@ -13,12 +13,12 @@ use super::touch::CONTACTS;
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
 
-/// Some contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every kind
+/// A run of contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every kind
 /// of lanes.
 struct Settle<'a> {
     contacts: &'a [VertexEdge],
     histories: &'a mut [ContactHistory],
-    outcomes: &'a mut [ContactOutcome],
+    outcome: &'a mut ContactOutcome,
     laws: &'a [JointLaw],
     /// Velocities (m/s) of the covers before and after the forces.
     velocities: [&'a [Vector]; 2],
@@ -33,30 +33,37 @@ impl Kernel for Settle<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { laws, velocities, dt, kick, fade, .. } = self;
-        for ((contact, history), outcome) in self.contacts.iter().zip(self.histories).zip(self.outcomes) {
+        let Self { outcome, laws, velocities, dt, kick, fade, .. } = self;
+        *outcome = ContactOutcome::default();
+        for (contact, history) in self.contacts.iter().zip(self.histories) {
             let [before, after] = velocities.map(|velocity| contact.relative(velocity));
             let (stored, slipped) = contact.shear_after(after[1] * dt);
-            *outcome = works(contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
+            add_works(outcome, contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
+            add_depths(outcome, contact);
             *history = remembered(contact, &laws[contact.law as usize], stored, slipped);
             history.offset *= fade;
         }
     }
 }
 
-/// What a contact did that has moved by `moved` (m), normal and shear, and stores the shear force `stored` (N/m) now.
+/// Adds the works of a contact that has moved by `moved` (m), normal and shear, and stores the shear force `stored`
+/// (N/m) now.
 #[inline(always)]
-fn works(contact: &VertexEdge, moved: [f64; 2], stored: f64) -> ContactOutcome {
+fn add_works(outcome: &mut ContactOutcome, contact: &VertexEdge, [normal, shear]: [f64; 2], stored: f64) {
     let history = &contact.history;
-    let [normal, shear] = moved;
-    let work = history.normal_force * normal + history.shear_force * shear;
+    outcome.work += history.normal_force * normal + history.shear_force * shear;
     let old = history.shear_stored;
     let spent = history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
-    ContactOutcome {
-        work,
-        friction: if history.state == ContactState::Slip { spent } else { 0.0 },
-        penetration: contact.loaded_penetration(),
-        deep: if contact.fresh { history.offset } else { 0.0 },
+    outcome.friction += if history.state == ContactState::Slip { spent } else { 0.0 };
+}
+
+/// Adds how deep a contact is, and was when it was seen for the first time.
+#[inline(always)]
+fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
+    outcome.penetration = outcome.penetration.max(contact.loaded_penetration());
+    if contact.fresh && contact.history.offset > 0.0 {
+        outcome.deep += 1;
+        outcome.deepest = outcome.deepest.max(contact.history.offset);
     }
 }
 
@@ -77,24 +84,23 @@ impl Step<'_> {
         let state = &mut *self.state;
         let Scratch { contacts, predicted, outcomes, serial, .. } = &mut *self.scratch;
         state.contacts.resize(contacts.len(), ContactHistory::default());
-        outcomes.resize(contacts.len(), ContactOutcome::default());
+        outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
         let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
         let (kick, fade) = (0.5 * (state.dt_last + dt), (-dt / OFFSET_FADE).exp());
-        let settle = |((contacts, histories), outcomes)| {
-            dispatch(Settle { contacts, histories, outcomes, laws, velocities, dt, kick, fade });
+        let settle = |((contacts, histories), outcome)| {
+            dispatch(Settle { contacts, histories, outcome, laws, velocities, dt, kick, fade });
         };
         if *serial || contacts.len() <= CONTACTS {
-            settle(((contacts, &mut state.contacts), outcomes));
+            let runs = contacts.chunks(CONTACTS).zip(state.contacts.chunks_mut(CONTACTS));
+            runs.zip(outcomes.iter_mut()).for_each(settle);
         } else {
-            let parts = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
-            parts.zip(outcomes.par_chunks_mut(CONTACTS)).for_each(settle);
+            let runs = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
+            runs.zip(outcomes.par_iter_mut()).for_each(settle);
         }
         let counters = &mut state.counters;
         for outcome in &*outcomes {
-            if outcome.deep > 0.0 {
-                counters.deep_contacts += 1;
-                counters.deepest_contact = counters.deepest_contact.max(outcome.deep);
-            }
+            counters.deep_contacts += outcome.deep;
+            counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
             counters.penetration_max = counters.penetration_max.max(outcome.penetration);
         }
         for row in &self.scratch.rows {
