@@ -7,12 +7,13 @@
 
 use std::cmp::Reverse;
 
-use enmm_lanes::LANES;
+use enmm_lanes::{LANES, prefetch};
 
 use crate::contact::{Boundary, Candidate, VertexEdge};
 
 use super::SweepView;
 use super::abreast::Abreast;
+use super::row::AHEAD;
 
 /// Near pairs of nodes and sides above which a run of blocks is cut.
 const LEAF: usize = 4096;
@@ -237,7 +238,9 @@ impl SweepOrder {
         self.count.resize(self.manifolds.len(), 0);
         manifolds.clear();
         let mut k = 0;
-        for contact in contacts {
+        for (index, contact) in contacts.iter().enumerate() {
+            let later = &contacts[(index + AHEAD).min(contacts.len() - 1)];
+            prefetch(std::slice::from_ref(&later.history.node));
             let key = key_of(contact.history.node, contact.history.side);
             while self.keys[k] < key {
                 k += 1;

@@ -11,8 +11,8 @@ use super::{SweepOptions, SweepView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
-/// Turns by which a contact is fetched ahead.
-const AHEAD: usize = 8;
+/// Places by which a contact is fetched ahead.
+pub const AHEAD: usize = 8;
 
 /// A number of each lane.
 pub type Eight = [f64; LANES];
