@@ -13,8 +13,8 @@ use super::touch::CONTACTS;
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
 
-/// A run of contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every kind
-/// of lanes.
+/// A run of contacts at the end of a sub-step of `dt` (s) in which their forces act for `kick` (s): compiled for every
+/// kind of lanes.
 struct Settle<'a> {
     contacts: &'a [VertexEdge],
     histories: &'a mut [ContactHistory],
