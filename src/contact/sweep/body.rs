@@ -81,12 +81,13 @@ impl Body {
         if !metric.is_free(block) {
             return Self { covers, weights, block: NONE, ..Self::default() };
         }
+        let (lever, part) = lever_and_part(pair, k, view);
         Self {
             covers,
             weights,
             block: block as u32,
-            lever: turned_arm(pair.arms[k]),
-            part: pair.z[k] * metric.inverse_total[block],
+            lever,
+            part,
             common: common_share(view, block),
             spin: metric.spin[block],
         }
@@ -117,10 +118,14 @@ impl Body {
     }
 }
 
-/// J90 of an arm (m).
+/// J90·(arm from the block's centroid) (m) and z/M (m/kg) of point `k` of a pair; 0 on a held block.
 #[inline(always)]
-pub fn turned_arm(arm: Vector) -> Vector {
-    Vector::new(-arm.y, arm.x)
+pub fn lever_and_part(pair: &Pair, k: usize, view: &SweepView) -> (Vector, f64) {
+    let (block, arm) = (pair.blocks[k] as usize, pair.arms[k]);
+    if !view.metric.is_free(block) {
+        return (Vector::zeros(), 0.0);
+    }
+    (Vector::new(-arm.y, arm.x), pair.z[k] * view.metric.inverse_total[block])
 }
 
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.

@@ -6,7 +6,7 @@ use crate::contact::{Answer, Limits, Pair, VertexEdge};
 use crate::geometry::Vector;
 
 use super::abreast::{Abreast, Side};
-use super::body::turned_arm;
+use super::body::lever_and_part;
 use super::{SweepOptions, SweepView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
@@ -296,12 +296,7 @@ impl Points {
                 self.holds = true;
             }
         }
-        let block = pair.blocks[k] as usize;
-        let (lever, part) = if view.metric.is_free(block) {
-            (turned_arm(pair.arms[k]), pair.z[k] * view.metric.inverse_total[block])
-        } else {
-            (Vector::zeros(), 0.0)
-        };
+        let (lever, part) = lever_and_part(pair, k, view);
         (self.lever[0][lane], self.lever[1][lane], self.part[lane]) = (lever.x, lever.y, part);
     }
 
