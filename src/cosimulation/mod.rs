@@ -25,10 +25,7 @@ pub use crate::model::case::limits;
 use crate::model::case::{Case, StageKind};
 use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
-use crate::step::{StepError, StepReport};
-
-/// Covers from which a step is worth other threads than the caller's own.
-const THREADS_FROM: usize = 4096;
+use crate::step::{StepError, StepReport, THREADS_FROM};
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -23,6 +23,8 @@ use crate::contact::{SweepReport, VertexEdge};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
 
+use touch::CONTACTS;
+
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
 const UNSETTLED: f64 = 0.1;
 /// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
@@ -32,6 +34,8 @@ const DECAY_MAX: f64 = 0.3;
 const PIECE: usize = 1 << 16;
 /// Most times that a step is halved.
 const HALVINGS_MAX: u32 = 4;
+/// Covers from which a step is worth other threads than the caller's own.
+pub const THREADS_FROM: usize = 4096;
 
 /// How a stage treats velocities and gravity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +66,7 @@ pub fn advance(
     let rest = slope.dt - state.part;
     let mut step = Step::new(slope, regime, state, scratch);
     step.report = report;
-    let outcome = step.interval(rest, 0);
+    let outcome = step.on_threads(rest);
     step.guard()?;
     state.stage_step += 1;
     state.step += 1;
@@ -84,7 +88,7 @@ pub fn advance_part(
     dt: f64,
 ) -> Result<StepReport, StepError> {
     let mut step = Step::new(slope, regime, state, scratch);
-    let outcome = step.interval(dt, 0);
+    let outcome = step.on_threads(dt);
     step.guard()?;
     state.part += dt;
     Ok(outcome)
@@ -183,6 +187,17 @@ impl<'a> Step<'a> {
 }
 
 impl Step<'_> {
+    /// Covers `dt` (s) on the threads of the pool. A caller from outside hands over the whole of it at once, which is
+    /// dearer for every parallel part by itself.
+    fn on_threads(&mut self, dt: f64) -> StepReport {
+        let is_small = self.slope.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
+        if self.scratch.serial || is_small {
+            self.interval(dt, 0)
+        } else {
+            rayon::scope(|_| self.interval(dt, 0))
+        }
+    }
+
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
     fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
         let slope = self.slope;
