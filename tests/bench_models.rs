@@ -88,11 +88,11 @@ fn blocks_slide_down_the_base() {
 
 #[test]
 fn report_accounts_for_the_whole_step() {
-    let models = vec![Model::Continuum(2_000), Model::Slope(200, 4)];
-    let options = BenchOptions { models, seconds: 0.05, threads: Some(1), limits: true };
+    let models = vec![Model::Continuum(2_000), Model::Slope(500, 4)];
+    let options = BenchOptions { models, seconds: 0.05, threads: Some(1), limits: true, first_second: true };
     let mut begun = Vec::new();
     let report = bench(&options, &mut |name| begun.push(name.to_owned())).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(begun, ["limits of the machine", "continuum_2000", "slope_200x4"]);
+    assert_eq!(begun, ["limits of the machine", "continuum_2000", "slope_500x4"]);
     assert_eq!((report.threads, report.models.len()), (1, 2));
     assert_eq!(report.machine.bandwidth.len(), 4);
     assert!(report.machine.bandwidth.iter().all(|level| level.one > 1e8 && level.all > 1e8), "{:?}", report.machine);
@@ -107,6 +107,7 @@ fn report_accounts_for_the_whole_step() {
     let [continuum, slope] = &report.models[..] else { panic!("two models") };
     assert!(continuum.contact_sweeps_per_second.is_none() && continuum.contacts == 0);
     assert!(slope.contact_sweeps_per_second.is_some_and(|rate| rate > 1e4) && slope.contacts > 200, "{slope:?}");
+    assert!(continuum.first_second.is_none() && slope.first_second.is_some_and(|seconds| seconds > 0.0), "{slope:?}");
     let json = serde_json::to_value(&report).unwrap_or_else(|e| panic!("{e}"));
     for place in ["/version", "/machine/cores", "/models/1/stages/sweep", "/models/1/ms_per_step"] {
         assert!(json.pointer(place).is_some_and(|value| !value.is_null()), "{place}");

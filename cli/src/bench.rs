@@ -23,6 +23,9 @@ pub struct Arguments {
     /// Leave out the limits of the machine.
     #[arg(long)]
     no_limits: bool,
+    /// Run slopes that stand beside other programs through their first second as well, which takes minutes.
+    #[arg(long)]
+    first_second: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -48,6 +51,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         seconds: arguments.seconds,
         threads: arguments.threads.map(usize::from),
         limits: !arguments.no_limits,
+        first_second: arguments.first_second,
     };
     let mut begin = |name: &str| {
         if !arguments.json {
@@ -117,11 +121,12 @@ fn model_text(found: &Measured) -> String {
         format!(", {:.2} sweeps at {:.1} M contacts/s", found.sweeps_mean, rate / 1e6)
     });
     let heaps = found.heap_bytes.map(|bytes| format!("{:.0}", bytes as f64 / *elements as f64)).join(" + ");
+    let first = found.first_second.map_or_else(String::new, |seconds| format!(", the first one {seconds:.3} s"));
     let memory = found.memory_peak.map_or_else(String::new, |peak| format!(", peak {:.0} MB", peak as f64 / 1e6));
     [
         format!("{model}: {blocks} blocks, {elements} elements ({} held), {contacts} contacts", found.held_elements),
         format!(
-            "  {:.3} ms a step (median of wall time {:.3}), {:.3} s a simulated second{sweeps}",
+            "  {:.3} ms a step (median of wall time {:.3}), {:.3} s a simulated second{first}{sweeps}",
             found.ms_per_step, found.wall_ms_per_step, found.seconds_per_simulated_second
         ),
         format!("  ms: {}", parts.join(", ")),

@@ -52,6 +52,8 @@ pub struct BenchOptions {
     pub threads: Option<usize>,
     /// Whether the limits of the machine are measured as well.
     pub limits: bool,
+    /// Whether slopes that stand beside other programs run through their first second as well, which takes minutes.
+    pub first_second: bool,
 }
 
 /// What was timed, on what machine.
@@ -86,7 +88,7 @@ fn bench_here(options: &BenchOptions, begin: &mut dyn FnMut(&str)) -> Result<Ben
     let mut models = Vec::new();
     for model in &options.models {
         begin(&model.to_string());
-        models.push(measure::measure(model, options.seconds, &machine)?);
+        models.push(measure::measure(model, options, &machine)?);
     }
     Ok(BenchReport { version: engine_version().to_owned(), threads: rayon::current_num_threads(), machine, models })
 }

@@ -191,11 +191,7 @@ impl Step<'_> {
     /// dearer for every parallel part by itself.
     fn on_threads(&mut self, dt: f64) -> StepReport {
         let is_small = self.slope.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
-        if self.scratch.serial || is_small {
-            self.interval(dt, 0)
-        } else {
-            rayon::scope(|_| self.interval(dt, 0))
-        }
+        if self.scratch.serial || is_small { self.interval(dt, 0) } else { rayon::scope(|_| self.interval(dt, 0)) }
     }
 
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.

@@ -6,8 +6,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::clock::{forget_peak, memory_peak, processor_seconds};
-use super::models::Model;
-use super::{BenchError, Machine};
+use super::models::{Model, advance};
+use super::{BenchError, BenchOptions, Machine, peers};
 use crate::io::checkpoint::encode;
 use crate::io::vtu::{write_joints_vtu, write_vtu};
 use crate::model::Simulation;
@@ -59,8 +59,10 @@ pub struct Measured {
     pub ms_per_step: f64,
     /// Milliseconds of wall time per step in the median window.
     pub wall_ms_per_step: f64,
-    /// Seconds per simulated second.
+    /// Seconds per simulated second, as in the windows.
     pub seconds_per_simulated_second: f64,
+    /// Seconds for the first simulated second of a sliding slope, from the model as built; null when it was not run.
+    pub first_second: Option<f64>,
     /// Milliseconds per step of each stage, taken like those of the step.
     pub stages: StageMilliseconds,
     /// Mean sweeps of a step.
@@ -186,11 +188,11 @@ fn stage_seconds(simulation: &Simulation) -> [f64; 5] {
     [search, elements, entrance, sweep, commit]
 }
 
-/// Builds a model and times it for some `seconds`.
+/// Builds a model and times it.
 ///
 /// # Errors
 /// A model that cannot be built or fails.
-pub fn measure(model: &Model, seconds: f64, machine: &Machine) -> Result<Measured, BenchError> {
+pub fn measure(model: &Model, options: &BenchOptions, machine: &Machine) -> Result<Measured, BenchError> {
     forget_peak();
     let clock = Instant::now();
     let mut simulation = model.build()?;
@@ -201,7 +203,7 @@ pub fn measure(model: &Model, seconds: f64, machine: &Machine) -> Result<Measure
     let start = simulation.state().clone();
     let mut windows = Windows::new(steps);
     let clock = Instant::now();
-    while windows.wall.len() < WINDOWS_MIN || clock.elapsed().as_secs_f64() < seconds {
+    while windows.wall.len() < WINDOWS_MIN || clock.elapsed().as_secs_f64() < options.seconds {
         simulation.restore(start.clone());
         windows.take(&mut simulation)?;
     }
@@ -211,7 +213,19 @@ pub fn measure(model: &Model, seconds: f64, machine: &Machine) -> Result<Measure
     measured.take_windows(&windows, &simulation, &start.counters);
     measured.take_outputs(&simulation)?;
     measured.take_shares(machine);
+    if options.first_second && peers::slope_seconds(model).is_some() {
+        measured.first_second = Some(first_second(model)?);
+    }
     Ok(measured)
+}
+
+/// Wall time (s) of the first simulated second of a model as built.
+fn first_second(model: &Model) -> Result<f64, BenchError> {
+    let mut simulation = model.build()?;
+    let steps = simulation.steps_in(1.0);
+    let clock = Instant::now();
+    advance(&mut simulation, steps)?;
+    Ok(clock.elapsed().as_secs_f64())
 }
 
 fn sizes(simulation: &Simulation) -> Measured {

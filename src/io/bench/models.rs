@@ -111,7 +111,7 @@ impl Model {
 }
 
 /// Advances so many steps.
-fn advance(simulation: &mut Simulation, steps: u64) -> Result<(), BenchError> {
+pub fn advance(simulation: &mut Simulation, steps: u64) -> Result<(), BenchError> {
     (0..steps).try_for_each(|_| simulation.advance(false).map(|_| ()).map_err(BenchError::Step))
 }
 

@@ -1,6 +1,8 @@
 //! What other programs reach and what is aimed at, as the project's performance survey found on one core of its machine
 //! (server EPYC, AVX-512, two virtual cores).
 
+use super::Model;
+
 /// Where the figures come from.
 pub const SOURCE: &str = "Figures of others and goals are those of the project's performance survey, taken on one \
 core of the same kind\nof machine at another time: its clock drifts by a third, so that only ratios within one run \
@@ -17,8 +19,16 @@ const ELEMENT_RATES: [(usize, [f64; 7]); 3] = [
 ];
 
 /// Head of the table of slopes.
-pub const SLOPE_HEAD: [&str; 7] =
-    ["model", "enmm", "goal", "Rapier soft bodies", "tight penalty step", "a DDA code", "Box2D (rigid, f32)"];
+pub const SLOPE_HEAD: [&str; 8] = [
+    "model",
+    "enmm, first second",
+    "enmm, in its windows",
+    "goal",
+    "Rapier soft bodies",
+    "tight penalty step",
+    "a DDA code",
+    "Box2D (rigid, f32)",
+];
 /// Blocks of the survey's slopes.
 const SLOPE_BLOCKS: [usize; 3] = [548, 2_076, 10_339];
 /// Seconds per simulated second by blocks, in the order of the head.
@@ -33,8 +43,9 @@ pub fn element_rates(elements: usize) -> Option<[f64; 7]> {
     ELEMENT_RATES.iter().find(|(size, _)| *size == elements).map(|(_, rates)| *rates)
 }
 
-/// Seconds of others at nearly so many blocks.
-pub fn slope_seconds(blocks: usize) -> Option<[Option<f64>; 5]> {
+/// Seconds of others on a slope like this one.
+pub fn slope_seconds(model: &Model) -> Option<[Option<f64>; 5]> {
+    let Model::Slope(blocks, 4) = *model else { return None };
     let near = |size: &usize| (*size as f64 / blocks as f64 - 1.0).abs() < 0.12;
     SLOPE_BLOCKS.iter().position(near).map(|k| SLOPE_SECONDS[k])
 }
@@ -43,6 +54,6 @@ pub fn slope_seconds(blocks: usize) -> Option<[Option<f64>; 5]> {
 pub fn slope_lines() -> impl Iterator<Item = (String, Vec<[f64; 2]>)> {
     (0..5).map(|k| {
         let points = SLOPE_BLOCKS.iter().zip(&SLOPE_SECONDS);
-        (SLOPE_HEAD[k + 2].to_owned(), points.filter_map(|(&blocks, row)| Some([blocks as f64, row[k]?])).collect())
+        (SLOPE_HEAD[k + 3].to_owned(), points.filter_map(|(&blocks, row)| Some([blocks as f64, row[k]?])).collect())
     })
 }

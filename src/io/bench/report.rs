@@ -51,7 +51,8 @@ pub fn markdown(report: &BenchReport, origin: &Origin) -> String {
 
 const INTRODUCTION: &str = "A model is built, brought to a state (at rest, or in motion), and timed in windows of \
 steps that all start\nfrom that state; each step counts with its quickest time, which other programs on the machine \
-hardly touch. Elements of\nheld rock, which no step touches, are not counted.";
+hardly touch. Elements of\nheld rock, which no step touches, are not counted. Windows of slopes lie where they take up \
+gravity; their first\nsecond, with `--first-second`, is wall time from the model as built.";
 
 const STEP_HEAD: [&str; 12] = [
     "model",
@@ -159,9 +160,10 @@ fn continuum_row(found: &Measured) -> Option<Vec<String>> {
 }
 
 fn slope_row(found: &Measured) -> Option<Vec<String>> {
-    let Some(Model::Slope(blocks, 4)) = Model::parse(&found.model) else { return None };
-    let mut row = vec![found.model.clone(), digits(found.seconds_per_simulated_second)];
-    row.extend(peers::slope_seconds(blocks)?.iter().map(|seconds| seconds.map_or_else(none, digits)));
+    let others = peers::slope_seconds(&Model::parse(&found.model)?)?;
+    let mut row = vec![found.model.clone(), found.first_second.map_or_else(none, digits)];
+    row.push(digits(found.seconds_per_simulated_second));
+    row.extend(others.iter().map(|seconds| seconds.map_or_else(none, digits)));
     Some(row)
 }
 
@@ -177,9 +179,10 @@ fn step_chart(report: &BenchReport) -> Chart {
     }
 }
 
-/// Seconds per simulated second over blocks, beside others.
+/// Seconds per simulated second over blocks, beside others: of the first second where that was run.
 fn slope_chart(report: &BenchReport) -> Chart {
-    let point = |found: &Measured| [found.blocks as f64, found.seconds_per_simulated_second];
+    let seconds = |found: &Measured| found.first_second.unwrap_or(found.seconds_per_simulated_second);
+    let point = |found: &Measured| [found.blocks as f64, seconds(found)];
     let mut series =
         families(report, &[("enmm, 4 elements a block", Some(4)), ("enmm, 16 elements a block", Some(16))], point);
     series.extend(peers::slope_lines().map(|(name, points)| ChartSeries { name, points, marks: false }));
