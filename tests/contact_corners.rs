@@ -140,6 +140,21 @@ fn a_thin_wedge_drives_two_blocks_apart() {
     assert!(worst < 0.01 * SIZE, "overlap {worst:e} m");
 }
 
+/// A block falls on a pile of twelve sheets, a fiftieth of the mesh size thick each: every node is over all of their
+/// sides, and none is left out.
+#[test]
+fn a_pile_of_thin_sheets_bears_a_block() {
+    let joint = |k: usize| format!("[[joint]]\npoints = [[4.0, {y}], [8.0, {y}]]\n", y = 0.02 * k as f64);
+    let joints: String = (0..12).map(joint).collect();
+    let base = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [8.0, 0.0], [8.0, 0.24], [4.0, 0.24], [4.0, 0.0], [0.0, 0.0]]";
+    let block = "[[[5.5, 0.241], [6.5, 0.241], [6.5, 1.241], [5.5, 1.241]]]";
+    let mut simulation = case(base, block, 1.0, &joints);
+    let worst = run(&mut simulation);
+    let (place, velocity, ..) = motion(&simulation, [6.0, 0.7]);
+    assert!((place.y - 0.74).abs() < 1e-3 && velocity.norm() < 1e-2, "{place} at {velocity}");
+    assert!(worst < 0.002 * SIZE, "overlap {worst:e} m");
+}
+
 /// Ten equal blocks on each other, corners exactly over corners, stay aligned for 10 s.
 ///
 /// The mesh is not symmetric about the tower: it may lean by less than it settles, 3.5e-3 m, but then it stands.

@@ -22,8 +22,6 @@ const RUN: usize = 4096;
 const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
-/// Most sides that a node is judged over.
-const SIDES_MAX: usize = 12;
 
 /// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
 const ENTRANCE_SINE: f64 = 0.17;
@@ -152,15 +150,23 @@ struct Pick {
 /// What the vertex rule admits in one step: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
 pub struct Admitted {
-    runs: Vec<Vec<Pick>>,
+    runs: Vec<Run>,
     picks: Vec<Pick>,
+}
+
+/// What it admits of a run of near pairs.
+#[derive(Debug, Clone, Default)]
+struct Run {
+    admitted: Vec<Pick>,
+    /// Sides of the node in hand.
+    sides: Vec<Pick>,
 }
 
 impl Admitted {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let of_runs = self.runs.iter().map(|run| size_of_val(run.as_slice())).sum::<usize>();
-        of_runs + size_of_val(self.picks.as_slice())
+        let of_run = |run: &Run| size_of_val(run.admitted.as_slice()) + size_of_val(run.sides.as_slice());
+        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.picks.as_slice())
     }
 }
 
@@ -202,26 +208,29 @@ impl Narrow<'_> {
         made: usize,
     ) -> usize {
         let Admitted { runs, picks } = admitted;
-        picks.clear();
-        if self.serial || candidates.len() <= RUN {
-            self.judge(candidates, picks);
-            return self.make(picks, contacts, made);
+        let count = if self.serial { 1 } else { candidates.len().div_ceil(RUN) };
+        runs.resize_with(runs.len().max(count), Run::default);
+        let runs = &mut runs[..count];
+        if let [run] = runs {
+            self.judge(candidates, run);
+            return self.make(&run.admitted, contacts, made);
         }
-        runs.resize_with(candidates.len().div_ceil(RUN), Vec::new);
         runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            run.clear();
             self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
         });
-        runs.iter().for_each(|run| picks.extend_from_slice(run));
+        picks.clear();
+        runs.iter().for_each(|run| picks.extend_from_slice(&run.admitted));
         self.make(picks, contacts, made)
     }
 
-    /// Appends the picks that the vertex rule admits of some candidates.
-    fn judge(&self, candidates: &[Candidate], admitted: &mut Vec<Pick>) {
-        let mut picks = [Pick::default(); SIDES_MAX + 1];
+    /// Finds the picks that the vertex rule admits of some candidates.
+    fn judge(&self, candidates: &[Candidate], run: &mut Run) {
+        let Run { admitted, sides } = run;
+        admitted.clear();
         for group in candidates.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node as usize;
-            let picks = self.pick_edges(node, group, &mut picks);
+            sides.resize(sides.len().max(group.len() + 1), Pick::default());
+            let picks = self.pick_edges(node, group, sides);
             let mut contested = false;
             for pick in picks.iter_mut().filter(|pick| pick.admitted) {
                 pick.admitted = !self.is_false_sight(node, pick) && self.within(node, pick);
@@ -234,8 +243,9 @@ impl Narrow<'_> {
         }
     }
 
-    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node.
-    fn pick_edges<'p>(&self, node: usize, group: &[Candidate], picks: &'p mut [Pick; SIDES_MAX + 1]) -> &'p mut [Pick] {
+    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; there is
+    /// place for one more than there are candidates.
+    fn pick_edges<'p>(&self, node: usize, group: &[Candidate], picks: &'p mut [Pick]) -> &'p mut [Pick] {
         let mut count = 0;
         let mut known = self.remembered.of_node(node);
         for edges in group.chunk_by(|a, b| a.side == b.side) {
@@ -245,7 +255,7 @@ impl Narrow<'_> {
             let held = !known.is_empty() && self.history[known.start].side == edges[0].side;
             // Whether it counts is seldom the same twice: no branch depends on it.
             let is_over = self.pick(node, edges, held.then_some(known.start as u32), &mut picks[count]);
-            count = (count + usize::from(is_over)).min(SIDES_MAX);
+            count += usize::from(is_over);
         }
         &mut picks[..count]
     }
