@@ -1,5 +1,6 @@
 //! Checks after every step: a run that has gone wrong stops with block, place and cause.
 
+use crate::cover;
 use crate::geometry::Point;
 use crate::state::Slope;
 
@@ -14,7 +15,7 @@ pub enum Failure {
     /// The matrix of an implicit step is not positive definite.
     #[error("the matrix of the implicit step is not positive definite (take a smaller solver.implicit_step)")]
     Singular,
-    /// A velocity exceeds the wave speed of the rock.
+    /// Rock moves faster than its waves.
     #[error("the speed {speed:.3e} m/s exceeds the wave speed {limit:.3e} m/s of the rock (runaway)")]
     Runaway {
         /// Speed (m/s).
@@ -46,7 +47,7 @@ pub struct StepError {
     pub failure: Failure,
 }
 
-/// Speed (m/s) beyond which a cover has run away: the fastest wave of any rock.
+/// Speed (m/s) beyond which rock has run away: the fastest wave of any rock.
 pub(super) fn speed_limit(slope: &Slope) -> f64 {
     slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max)
 }
@@ -78,21 +79,34 @@ impl Step<'_> {
         }
     }
 
-    /// Fails when a velocity is not finite or beyond the wave speed.
+    /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
+    /// small block has cut lies far from its rock, and turns with it.
     fn guard_speeds(&self) -> Result<(), StepError> {
-        let slope = self.slope;
-        let limit = speed_limit(slope);
-        let square = limit * limit;
-        if let Some(i) =
-            self.state.velocity.iter().position(|v| v.norm_squared().partial_cmp(&square).is_none_or(|o| o.is_gt()))
-        {
-            let speed = self.state.velocity[i].norm();
-            let failure = if speed.is_finite() { Failure::Runaway { speed, limit } } else { Failure::NotFinite };
-            let block = slope.covers.cover_block[i];
-            let place = slope.covers.star_position[i] + self.state.displacement[i];
-            let place = if place.iter().all(|x| x.is_finite()) { place } else { slope.covers.star_position[i] };
-            return Err(StepError { block, place, time: self.time, failure });
+        let (slope, limit) = (self.slope, speed_limit(self.slope));
+        let fail = |block: u32, place, failure| Err(StepError { block, place, time: self.time, failure });
+        for (i, velocity) in self.state.velocity.iter().enumerate() {
+            let (block, speed) = (slope.covers.cover_block[i], velocity.norm());
+            if !speed.is_finite() {
+                return fail(block, slope.covers.star_position[i], Failure::NotFinite);
+            }
+            if speed > limit
+                && let Some((place, speed)) = self.rock_faster_than(limit, block as usize)
+            {
+                return fail(block, place, Failure::Runaway { speed, limit });
+            }
         }
         Ok(())
+    }
+
+    /// Place and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
+    fn rock_faster_than(&self, limit: f64, block: usize) -> Option<(Point, f64)> {
+        let (covers, state) = (&self.slope.covers, &*self.state);
+        let corners = covers.elements_of(block).flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
+        let mut moving = corners.map(|(element, corner)| {
+            let weights = covers.weights(element, corner);
+            let sample = |field| cover::sample(&covers.element_covers[element], &weights, field);
+            (corner + sample(&state.displacement), sample(&state.velocity).norm())
+        });
+        moving.find(|&(_, speed)| speed > limit)
     }
 }
