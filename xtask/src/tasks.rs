@@ -46,7 +46,7 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
     steps.take("tests", || cargo_test(house, &["--no-fail-fast"]));
     if extent == Extent::Full {
         steps.take("documentation", || {
-            let mut doc = house.cargo(&["doc", "--workspace", "--no-deps"]);
+            let mut doc = house.cargo(&["doc", "--release", "--workspace", "--no-deps"]);
             house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
