@@ -96,10 +96,16 @@ impl VertexEdge {
 const EXPECTED: f64 = 0.5;
 
 impl VertexEdge {
+    /// Whether the normal spring follows a curve.
+    #[inline(always)]
+    pub fn closes_on_a_curve(&self) -> bool {
+        self.closure_max.is_finite()
+    }
+
     /// Whether spring or strength follow a curve.
     #[inline(always)]
     pub fn is_curved(&self) -> bool {
-        self.closure_max.is_finite() || matches!(self.limits, Limits::BartonBandis { .. })
+        self.closes_on_a_curve() || matches!(self.limits, Limits::BartonBandis { .. })
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).

@@ -57,8 +57,7 @@ impl Step<'_> {
     pub(super) fn guard(&self) -> Result<(), StepError> {
         let slope = self.slope;
         if self.singular {
-            let (place, failure) = (slope.covers.star_position[0], Failure::Singular);
-            return Err(StepError { block: 0, place, time: self.time, failure });
+            return Err(self.failed(0, slope.covers.star_position[0], Failure::Singular));
         }
         if !self.is_sound {
             self.guard_speeds()?;
@@ -69,30 +68,33 @@ impl Step<'_> {
             return Ok(());
         }
         match scratch.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
-            Some(contact) => Err(StepError {
-                block: contact.pair.blocks[0],
-                place: scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize],
-                time: self.time,
-                failure: Failure::Penetration { depth: contact.loaded_penetration(), limit },
-            }),
+            Some(contact) => {
+                let place = scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize];
+                let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
+                Err(self.failed(contact.pair.blocks[0], place, failure))
+            }
             None => Ok(()),
         }
+    }
+
+    /// A failure now, with its block and place (m).
+    fn failed(&self, block: u32, place: Point, failure: Failure) -> StepError {
+        StepError { block, place, time: self.time, failure }
     }
 
     /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
     /// small block has cut lies far from its rock, and turns with it.
     fn guard_speeds(&self) -> Result<(), StepError> {
         let (slope, limit) = (self.slope, speed_limit(self.slope));
-        let fail = |block: u32, place, failure| Err(StepError { block, place, time: self.time, failure });
         for (i, velocity) in self.state.velocity.iter().enumerate() {
             let (block, speed) = (slope.covers.cover_block[i], velocity.norm());
             if !speed.is_finite() {
-                return fail(block, slope.covers.star_position[i], Failure::NotFinite);
+                return Err(self.failed(block, slope.covers.star_position[i], Failure::NotFinite));
             }
             if speed > limit
                 && let Some((place, speed)) = self.rock_faster_than(limit, block as usize)
             {
-                return fail(block, place, Failure::Runaway { speed, limit });
+                return Err(self.failed(block, place, Failure::Runaway { speed, limit }));
             }
         }
         Ok(())

@@ -107,10 +107,12 @@ impl Narrow<'_> {
                 |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };
             (normal, shear) = (centre(0, normal), centre(1, shear));
         }
-        let curved = contact.closure_max.is_finite();
-        let normal =
-            if curved { normal.curved(-contact.gap) } else { normal.linear(-contact.stiffness[0] * contact.gap) };
-        contact.answers = [normal, shear.linear(contact.history.shear_stored)];
+        let closing = if contact.closes_on_a_curve() {
+            normal.curved(-contact.gap)
+        } else {
+            normal.linear(-contact.stiffness[0] * contact.gap)
+        };
+        contact.answers = [closing, shear.linear(contact.history.shear_stored)];
         contact.expect();
     }
 

@@ -229,7 +229,7 @@ impl Narrow<'_> {
         admitted.clear();
         for group in candidates.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node as usize;
-            sides.resize(sides.len().max(group.len() + 1), Pick::default());
+            sides.resize(sides.len().max(group.len()), Pick::default());
             let picks = self.pick_edges(node, group, sides);
             let mut contested = false;
             for pick in picks.iter_mut().filter(|pick| pick.admitted) {
@@ -244,7 +244,7 @@ impl Narrow<'_> {
     }
 
     /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; there is
-    /// place for one more than there are candidates.
+    /// place for as many as there are candidates.
     fn pick_edges<'p>(&self, node: usize, group: &[Candidate], picks: &'p mut [Pick]) -> &'p mut [Pick] {
         let mut count = 0;
         let mut known = self.remembered.of_node(node);

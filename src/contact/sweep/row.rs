@@ -159,7 +159,7 @@ impl Row {
     #[inline(never)]
     fn take_curved(&mut self, from: &RowView) {
         let contacts = self.of(from.turns).iter().map(|&contact| &from.contacts[contact as usize]);
-        for (lane, contact) in contacts.enumerate().filter(|(_, contact)| contact.closure_max.is_finite()) {
+        for (lane, contact) in contacts.enumerate().filter(|(_, contact)| contact.closes_on_a_curve()) {
             self.answers[0].take(lane, &contact.answers[0]);
         }
     }
@@ -273,7 +273,7 @@ impl Row {
     fn follow(&self, from: &RowView, asked: &mut Eight, limits: &mut Eight) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
             let contact = &from.contacts[contact as usize];
-            if contact.closure_max.is_finite() {
+            if contact.closes_on_a_curve() {
                 asked[lane] = contact.closure().solve(asked[lane], self.answers[0].kept[lane]);
             }
             if contact.is_curved() {

@@ -38,8 +38,9 @@ const SLOPE_SECONDS: [[Option<f64>; 5]; 3] = [
     [Some(97.0), Some(97.0), Some(2.2), None, Some(0.43)],
 ];
 
-/// Million element updates per second of others at so many elements.
-pub fn element_rates(elements: usize) -> Option<[f64; 7]> {
+/// Million element updates per second of others on a continuum like this one.
+pub fn element_rates(model: &Model) -> Option<[f64; 7]> {
+    let Model::Continuum(elements) = *model else { return None };
     ELEMENT_RATES.iter().find(|(size, _)| *size == elements).map(|(_, rates)| *rates)
 }
 

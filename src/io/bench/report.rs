@@ -153,9 +153,9 @@ fn build_row(found: &Measured) -> Vec<String> {
 }
 
 fn continuum_row(found: &Measured) -> Option<Vec<String>> {
-    let Some(Model::Continuum(elements)) = Model::parse(&found.model) else { return None };
+    let others = peers::element_rates(&Model::parse(&found.model)?)?;
     let mut row = vec![found.model.clone(), digits(found.elements_per_second / 1e6)];
-    row.extend(peers::element_rates(elements)?.map(digits));
+    row.extend(others.map(digits));
     Some(row)
 }
 
