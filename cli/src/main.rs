@@ -2,6 +2,7 @@
 //! does not pass, 2 bad input, 3 numerical failure, 130 interrupted.
 
 mod bench;
+mod bound;
 mod check;
 mod fmu;
 mod fos;
@@ -47,6 +48,14 @@ enum Command {
     Verify(verify::Arguments),
     /// Finds the factor of safety of a case by dividing its strength until it fails.
     Fos(fos::Arguments),
+    /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
+    Bound {
+        /// Case file (TOML); the model is looked at in the last of the static stages that it begins with.
+        case: PathBuf,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
     /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
     Bench(bench::Arguments),
     /// Prints the JSON Schema of the case file.
@@ -60,6 +69,7 @@ fn main() -> ExitCode {
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
+        Command::Bound { case, json } => bound::bound(&case, json),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),
     }

@@ -3,6 +3,7 @@
 mod base64;
 pub mod bench;
 pub mod blocks;
+mod bound;
 mod case_error;
 mod case_file;
 pub mod check;
@@ -20,6 +21,7 @@ mod schema;
 pub mod summary;
 pub mod vtu;
 
+pub use bound::{BoundFailure, bound, bound_record};
 pub use case_error::CaseError;
 pub use case_file::{CaseSource, LoadedCase, load_case, parse_case};
 pub use check::check;

@@ -77,6 +77,15 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     })
 }
 
+/// The boundary loops of a case's blocks, cut anew: a model keeps them only as contact sees them.
+///
+/// # Errors
+/// As [`build`].
+pub(super) fn outlines(case: &Case) -> Result<Outlines, Invalid> {
+    let geometry::Plane { mesh, arrangement, .. } = geometry::arrange_case(case, &mut |_| ())?;
+    Ok(cover::cut(mesh, arrangement).1)
+}
+
 /// The fixed part of the model, and what its bolts have to tell.
 fn slope(
     case: &Case,

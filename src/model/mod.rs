@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod case;
+pub mod limit_analysis;
 mod observe;
 mod simulation;
 pub mod snapshot;

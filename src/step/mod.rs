@@ -15,6 +15,7 @@ mod touch;
 mod works;
 mod yielding;
 
+pub use applied::{acceleration, push_forces};
 pub use guard::{Failure, StepError};
 pub use prepare::{begin_stage, prepare};
 pub use report::{StepReport, block_motion, energies, momentum};

@@ -36,7 +36,15 @@ mod d6;
 mod dice;
 mod e1;
 mod e2;
+mod f1;
+mod f2;
+mod f3;
+mod f4;
+mod f5;
+mod f6;
+mod f7;
 mod incline;
+mod limit;
 mod newmark;
 mod plane;
 mod plane_slide;
@@ -83,4 +91,11 @@ pub const ALL: &[Problem] = &[
     d6::PROBLEM,
     e1::PROBLEM,
     e2::PROBLEM,
+    f1::PROBLEM,
+    f2::PROBLEM,
+    f3::PROBLEM,
+    f4::PROBLEM,
+    f5::PROBLEM,
+    f6::PROBLEM,
+    f7::PROBLEM,
 ];

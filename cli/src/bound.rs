@@ -1,0 +1,80 @@
+//! `enmm bound`: limit analysis of a case, a second opinion on its factor of safety.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use enmm::io::{BoundFailure, bound_record};
+use enmm::model::limit_analysis::{Bound, Collapse, Factor};
+
+use crate::{BAD_INPUT, FAILED, fail, print_line};
+
+/// Blocks of a mechanism that are named.
+const NAMED: usize = 8;
+
+/// Finds the bounds of a case and prints them.
+pub fn bound(path: &Path, json: bool) -> ExitCode {
+    let found = enmm::io::load_case(path).map_err(BoundFailure::from).and_then(|loaded| enmm::io::bound(&loaded));
+    match found {
+        Ok(bound) if json => print_line(&bound_record(&bound).to_string()),
+        Ok(bound) => print_line(&text(&bound)),
+        Err(error) => {
+            if json {
+                print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
+            }
+            let status = if matches!(error, BoundFailure::Case(_)) { BAD_INPUT } else { FAILED };
+            return fail(&error, status);
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn text(bound: &Bound) -> String {
+    let level = if bound.least == bound.level_tops.factor {
+        "no contact by which level tops pass bears more".to_owned()
+    } else {
+        format!(
+            "an upper bound of one that is at least {:.4}: choices at crossings were left untried",
+            bound.least.value()
+        )
+    };
+    let rows = [
+        ("associated", &bound.associated, "exact where joints dilate by their friction angle".to_owned()),
+        ("level tops pass", &bound.level_tops, level),
+        ("every corner catches", &bound.catching, "what blocks bear that no crossing lets pass".to_owned()),
+    ];
+    let row = |(name, collapse, meaning): (&str, &Collapse, String)| {
+        format!("{name:<21} {:<14} {meaning}", factor(&collapse.factor))
+    };
+    let mut lines: Vec<String> = rows.into_iter().map(row).collect();
+    lines.push(format!("{:<21} {}", "mechanism", mechanism(bound)));
+    lines.push(format!(
+        "{:<21} {} blocks, {} free; {} interfaces, {} points, {} pairs of facing corners; {} linear programs",
+        "model", bound.blocks[0], bound.blocks[1], bound.interfaces, bound.points, bound.corners, bound.programs
+    ));
+    lines.extend(bound.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.join("\n")
+}
+
+fn factor(factor: &Factor) -> String {
+    match factor {
+        Factor::Found(factor) => format!("{factor:.4}"),
+        Factor::AtLeast(least) => format!("at least {least}"),
+        Factor::AtMost(most) => format!("at most {most}"),
+    }
+}
+
+/// The blocks that move when level tops pass, fastest first.
+fn mechanism(bound: &Bound) -> String {
+    let moving = &bound.level_tops.mechanism;
+    if moving.is_empty() {
+        return "none".to_owned();
+    }
+    let named = moving.iter().take(NAMED).map(|b| {
+        format!("{} at ({:.2}, {:.2}) m by ({:.2}, {:.2})", b.block, b.place.x, b.place.y, b.velocity.x, b.velocity.y)
+    });
+    let names = named.collect::<Vec<_>>().join(", ");
+    let more = if moving.len() > NAMED { format!(" and {} more", moving.len() - NAMED) } else { String::new() };
+    let mass: f64 = moving.iter().map(|b| b.mass).sum();
+    let blocks = if moving.len() == 1 { "block" } else { "blocks" };
+    format!("{} {blocks}, {mass:.4e} kg/m: {names}{more}", moving.len())
+}

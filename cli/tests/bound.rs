@@ -1,0 +1,70 @@
+//! Claim: `enmm bound` prints the bounds of a case as text and as JSON, tells factors from none and from no end, and
+//! answers with the promised statuses.
+
+mod support;
+
+use support::Place;
+
+/// A block on a plane that rises by 1 in 2, with tan φ = 0.65: F = 1.3.
+const INCLINE: &str = r#"
+title = "Block on an incline"
+[domain]
+outline = [[0, -1], [8, -1], [8, 0], [4, 2], [4.4, 2.8], [3.2, 3.4], [2.8, 2.6], [0, 4]]
+[mesh]
+size = 0.9
+origin = [0.07, 0.03]
+[[joint]]
+points = [[4, 2], [2.8, 2.6]]
+[rock.rock]
+density = 2600
+young = 1e9
+poisson = 0.25
+[joint_law.plane]
+friction_deg = 33.0238675555
+[[fix]]
+block = [1, 0]
+[[stage]]
+name = "rest"
+kind = "static"
+duration = 5.0
+"#;
+
+#[test]
+fn a_block_on_an_incline_is_bounded_by_its_tangents() {
+    let place = Place::with(INCLINE);
+    let answer = place.enmm(&["bound", "case.toml"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("associated            1.3000"), "{answer:?}");
+    let answer = place.enmm(&["bound", "case.toml", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(answer.stdout.trim()).expect("one JSON object");
+    for kind in ["associated", "level_tops", "catching"] {
+        assert_eq!(found[kind]["end"], "found");
+        assert!(found[kind]["factor"].as_f64().is_some_and(|factor| (factor - 1.3).abs() < 1e-4), "{found}");
+    }
+    assert_eq!(found["level_tops"]["mechanism"].as_array().map(Vec::len), Some(1));
+}
+
+#[test]
+fn a_block_on_a_level_floor_never_falls() {
+    let outline = "[[0, -1], [8, -1], [8, 2], [4, 2], [4, 3], [3, 3], [3, 2], [0, 2]]";
+    let lines = INCLINE.lines().map(|line| match line {
+        _ if line.starts_with("outline") => format!("outline = {outline}\n"),
+        _ if line.starts_with("points") => "points = [[4, 2], [3, 2]]\n".to_owned(),
+        _ => format!("{line}\n"),
+    });
+    let level: String = lines.collect();
+    let place = Place::with(&level);
+    let answer = place.enmm(&["bound", "case.toml"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("at least 1000") && answer.stdout.contains("none"), "{answer:?}");
+    let answer = place.enmm(&["bound", "case.toml", "--json"]);
+    assert!(answer.stdout.contains("\"at_least\""), "{answer:?}");
+}
+
+#[test]
+fn rock_that_yields_is_bad_input() {
+    let place = Place::with(&INCLINE.replace("poisson = 0.25", "poisson = 0.25\nfriction_deg = 30.0"));
+    let answer = place.enmm(&["bound", "case.toml", "--json"]);
+    assert_eq!(answer.status, Some(2), "{answer:?}");
+    assert!(answer.stdout.contains("\"error\"") && answer.stderr.contains("rock.rock.friction_deg"), "{answer:?}");
+}

@@ -1,0 +1,118 @@
+//! F5: limit analysis of a plane slide with water, a seismic coefficient and bolts.
+
+use super::incline::G;
+use super::limit::{bound_of, factor_rows};
+use super::plane_slide::PlaneSlide;
+use crate::{Outcome, Parameter, Problem, Setup, Trouble};
+
+pub const PROBLEM: Problem = Problem {
+    id: "F5",
+    title: "Limit analysis: plane slide with water and bolts",
+    source: "E. Hoek and J. W. Bray, Rock Slope Engineering: (cA + (W(cos ψ − k·sin ψ) − U − V·sin ψ + T·sin(ψ + δ))·\
+             tan φ)/(W(sin ψ + k·cos ψ) + V·cos ψ − T·cos(ψ + δ)); catches water on the wrong faces, bolts that push \
+             or pull by more than they bear",
+    parameters: &[
+        Parameter { name: "height", unit: "m", default: 30.0, range: [5.0, 500.0], doc: "height of the slope" },
+        Parameter { name: "crack", unit: "m", default: 7.0, range: [0.1, 200.0], doc: "depth of the tension crack" },
+        Parameter { name: "water", unit: "m", default: 5.0, range: [0.0, 200.0], doc: "depth of the water in it" },
+        Parameter { name: "face_deg", unit: "°", default: 60.0, range: [20.0, 80.0], doc: "dip of the face" },
+        Parameter { name: "plane_deg", unit: "°", default: 35.0, range: [10.0, 70.0], doc: "dip of the plane" },
+        Parameter { name: "phi_deg", unit: "°", default: 35.0, range: [1.0, 70.0], doc: "friction of the plane" },
+        Parameter { name: "cohesion", unit: "Pa", default: 25e3, range: [0.0, 1e7], doc: "cohesion of the plane" },
+        Parameter { name: "gamma", unit: "N/m³", default: 26e3, range: [1e4, 4e4], doc: "unit weight" },
+        Parameter { name: "k", unit: "", default: 0.05, range: [0.0, 0.5], doc: "seismic coefficient" },
+        Parameter { name: "rows", unit: "", default: 4.0, range: [1.0, 20.0], doc: "rows of bolts" },
+        Parameter { name: "tension", unit: "N/m", default: 210e3, range: [0.0, 1e7], doc: "tension of a row at yield" },
+        Parameter { name: "delta_deg", unit: "°", default: 10.0, range: [-30.0, 45.0], doc: "fall of the bolts" },
+    ],
+    quick: true,
+    implicit: false,
+    run,
+};
+
+fn slide(setup: &Setup, water: f64, seismic: f64) -> PlaneSlide {
+    let height = setup.get("height");
+    PlaneSlide {
+        height,
+        crack: setup.get("crack"),
+        face: setup.get("face_deg").to_radians(),
+        plane: setup.get("plane_deg").to_radians(),
+        cohesion: setup.get("cohesion"),
+        friction: setup.get("phi_deg").to_radians(),
+        unit_weight: setup.get("gamma"),
+        water_weight: 1e3 * G,
+        water,
+        seismic,
+        young: 2e10,
+        size: 0.12 * height,
+        planes: 1,
+        spacing: 1.0,
+    }
+}
+
+/// The formula with the tension of all bolts (N/m).
+fn exact(slide: &PlaneSlide, tension: f64, delta: f64) -> f64 {
+    let (s, c) = slide.plane.sin_cos();
+    let uplift = 0.5 * slide.water_weight * slide.water * slide.length();
+    let push = 0.5 * slide.water_weight * slide.water.powi(2);
+    let (weight, k) = (slide.weight(), slide.seismic);
+    let (pull_s, pull_c) = (slide.plane + delta).sin_cos();
+    let normal = weight * (c - k * s) - uplift - push * s + tension * pull_s;
+    let drive = weight * (s + k * c) + push * c - tension * pull_c;
+    (slide.cohesion * slide.length() + normal * slide.friction.tan()) / drive
+}
+
+/// Bolts from the face through the plane, as the case writes them.
+fn bolts(setup: &Setup, slide: &PlaneSlide) -> String {
+    let (rows, delta) = (setup.get("rows") as u32, setup.get("delta_deg").to_radians());
+    let (s, c) = delta.sin_cos();
+    let bolt = |k: u32| {
+        let y = 0.8 * slide.height * f64::from(k + 1) / f64::from(rows + 1);
+        let head = [y / slide.face.tan() + 0.02 * slide.height, y];
+        let reach = (y - head[0] * slide.plane.tan()) / (s + c * slide.plane.tan()) + 0.1 * slide.height;
+        let end = [head[0] + reach * c, head[1] - reach * s];
+        format!(
+            "[[bolt]]\npoints = {:?}\nyoung = 2e11\narea = 4e-4\nspacing = 1.0\nyield_force = {:e}\n",
+            [head, end],
+            setup.get("tension")
+        )
+    };
+    (0..rows).map(bolt).collect()
+}
+
+fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
+    let [water, k, tension] = ["water", "k", "tension"].map(|name| setup.get(name));
+    let delta = setup.get("delta_deg").to_radians();
+    let all = setup.get("rows").floor() * tension;
+    let variants = [
+        (", dry", 0.0, 0.0, false),
+        (", water", water, 0.0, false),
+        (", water and earthquake", water, k, false),
+        (", water and bolts", water, 0.0, true),
+    ];
+    let mut outcome = Outcome::default();
+    for (name, water, seismic, bolted) in variants {
+        let slide = slide(setup, water, seismic);
+        if !slide.is_sound() || water > slide.crack {
+            return Err(Trouble("the plane must daylight and the crack hold the water: steepen the face".to_owned()));
+        }
+        let mut text = slide.text("Limit analysis of a plane slide");
+        if bolted {
+            text = text.replace("[[stage]]", &(bolts(setup, &slide) + "[[stage]]"));
+        }
+        let bound = bound_of(setup, &format!("plane_slide{}", name.replace([',', ' '], "_")), text)?;
+        outcome.rows.extend(factor_rows(name, &bound, exact(&slide, if bolted { all } else { 0.0 }, delta)));
+    }
+    Ok(outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_bolts_the_formula_is_that_of_the_wedge() {
+        let slide = slide(&Setup::of(&PROBLEM, true), 5.0, 0.05);
+        assert!((exact(&slide, 0.0, 0.3) / slide.factor() - 1.0).abs() < 1e-14);
+    }
+}
