@@ -33,14 +33,16 @@ pub struct ContactHistory {
     pub shear_force: f64,
     /// How both forces have changed in the last step (N/m).
     pub trend: [f64; 2],
-    /// Shear force that the spring has stored (N/m).
-    pub shear_stored: f64,
+    /// Elastic shear of the spring (m): what it has stored, whatever length the contact will have.
+    pub sheared: f64,
     /// Penetration at first sight that carries no force (m); it fades.
     pub offset: f64,
     /// Closure that is at rest: from pre-stress and dilation (m).
     pub rest: f64,
     /// Accumulated slip (m).
     pub slip: f64,
+    /// Share of its strength that the overlap at the ends of the side gave it in the last step.
+    pub share: f64,
     /// Open, slip or lock.
     pub state: ContactState,
     /// Whether the joint has its peak strength.
@@ -69,8 +71,6 @@ pub struct VertexEdge {
     pub stiffness: [f64; 2],
     /// Gap along the normal that the springs see (m); negative in penetration.
     pub gap: f64,
-    /// Penetration of the node (m), with no allowance.
-    pub penetration: f64,
     /// Tributary length (m).
     pub length: f64,
     /// Law of the joint.
@@ -122,13 +122,25 @@ impl VertexEdge {
     /// Energy (J/m) that the springs store at the step's start.
     pub fn stored_energy(&self) -> f64 {
         let closure = if self.gap < 0.0 || self.history.state != ContactState::Open { -self.gap } else { 0.0 };
-        self.closure().energy(closure) + 0.5 * self.history.shear_stored.powi(2) / self.stiffness[1]
+        self.closure().energy(closure) + 0.5 * self.stiffness[1] * self.history.sheared.powi(2)
+    }
+
+    /// Shear force (N/m) that the spring has stored.
+    #[inline(always)]
+    pub fn shear_stored(&self) -> f64 {
+        self.stiffness[1] * self.history.sheared
+    }
+
+    /// Penetration of the node (m), with no allowance.
+    #[inline(always)]
+    pub fn penetration(&self) -> f64 {
+        self.loaded_penetration() + self.history.offset
     }
 
     /// Penetration (m) that the springs resist: without what was there at first sight.
     #[inline(always)]
     pub fn loaded_penetration(&self) -> f64 {
-        self.penetration - self.history.offset
+        -self.gap - self.history.rest
     }
 
     /// Normal and shear component of a cover field at the node relative to the edge.
@@ -145,7 +157,7 @@ impl VertexEdge {
             return (0.0, 0.0);
         }
         let limit = self.shear_limit(self.history.normal_force);
-        let trial = self.history.shear_stored - self.stiffness[1] * shear;
+        let trial = self.shear_stored() - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])
     }

@@ -131,7 +131,7 @@ fn distance(p: Point, (a, b): (Point, Point)) -> f64 {
 }
 
 /// Smallest distance between two parallel lines that hold a convex polygon between them (m).
-fn width(convex: &[Point]) -> f64 {
+pub fn width(convex: &[Point]) -> f64 {
     let across = |(a, b): (Point, Point)| {
         let length = (b - a).norm();
         let reach = convex.iter().map(|&p| cross(b - a, p - a)).fold(0.0, f64::max);

@@ -1,6 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
-use crate::contact::{Admitted, BlockPush, BoltRow, Frames, OpenClose, Remembered, SearchGrid, SupportRow, VertexEdge};
+use crate::contact::{
+    Admitted, Bearings, BlockPush, BoltRow, Frames, OpenClose, Remembered, SearchGrid, SupportRow, VertexEdge,
+};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, Metric, YieldSurface};
@@ -42,6 +44,8 @@ pub struct Scratch {
     pub admitted: Admitted,
     /// Where the contacts of the last step are.
     pub remembered: Remembered,
+    /// Those contacts by the node segment that they lie on.
+    pub bearings: Bearings,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.

@@ -111,7 +111,7 @@ impl Step<'_> {
             unbalanced: self.unbalanced(dt),
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
-            penetration_max: contacts.clone().map(|c| c.penetration).fold(0.0, f64::max),
+            penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
             speed_max: scratch.speed_max,
         }
     }

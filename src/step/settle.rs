@@ -52,7 +52,7 @@ impl Kernel for Settle<'_> {
 fn add_works(outcome: &mut ContactOutcome, contact: &VertexEdge, [normal, shear]: [f64; 2], stored: f64) {
     let history = &contact.history;
     outcome.work += history.normal_force * normal + history.shear_force * shear;
-    let old = history.shear_stored;
+    let old = contact.shear_stored();
     let spent = history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
     outcome.friction += if history.state == ContactState::Slip { spent } else { 0.0 };
 }
@@ -71,7 +71,7 @@ fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
 #[inline(always)]
 fn remembered(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
     let mut history = contact.history;
-    history.shear_stored = stored;
+    history.sheared = stored / contact.stiffness[1];
     history.rest += law.dilate(history.slip, history.slip + slipped);
     history.slip += slipped;
     history.intact &= !contact.torn && slipped == 0.0;

@@ -86,6 +86,7 @@ impl Step<'_> {
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
         scratch.remembered.index(&state.contacts, slope.boundary.node_count());
+        scratch.bearings.index(&slope.boundary, &state.contacts);
         let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = Narrow {
             boundary: &slope.boundary,
@@ -103,6 +104,7 @@ impl Step<'_> {
             dt_last,
             history: &state.contacts,
             remembered: &scratch.remembered,
+            bearings: &scratch.bearings,
             approach: dt.map(approach),
             size,
             reach,

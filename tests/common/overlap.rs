@@ -1,5 +1,7 @@
 //! An audit of overlaps that knows nothing of contacts: only the polygons of the blocks at their current places.
 
+use rayon::prelude::*;
+
 use enmm::contact::Boundary;
 use enmm::geometry::{Point, Vector, polygon, segment};
 use enmm::model::Simulation;
@@ -16,37 +18,112 @@ pub struct Overlap {
     pub blocks: [u32; 2],
 }
 
-/// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
-pub fn deepest_overlap(simulation: &Simulation) -> Overlap {
-    let (boundary, scratch) = (&simulation.slope().boundary, simulation.scratch());
-    let mut points = vec![Vec::new(); simulation.slope().covers.block_count()];
-    for k in 0..boundary.len() {
-        points[boundary.block[k] as usize].push(k);
-    }
-    let blocks_of = |node: u32, edge: u32| {
-        let own = boundary.block[boundary.node_point[node as usize] as usize];
-        let other = boundary.block[edge as usize];
-        [own.min(other), own.max(other)]
-    };
-    let mut pairs: Vec<[u32; 2]> =
-        simulation.state().near.candidates.iter().map(|c| blocks_of(c.node, c.edge)).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
-    pairs.retain(|pair| pair[0] != pair[1]);
-    let overlap = |&blocks: &[u32; 2]| {
-        let [p, q] = blocks.map(|b| points[b as usize].as_slice());
-        Overlap { depth: pair_depth(boundary, &scratch.place, p, q), blocks }
-    };
-    pairs.iter().map(overlap).max_by(|a, b| a.depth.total_cmp(&b.depth)).unwrap_or_default()
+/// The blocks of a model, cut into triangles once.
+pub struct Audit {
+    /// Boundary points of each block.
+    points: Vec<Vec<usize>>,
+    /// Triangles of boundary points of each block that is not cracked.
+    triangles: Vec<Vec<[usize; 3]>>,
+    cracked: Vec<bool>,
 }
 
-/// Overlap (m) of two blocks; of a cracked one, which is no simple polygon, the depth of corners in it.
-fn pair_depth(boundary: &Boundary, place: &[Point], p: &[usize], q: &[usize]) -> f64 {
-    if p.iter().chain(q).any(|&k| boundary.partial[k]) {
-        return corner_depth(boundary, place, p, q).max(corner_depth(boundary, place, q, p));
+/// A block at its current place.
+struct Placed {
+    points: Vec<Point>,
+    triangles: Vec<[Point; 3]>,
+    low: Point,
+    high: Point,
+}
+
+impl Audit {
+    pub fn new(simulation: &Simulation) -> Self {
+        let (boundary, blocks) = (&simulation.slope().boundary, simulation.slope().covers.block_count());
+        let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
+        for k in 0..boundary.len() {
+            let block = boundary.block[k] as usize;
+            points[block].push(k);
+            cracked[block] |= boundary.partial[k];
+        }
+        let triangles = (0..blocks).map(|b| if cracked[b] { Vec::new() } else { cut(boundary, &points[b]) }).collect();
+        Self { points, triangles, cracked }
     }
-    let polygon = |points: &[usize]| -> Vec<Point> { points.iter().map(|&k| place[k]).collect() };
-    polygon::overlap_depth(&polygon(p), &polygon(q))
+
+    /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
+    pub fn deepest(&self, simulation: &Simulation) -> Overlap {
+        let (boundary, place) = (&simulation.slope().boundary, &simulation.scratch().place);
+        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        for c in &simulation.state().near.candidates {
+            let [a, b] = [boundary.node_point[c.node as usize], c.edge].map(|k| boundary.block[k as usize]);
+            let pair = [a.min(b), a.max(b)];
+            if pairs.last() != Some(&pair) && a != b {
+                pairs.push(pair);
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let depth = |&[p, q]: &[u32; 2]| {
+            let [p, q] = [p as usize, q as usize];
+            if placed[p].is_apart(placed[q].low, placed[q].high) {
+                return 0.0;
+            }
+            if self.cracked[p] || self.cracked[q] {
+                let [p, q] = [&self.points[p], &self.points[q]];
+                return corner_depth(boundary, place, p, q).max(corner_depth(boundary, place, q, p));
+            }
+            pair_depth(&placed[p], &placed[q])
+        };
+        let overlaps = pairs.par_iter().map(|blocks| Overlap { depth: depth(blocks), blocks: *blocks });
+        overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
+    }
+
+    fn placed(&self, block: usize, place: &[Point]) -> Placed {
+        let points: Vec<Point> = self.points[block].iter().map(|&k| place[k]).collect();
+        let triangles = self.triangles[block].iter().map(|t| t.map(|k| place[k])).collect();
+        let (low, high) = polygon::bounds(&points);
+        Placed { points, triangles, low, high }
+    }
+}
+
+impl Placed {
+    fn is_apart(&self, low: Point, high: Point) -> bool {
+        self.low.x >= high.x || low.x >= self.high.x || self.low.y >= high.y || low.y >= self.high.y
+    }
+}
+
+/// Triangles of a block, as indices of its boundary points.
+fn cut(boundary: &Boundary, points: &[usize]) -> Vec<[usize; 3]> {
+    let polygon: Vec<Point> = points.iter().map(|&k| boundary.reference[k]).collect();
+    let index = |p: Point| points[polygon.iter().position(|q| *q == p).expect("a corner of the block")];
+    polygon::triangles(&polygon).iter().map(|t| t.map(index)).collect()
+}
+
+/// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
+pub fn deepest_overlap(simulation: &Simulation) -> Overlap {
+    Audit::new(simulation).deepest(simulation)
+}
+
+/// Overlap (m) of two blocks: the width of its widest piece, or how deep a corner lies in it.
+fn pair_depth(p: &Placed, q: &Placed) -> f64 {
+    let near = |own: &Placed, other: &Placed| -> Vec<[Point; 3]> {
+        let boxed = own.triangles.iter().filter(|t| {
+            let (low, high) = polygon::bounds(&t[..]);
+            !other.is_apart(low, high)
+        });
+        boxed.copied().collect()
+    };
+    let (own, others) = (near(p, q), near(q, p));
+    let pieces = own.iter().flat_map(|t| others.iter().map(move |u| polygon::clip_convex(t, u)));
+    let widest = pieces.filter(|piece| piece.len() > 2).map(|piece| polygon::width(&piece)).fold(0.0, f64::max);
+    if widest == 0.0 { 0.0 } else { widest.max(deepest_corner(p, q)).max(deepest_corner(q, p)) }
+}
+
+/// Distance (m) to the boundary of the corner of one block that is deepest inside another.
+fn deepest_corner(p: &Placed, q: &Placed) -> f64 {
+    let within = |x: &&Point| !q.is_apart(**x, **x) && polygon::contains(&q.points, **x);
+    let sides = || polygon::sides(&q.points);
+    let depth = |x: Point| sides().map(|(a, b)| segment::distance(x, a, b)).fold(f64::INFINITY, f64::min);
+    p.points.iter().filter(within).map(|x| depth(*x)).fold(0.0, f64::max)
 }
 
 /// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.

@@ -7,7 +7,11 @@ use crate::contact::{Closure, ContactHistory, ContactState, Pair, Spring, Vertex
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
+use super::length::Tributary;
 use super::{Approach, GRAIN, Narrow, Pick, right_of};
+
+/// Penetration, relative to the mesh size, at which the solver's own stiffness has doubled.
+const HARDENS: f64 = 3e-3;
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
@@ -52,16 +56,20 @@ impl Narrow<'_> {
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b as usize].centre);
-        let (length, penalty_length) = self.tributary(node, pick);
+        let Tributary { length, penalty, share } = self.tributary(node, pick);
         let law = self.law(node, edge);
-        let stiffness = self.laws[law as usize].stiffness(length, penalty_length);
+        let mut stiffness = self.laws[law as usize].stiffness(length, penalty);
         let closure_max = self.laws[law as usize].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
         let history = match pick.held {
             Some(known) => self.history[known as usize],
-            None => self.first_sight(node, pick, length, closure, normal),
+            None => self.first_sight(node, pick, length, closure, stiffness[1], normal),
         };
-        let history = ContactHistory { edge: pick.edge, ..history };
+        let history = ContactHistory { edge: pick.edge, share, ..history };
+        let gap = pick.gap + history.offset - history.rest;
+        if self.laws[law as usize].penalty[0] {
+            stiffness[0] *= 1.0 + (gap.min(0.0) / (HARDENS * self.size)).powi(2);
+        }
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
         *contact = VertexEdge {
@@ -71,8 +79,7 @@ impl Narrow<'_> {
             expected: [0.0; 2],
             limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
             closure_max,
-            gap: pick.gap + history.offset - history.rest,
-            penetration: -pick.gap,
+            gap,
             history,
             stiffness,
             length,
@@ -112,7 +119,7 @@ impl Narrow<'_> {
         } else {
             normal.linear(-contact.stiffness[0] * contact.gap)
         };
-        contact.answers = [closing, shear.linear(contact.history.shear_stored)];
+        contact.answers = [closing, shear.linear(contact.shear_stored())];
         contact.expect();
     }
 
@@ -136,7 +143,15 @@ impl Narrow<'_> {
 
     #[cold]
     #[inline(never)]
-    fn first_sight(&self, node: usize, pick: &Pick, length: f64, closure: Closure, normal: Vector) -> ContactHistory {
+    fn first_sight(
+        &self,
+        node: usize,
+        pick: &Pick,
+        length: f64,
+        closure: Closure,
+        shear_stiffness: f64,
+        normal: Vector,
+    ) -> ContactHistory {
         let mut history = ContactHistory {
             node: node as u32,
             side: pick.side,
@@ -144,10 +159,11 @@ impl Narrow<'_> {
             normal_force: 0.0,
             shear_force: 0.0,
             trend: [0.0; 2],
-            shear_stored: 0.0,
+            sheared: 0.0,
             offset: 0.0,
             rest: 0.0,
             slip: 0.0,
+            share: 0.0,
             state: ContactState::Open,
             intact: self.first,
         };
@@ -160,7 +176,7 @@ impl Narrow<'_> {
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);
             history.shear_force = -traction.dot(&pick.tangent);
-            history.shear_stored = history.shear_force;
+            history.sheared = history.shear_force / shear_stiffness;
             history.state = ContactState::Lock;
         }
         history

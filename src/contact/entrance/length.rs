@@ -2,49 +2,86 @@
 
 use crate::contact::Corner;
 
-use super::rule::End;
+use super::rule::{End, FLUSH_COSINE, LEDGE};
 use super::{HELD_BEYOND, Narrow, Pick};
 
-/// Least tributary length, relative to the mean of the neighbouring node segments.
-const LENGTH_FLOOR: f64 = 1e-3;
-/// The same for the solver's own stiffness: rock that meets in a point is no softer than where it meets in a face.
+/// Least tributary length, relative to the mean of the neighbouring node segments: no division by nothing.
+const LENGTH_FLOOR: f64 = 1e-6;
+/// The same for the solver's own stiffness of a contact in full strength: rock that meets in a point is no softer than
+/// where it meets in a face.
 const PENALTY_LENGTH_FLOOR: f64 = 0.5;
 
+/// Lengths over which a node acts on an edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tributary {
+    /// Tributary length (m).
+    pub length: f64,
+    /// Length of the solver's own stiffness (m).
+    pub penalty: f64,
+    /// Share of its strength that the contact has.
+    pub share: f64,
+}
+
+/// What counts of the node segments that face a side (m).
+#[derive(Debug, Clone, Copy, Default)]
+struct Facing {
+    /// Segments that lie along the side.
+    flush: f64,
+    /// Others.
+    oblique: f64,
+}
+
 impl Narrow<'_> {
-    /// Tributary length (m) of a node over an edge, and the length of the solver's own stiffness (Eq. 13).
+    /// Lengths over which a node acts on an edge (Eq. 13). Where corners meet they are those of the overlap that is
+    /// there with springs unloaded: a face pushes with as much of itself as lies against the other.
     #[inline(always)]
-    pub(super) fn tributary(&self, node: usize, pick: &Pick) -> (f64, f64) {
+    pub(super) fn tributary(&self, node: usize, pick: &Pick) -> Tributary {
+        let [start, finish] = pick.overlap;
+        let ramp = |overlap: f64| (overlap / (LEDGE * self.size) - 1.0).clamp(0.0, 1.0);
+        let at_ends = ramp(start.min(finish));
+        let Facing { flush, oblique } = self.facing(node, pick);
+        let share = at_ends.max(ramp(flush));
+        let distance = &self.frames.nodes[node].distance;
+        let span = 0.5 * (distance[0] + distance[1]);
+        let length = (0.5 * (flush + at_ends * oblique)).max(LENGTH_FLOOR * span);
+        let penalty = length.max(PENALTY_LENGTH_FLOOR * span * share);
+        let at_corner = self.share_at_corner(node, pick);
+        Tributary { length: length * at_corner, penalty: penalty * at_corner, share }
+    }
+
+    /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the
+    /// side no farther than the overlap at its ends.
+    #[inline(always)]
+    fn facing(&self, node: usize, pick: &Pick) -> Facing {
         let boundary = self.boundary;
         let frame = &self.frames.nodes[node];
         let p = frame.place.dot(&pick.tangent);
         let before = boundary.node_before[pick.edge as usize] as usize;
-        let from = self.node_place(before).dot(&pick.tangent);
-        let to = self.node_place(boundary.node_next[before] as usize).dot(&pick.tangent);
-        let overlap = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
-        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]]
-            .map(|n| self.node_place(n as usize).dot(&pick.tangent));
+        let after = boundary.node_next[before] as usize;
+        let place = |n: u32| self.node_place(n as usize).dot(&pick.tangent);
+        let (from, to) = (place(before as u32), place(after as u32));
+        let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
+        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(place);
         let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
-        let mut facing = 0.0;
-        if q > p {
-            let mut over = overlap(q);
-            if high > 0.0 {
-                let beyond = boundary.node_next[boundary.node_next[before] as usize];
-                over += high * self.reach_beyond(beyond, to, q, pick);
+        let mut facing = Facing::default();
+        let mut add = |over: f64, along: f64, distance: f64, overlap: f64| {
+            if along > FLUSH_COSINE * distance {
+                facing.flush += over.min(overlap.max(0.0));
+            } else {
+                facing.oblique += over;
             }
-            facing += over;
+        };
+        if q > p {
+            let beyond =
+                if high > 0.0 { high * self.reach_beyond(boundary.node_next[after], to, q, pick) } else { 0.0 };
+            add(over(q) + beyond, q - p, frame.distance[0], pick.overlap[1]);
         }
         if r < p {
-            let mut over = overlap(r);
-            if low > 0.0 {
-                over += low * self.reach_beyond(boundary.node_previous[before], from, r, pick);
-            }
-            facing += over;
+            let beyond =
+                if low > 0.0 { low * self.reach_beyond(boundary.node_previous[before], from, r, pick) } else { 0.0 };
+            add(over(r) + beyond, p - r, frame.distance[1], pick.overlap[0]);
         }
-        let share = self.share_at_corner(node, pick);
-        let span = 0.5 * (frame.distance[0] + frame.distance[1]);
-        let length = (0.5 * facing).max(LENGTH_FLOOR * span);
-        let stiff = length.max(PENALTY_LENGTH_FLOOR * span);
-        (length * share, stiff * share)
+        facing
     }
 
     /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from

@@ -1,5 +1,6 @@
 //! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
 
+mod bearing;
 mod contact;
 mod frame;
 mod length;
@@ -14,6 +15,7 @@ use frame::{EdgeFrame, Over};
 
 use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
 
+pub use bearing::Bearings;
 pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
@@ -70,6 +72,8 @@ pub struct Narrow<'a> {
     pub history: &'a [ContactHistory],
     /// Where those of each node are.
     pub remembered: &'a Remembered,
+    /// Those by the node segment that they lie on.
+    pub bearings: &'a Bearings,
     /// How contacts come on in an explicit step; none in an implicit one.
     pub approach: Option<Approach<'a>>,
     /// Mesh size (m).
@@ -144,6 +148,8 @@ struct Pick {
     held: Option<u32>,
     /// Whether the contact carried force in the last step.
     is_held: bool,
+    /// How far (m) along the side it overlaps before its start and its finish, with springs unloaded.
+    overlap: [f64; 2],
     admitted: bool,
 }
 
@@ -233,7 +239,9 @@ impl Narrow<'_> {
             let picks = self.pick_edges(node, group, sides);
             let mut contested = false;
             for pick in picks.iter_mut().filter(|pick| pick.admitted) {
-                pick.admitted = !self.is_false_sight(node, pick) && self.within(node, pick);
+                let overlap = if self.is_false_sight(node, pick) { None } else { self.overlap_at_ends(node, pick) };
+                pick.admitted = overlap.is_some();
+                pick.overlap = overlap.unwrap_or_default();
                 contested |= pick.admitted & !pick.is_held & (pick.gap < -TIE_TOLERANCE * self.size);
             }
             // Those that are not admitted matter only where a deep one without force is.
@@ -269,7 +277,20 @@ impl Narrow<'_> {
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
         let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
         let Candidate { node: own, side, .. } = edges[0];
-        *pick = Pick { node: own, side, edge, gap, along, beyond, length, tangent, held, is_held, admitted: false };
+        *pick = Pick {
+            node: own,
+            side,
+            edge,
+            gap,
+            along,
+            beyond,
+            length,
+            tangent,
+            held,
+            is_held,
+            overlap: [f64::INFINITY; 2],
+            admitted: false,
+        };
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
         let near = bonded | (gap - known.map_or(0.0, |h| h.rest - h.offset) < self.reach);
         pick.admitted = near & self.enters(node, pick);

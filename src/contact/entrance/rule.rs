@@ -2,18 +2,18 @@
 
 use crate::contact::{ContactState, Corner, SideEnd};
 use crate::cover;
-use crate::geometry::Point;
+use crate::geometry::{Point, Vector};
 
 use super::{ENTRANCE_SINE, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
 
-/// Height of a ledge, relative to the mesh size, that catches nothing: a corner that comes on by more in a step passes.
-const LEDGE: f64 = 5e-4;
-/// Share of its depth to which another facet must be shallower for a deep contact to give way.
-const SHALLOWER: f64 = 0.25;
+/// Height of a ledge, relative to the mesh size, up to which it catches nothing; one of twice that catches in full.
+pub(super) const LEDGE: f64 = 1e-3;
+/// Penetration, relative to the mesh size, that contacts stay below.
+const CLOSURE_MOST: f64 = 0.02;
 /// Cosine from which two sides of a block look apart, with rock between them: 60°.
 const OPPOSED_COSINE: f64 = 0.5;
 /// Cosine from which two faces that look at each other lie on each other: 10°.
-const FLUSH_COSINE: f64 = 0.985;
+pub(super) const FLUSH_COSINE: f64 = 0.985;
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,14 +23,16 @@ pub(super) enum End {
 }
 
 impl Narrow<'_> {
-    /// Rule (ii): at a convex end of the side the node is not beyond the end, and not past the facet round it.
-    pub(super) fn within(&self, node: usize, pick: &Pick) -> bool {
+    /// Rule (ii): how far (m) along the side a node overlaps with the block before the start and the finish of it, with
+    /// springs unloaded, infinite at ends that are far or no corners; none where it is no contact of this side.
+    pub(super) fn overlap_at_ends(&self, node: usize, pick: &Pick) -> Option<[f64; 2]> {
         let p = self.node_place(node);
         let tolerance = self.corner_tolerance(pick);
-        [End::Start, End::Finish].into_iter().all(|end| {
+        let mut overlap = [f64::INFINITY; 2];
+        for end in [End::Start, End::Finish] {
             let at = self.boundary.side_ends[pick.side as usize][end as usize];
             if at.corner == Corner::Reflex {
-                return true;
+                continue;
             }
             let past = match end {
                 End::Start => pick.along < 0.0,
@@ -38,45 +40,73 @@ impl Narrow<'_> {
             };
             let missed = at.edge == pick.edge && past && pick.beyond > tolerance;
             if missed && !self.is_kept(node, pick, end) {
-                return false;
+                return None;
             }
             let corner = self.place[at.point as usize];
-            (p - corner).norm_squared() >= self.size * self.size || self.is_inside_round(node, pick, p, end)
-        })
+            if (p - corner).norm_squared() < self.size * self.size {
+                overlap[end as usize] = self.overlap_round(node, pick, p, end)?;
+            }
+        }
+        Some(overlap)
     }
 
-    /// Whether the node, at a convex `end` of the side, is inside the facet that meets this one there.
+    /// How far (m) along a side a node overlaps with the block before a convex `end` of it, with springs unloaded; none
+    /// where it does not, or where the facet there is the shorter way out.
     ///
     /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's
     /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
-    /// that as well, or else (q, the side of p that turns towards it). Inside both, the node enters this one if it
-    /// carries force, or if it is the shallower and the other carries none; a deep contact gives way to a far
-    /// shallower one. Faces that lie on each other do not exclude each other, and overlap when each has the other's
-    /// corner behind it, though a sharp one may be pierced: the node is then past the facet round its tip.
-    fn is_inside_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> bool {
+    /// that as well, or else (q, the side of p that turns towards it). The shallower facet is the way out: how deep
+    /// springs have let the corners in, of this facet itself or of others beside them, is no depth. Faces that lie on
+    /// each other do not exclude each other; a sharp one may be pierced: the node is then past the facet round its tip.
+    fn overlap_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
-        let tolerance = self.corner_tolerance(pick);
         let SideEnd { round, point: corner, .. } = boundary.side_ends[pick.side as usize][end as usize];
+        let meets = boundary.node_before[corner as usize] as usize;
         let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
-        let flush = -facing.dot(&right_of(pick.tangent)) > FLUSH_COSINE;
-        let gap = (q - p).dot(&facing);
-        if flush || own.dot(&outward) >= 0.0 {
-            let is_inside = (p - q).dot(&outward) <= tolerance || self.is_kept(node, pick, end);
-            return is_inside || flush && gap <= 0.0 && !self.came_in_elsewhere(node, pick, Some(end));
+        let normal = right_of(pick.tangent);
+        let flush = -facing.dot(&normal) > FLUSH_COSINE;
+        let faces_round = flush || own.dot(&outward) >= 0.0;
+        let out = if faces_round { outward } else { -facing };
+        let depth = (q - p).dot(&out);
+        if depth < -self.corner_tolerance(pick) {
+            let pierced = flush && (q - p).dot(&facing) <= 0.0 && !self.came_in_elsewhere(node, pick, Some(end));
+            return (pierced || self.is_kept(node, pick, end)).then_some(f64::INFINITY);
         }
-        if pick.gap > 0.0 && gap <= 0.0 && !pick.is_held {
-            return -gap > LEDGE * self.size || -gap > -self.opened(node, pick);
+        let most = CLOSURE_MOST * self.size;
+        let along = out.dot(&pick.tangent).abs().max(f64::MIN_POSITIVE);
+        if -pick.gap < most && depth > 2.0 * most {
+            return Some(depth / along);
         }
-        if pick.gap > 0.0 || gap > 0.0 {
-            return gap <= tolerance;
+        let closure = if faces_round {
+            self.closure_with(node, boundary.side[round as usize])
+        } else {
+            self.closure_with(meets, self.own_side(node, end))
+        };
+        let beyond = depth - closure.max(self.let_in_by_others(node, meets, out));
+        if flush {
+            return Some(beyond / along);
         }
-        if pick.is_held {
-            return !self.is_deep(node, pick, pick.gap) || gap < SHALLOWER * pick.gap;
+        let closure = pick.held.map_or(0.0, |known| -pick.gap * self.history[known as usize].share);
+        let way_out = -pick.gap - closure.max(self.let_in_by_others(node, meets, normal));
+        (way_out <= beyond + TIE_TOLERANCE * self.size).then_some(beyond / along)
+    }
+
+    /// How far (m) a node and a corner of another block part along a direction, out of that block, when the springs of
+    /// their other contacts are unloaded.
+    fn let_in_by_others(&self, node: usize, corner: usize, out: Vector) -> f64 {
+        let [own, others] = [node, corner].map(|node| self.sides_at(node));
+        self.let_in(node, out, others).max(self.let_in(corner, -out, own))
+    }
+
+    /// The side of a node's own block that lies towards an end of the side that it faces.
+    fn own_side(&self, node: usize, end: End) -> u32 {
+        match end {
+            End::Start => self.boundary.side_of_node_before(node),
+            End::Finish => self.boundary.side[self.boundary.node_point[node] as usize],
         }
-        gap <= pick.gap + TIE_TOLERANCE * self.size && !self.is_borne(node, corner, end)
     }
 
     /// Whether a contact that carries force outlasts an end of its side.
@@ -99,11 +129,7 @@ impl Narrow<'_> {
 
     /// Whether the corner at an end of a side carried force against the node's own side towards that end.
     fn is_borne(&self, node: usize, corner: u32, end: End) -> bool {
-        let own_side = match end {
-            End::Start => self.boundary.side_of_node_before(node),
-            End::Finish => self.boundary.side[self.boundary.node_point[node] as usize],
-        };
-        self.carries(self.boundary.node_before[corner as usize], own_side)
+        self.carries(self.boundary.node_before[corner as usize], self.own_side(node, end))
     }
 
     /// Whether a node carried force against a side in the last step.

@@ -159,7 +159,7 @@ fn six_weights(contact: &VertexEdge) -> [f64; 6] {
 /// Shear force over the way that its spring alone would have taken (N/m per m): between no spring, which lets a block
 /// go in one iteration that is held in the next, and the spring of a contact that does not slip.
 fn secant(contact: &VertexEdge, moved: &[Vector]) -> f64 {
-    let asked = (contact.history.shear_stored - contact.stiffness[1] * contact.relative(moved)[1]).abs();
+    let asked = (contact.shear_stored() - contact.stiffness[1] * contact.relative(moved)[1]).abs();
     contact.stiffness[1] * (contact.history.shear_force.abs() / asked.max(f64::MIN_POSITIVE)).min(1.0)
 }
 

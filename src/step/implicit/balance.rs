@@ -145,7 +145,7 @@ fn judge_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
 /// Normal and shear force (N/m) that the springs of a contact ask for.
 fn springs(contact: &VertexEdge, moved: &[Vector]) -> [f64; 2] {
     let [opened, sheared] = contact.relative(moved);
-    let shear = contact.history.shear_stored - contact.stiffness[1] * sheared;
+    let shear = contact.shear_stored() - contact.stiffness[1] * sheared;
     [-contact.stiffness[0] * (contact.gap + opened), shear]
 }
 

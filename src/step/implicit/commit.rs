@@ -79,7 +79,7 @@ impl Step<'_> {
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
             if contact.history.state == ContactState::Slip {
                 let (kept, _) = contact.shear_after(sheared);
-                let old = contact.history.shear_stored;
+                let old = contact.shear_stored();
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }
         }
@@ -125,7 +125,7 @@ impl Step<'_> {
             unbalanced,
             locked: self.count_contacts(ContactState::Lock),
             slipping: self.count_contacts(ContactState::Slip),
-            penetration_max: scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max),
+            penetration_max: scratch.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
             speed_max: scratch.speed_max,
         }
     }
