@@ -3,7 +3,7 @@
 mod common;
 
 use common::claims::{dynamic, rock};
-use common::overlap::deepest_overlap;
+use common::overlap::Audit;
 use common::{run_stage, simulation};
 
 const SIZE: f64 = 1.0;
@@ -33,16 +33,17 @@ fn a_failing_slope_overlaps_by_little() {
     let report = run_stage(&mut simulation);
     assert!(simulation.at_rest(&report), "the slope must settle: {report:?}");
     assert!(simulation.next_stage().expect("a stage"));
+    let overlaps = Audit::new(&simulation);
     let (mut worst, mut k, mut speed) = (0.0f64, 0u64, 0.0f64);
     while !simulation.stage_is_over(None) {
         let report = simulation.advance(k.is_multiple_of(50)).unwrap_or_else(|e| panic!("{e}"));
         speed = speed.max(report.speed_max);
         if k.is_multiple_of(50) {
-            worst = worst.max(deepest_overlap(&simulation).depth);
+            worst = worst.max(overlaps.deepest(&simulation).depth);
         }
         k += 1;
     }
-    let end = deepest_overlap(&simulation);
+    let end = overlaps.deepest(&simulation);
     println!("{} blocks, {speed} m/s, overlap {worst:e} m, {end:?}", simulation.slope().covers.block_count());
     println!("{:?}", simulation.state().counters);
     assert!(speed > 3.0, "the slope must fail: {speed} m/s");

@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use common::overlap::deepest_overlap;
+use common::overlap::Audit;
 use common::run_stage;
 use enmm::model::Simulation;
 
@@ -24,12 +24,13 @@ fn the_fractured_slope_rests_and_then_fails() {
     assert!(rest.ledger.residual().abs() < 1e-3 * rest.ledger.largest(), "{:?}", rest.ledger);
 
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
+    let overlaps = Audit::new(&simulation);
     let (mut worst, mut k, mut heat) = (Default::default(), 0u64, rest.ledger.friction);
     while !simulation.stage_is_over(None) {
         let audit = k.is_multiple_of(25);
         let report = simulation.advance(audit).unwrap_or_else(|e| panic!("{e}"));
         if audit {
-            let overlap = deepest_overlap(&simulation);
+            let overlap = overlaps.deepest(&simulation);
             worst = if overlap.depth > f64::max(worst, 0.0) { overlap.depth } else { worst };
             assert!(report.ledger.residual().abs() < 1e-3 * report.ledger.largest(), "{:?}", report.ledger);
             // Friction only ever turns energy into heat, up to what its springs give back.

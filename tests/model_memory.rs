@@ -64,7 +64,8 @@ fn bytes(simulation: &Simulation) -> [usize; 3] {
 }
 
 /// Ten elements, sixteen boundary edges and as many contacts a block: the limits are 15 % above what was counted when
-/// they were set (352, 281 with a share in each contact, and 2081; of the buffers contacts are 708, rows of the open–close iteration 726, and 236
+/// they were set (352, 281 with a share in each contact, and 2081; of the buffers contacts are 708, rows of the
+/// open–close iteration 726, and 236
 /// what the vertex rule has just judged, which does not grow with the model).
 #[test]
 fn a_jointed_model_stays_within_its_bytes_per_element() {

@@ -116,8 +116,8 @@ pub fn overlap_depth(p: &[Point], q: &[Point]) -> f64 {
     widths.max(deepest_corner(p, q)).max(deepest_corner(q, p))
 }
 
-/// Distance to the boundary of the corner of `p` deepest inside `q` (m), 0 when none is inside.
-fn deepest_corner(p: &[Point], q: &[Point]) -> f64 {
+/// Returns the distance to the boundary of the point of `p` deepest inside `q` (m), 0 when none is inside.
+pub fn deepest_corner(p: &[Point], q: &[Point]) -> f64 {
     let boundary = |corner: Point| sides(q).map(|side| distance(corner, side)).fold(f64::INFINITY, f64::min);
     p.iter().filter(|&&corner| contains(q, corner)).map(|&corner| boundary(corner)).fold(0.0, f64::max)
 }
@@ -130,7 +130,7 @@ fn distance(p: Point, (a, b): (Point, Point)) -> f64 {
     (p - foot).norm()
 }
 
-/// Smallest distance between two parallel lines that hold a convex polygon between them (m).
+/// Returns the smallest distance between two parallel lines that hold a convex polygon between them (m).
 pub fn width(convex: &[Point]) -> f64 {
     let across = |(a, b): (Point, Point)| {
         let length = (b - a).norm();

@@ -120,10 +120,8 @@ fn pair_depth(p: &Placed, q: &Placed) -> f64 {
 
 /// Distance (m) to the boundary of the corner of one block that is deepest inside another.
 fn deepest_corner(p: &Placed, q: &Placed) -> f64 {
-    let within = |x: &&Point| !q.is_apart(**x, **x) && polygon::contains(&q.points, **x);
-    let sides = || polygon::sides(&q.points);
-    let depth = |x: Point| sides().map(|(a, b)| segment::distance(x, a, b)).fold(f64::INFINITY, f64::min);
-    p.points.iter().filter(within).map(|x| depth(*x)).fold(0.0, f64::max)
+    let near: Vec<Point> = p.points.iter().filter(|x| !q.is_apart(**x, **x)).copied().collect();
+    polygon::deepest_corner(&near, &q.points)
 }
 
 /// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.

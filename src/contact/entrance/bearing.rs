@@ -62,7 +62,7 @@ impl Narrow<'_> {
         known.iter().find(|contact| contact.side == side).map_or(0.0, |contact| self.closure(contact).0)
     }
 
-    /// The sides before and after a node.
+    /// The sides before and after a node: those that lie towards the start and the finish of a side that it faces.
     pub(super) fn sides_at(&self, node: usize) -> [u32; 2] {
         self.boundary.edges_of_node(node).map(|edge| self.boundary.side[edge as usize])
     }

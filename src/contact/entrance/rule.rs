@@ -83,7 +83,7 @@ impl Narrow<'_> {
         let closure = if faces_round {
             self.closure_with(node, boundary.side[round as usize])
         } else {
-            self.closure_with(meets, self.own_side(node, end))
+            self.closure_with(meets, self.sides_at(node)[end as usize])
         };
         let beyond = depth - closure.max(self.let_in_by_others(node, meets, out));
         if flush {
@@ -99,14 +99,6 @@ impl Narrow<'_> {
     fn let_in_by_others(&self, node: usize, corner: usize, out: Vector) -> f64 {
         let [own, others] = [node, corner].map(|node| self.sides_at(node));
         self.let_in(node, out, others).max(self.let_in(corner, -out, own))
-    }
-
-    /// The side of a node's own block that lies towards an end of the side that it faces.
-    fn own_side(&self, node: usize, end: End) -> u32 {
-        match end {
-            End::Start => self.boundary.side_of_node_before(node),
-            End::Finish => self.boundary.side[self.boundary.node_point[node] as usize],
-        }
     }
 
     /// Whether a contact that carries force outlasts an end of its side.
@@ -129,7 +121,7 @@ impl Narrow<'_> {
 
     /// Whether the corner at an end of a side carried force against the node's own side towards that end.
     fn is_borne(&self, node: usize, corner: u32, end: End) -> bool {
-        self.carries(self.boundary.node_before[corner as usize], self.own_side(node, end))
+        self.carries(self.boundary.node_before[corner as usize], self.sides_at(node)[end as usize])
     }
 
     /// Whether a node carried force against a side in the last step.
