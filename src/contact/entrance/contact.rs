@@ -66,10 +66,11 @@ impl Narrow<'_> {
             None => self.first_sight(node, pick, length, closure, stiffness[1], normal),
         };
         let history = ContactHistory { edge: pick.edge, share, ..history };
-        let gap = pick.gap + history.offset - history.rest;
+        let resisted = pick.gap + history.offset;
         if self.laws[law as usize].penalty[0] {
-            stiffness[0] *= 1.0 + (gap.min(0.0) / (HARDENS * self.size)).powi(2);
+            stiffness[0] *= 1.0 + (resisted.min(0.0) / (HARDENS * self.size)).powi(2);
         }
+        let gap = resisted - history.rest;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
         *contact = VertexEdge {
