@@ -32,9 +32,11 @@ impl Default for BoundaryOptions {
 /// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]` inside one element, rock on its left.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
-    /// Covers of the element of edge `k`; they carry point `k` as well.
+    /// Covers of the element that carries point `k`.
     pub covers: Vec<[u32; 3]>,
-    /// Weights of those covers at point `k`.
+    /// Covers of the element that carries edge `k`.
+    pub edge_covers: Vec<[u32; 3]>,
+    /// Weights of the covers of point `k` there.
     pub weights: Vec<Weights>,
     /// Reference position of point `k` (m).
     pub reference: Vec<Point>,
@@ -101,10 +103,11 @@ impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
     pub fn new(covers: &Covers, outlines: &Outlines, options: &BoundaryOptions) -> Self {
         let mut boundary = Self::default();
+        let carrier = covers.carriers();
         for k in 0..outlines.len() {
             let mut stations = stations(outlines.of_loop(k), options);
             place_nodes(&mut stations, covers.mesh.size);
-            boundary.push_loop(covers, outlines.loop_block[k], &stations);
+            boundary.push_loop(covers, &carrier, outlines.loop_block[k], &stations);
         }
         boundary.measure_blocks(covers);
         boundary
@@ -177,7 +180,7 @@ impl Boundary {
         self.block_thickness = perimeter.iter().enumerate().map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
     }
 
-    fn push_loop(&mut self, covers: &Covers, block: u32, stations: &[Station]) {
+    fn push_loop(&mut self, covers: &Covers, carrier: &impl Fn(u32, u32) -> usize, block: u32, stations: &[Station]) {
         let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_first.len());
         let last = first + stations.len() - 1;
         for (k, station) in stations.iter().enumerate() {
@@ -192,8 +195,11 @@ impl Boundary {
                 self.node_convex.push(station.corner && station.turn > 0.0);
                 self.node_edge_before.push(if k == 0 { last } else { first + k - 1 } as u32);
             }
-            let element = covers.host[station.piece.element as usize] as usize;
+            let before = &stations[if k == 0 { stations.len() } else { k } - 1];
+            let [before, after] = [before, station].map(|station| station.piece.element);
+            let element = carrier(before, after);
             self.covers.push(covers.element_covers[element]);
+            self.edge_covers.push(covers.element_covers[covers.host[after as usize] as usize]);
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);
             self.next.push(if first + k == last { first as u32 } else { index + 1 });
@@ -279,29 +285,38 @@ fn place_nodes(stations: &mut Vec<Station>, size: f64) {
     *stations = placed;
 }
 
-/// Divides one span between two nodes evenly.
-fn divide(span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
-    let length: f64 = span.iter().map(|s| (s.piece.b - s.piece.a).norm()).sum();
-    let parts = (length / size - 1e-6).ceil().max(1.0);
-    let step = length / parts;
-    let (mut at, mut target) = (0.0, 1.0);
-    for mut station in span {
-        let end = at + (station.piece.b - station.piece.a).norm();
-        if target < parts && (at - target * step).abs() <= 0.1 * step {
-            station.node = true;
-            target += 1.0;
+/// Divides one span between two nodes evenly: a node lies on the nearest point within a tenth of a part, or else on a new
+/// one. The same from either end.
+fn divide(mut span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
+    let mut at = vec![0.0];
+    at.extend(span.iter().scan(0.0, |sum, station| {
+        *sum += (station.piece.b - station.piece.a).norm();
+        Some(*sum)
+    }));
+    let length = at[span.len()];
+    let parts = (length / size - 1e-6).ceil().max(1.0) as usize;
+    let step = length / parts as f64;
+    let mut cuts = Vec::new();
+    for target in (1..parts).map(|part| part as f64 * step) {
+        let distance = |k: &usize| (at[*k] - target).abs();
+        let nearest = (1..span.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        match nearest.filter(|k| distance(k) <= 0.1 * step) {
+            Some(near) => span[near].node = true,
+            None => cuts.push(target),
         }
-        while target < parts && target * step < end - 0.1 * step {
-            let along = (target * step - at) / (end - at);
+    }
+    let mut cuts = cuts.into_iter().peekable();
+    for (mut station, ends) in span.into_iter().zip(at.windows(2)) {
+        let mut from = ends[0];
+        while let Some(cut) = cuts.next_if(|&cut| cut < ends[1]) {
+            let along = (cut - from) / (ends[1] - from);
             let split = station.piece.a + (station.piece.b - station.piece.a) * along;
             let rest = BoundaryPiece { a: split, ..station.piece };
             station.piece.b = split;
             placed.push(station);
             station = Station { piece: rest, turn: 0.0, node: true, corner: false };
-            at = target * step;
-            target += 1.0;
+            from = cut;
         }
         placed.push(station);
-        at = end;
     }
 }

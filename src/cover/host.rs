@@ -4,6 +4,8 @@ use super::cut::Covers;
 
 /// Share of a full cover's area below which a cover is too light to carry forces of its own.
 const LIGHT_COVER: f64 = 0.05;
+/// Relative difference below which two elements are equally heavy.
+const TIE: f64 = 1e-9;
 /// Rings of neighbours that are searched for a host.
 const RINGS: usize = 3;
 
@@ -13,9 +15,9 @@ const RINGS: usize = 3;
 /// it away. The displacement of the sliver's boundary is taken from the heavier element beside it instead, extrapolated
 /// by its weights, which are affine and thus move rigidly with the block.
 pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
-    let quality = qualities(covers);
+    let quality = covers.qualities();
     let edges = MeshEdges::new(covers);
-    let light = |e: usize| quality[e] < LIGHT_COVER;
+    let light = |e: usize| quality[e].lightest < LIGHT_COVER;
     (0..covers.element_count())
         .map(|e| {
             let mut ring = vec![e as u32];
@@ -33,21 +35,53 @@ pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
         .collect()
 }
 
-/// The element of the highest quality, the first of equals.
-fn best(elements: &[u32], quality: &[f64]) -> usize {
-    let better = |a: usize, b: u32| if quality[b as usize] > quality[a] { b as usize } else { a };
+/// The heaviest element, the first of equals.
+fn best(elements: &[u32], quality: &[Quality]) -> usize {
+    let better = |a: usize, b: u32| if quality[b as usize].exceeds(&quality[a]) { b as usize } else { a };
     elements[1..].iter().fold(elements[0] as usize, |a, &b| better(a, b))
 }
 
-/// Area of the lightest cover of each element over that of a full cover.
-fn qualities(covers: &Covers) -> Vec<f64> {
-    let mut area = vec![0.0; covers.cover_count()];
-    for (ids, a) in covers.element_covers.iter().zip(&covers.element_area) {
-        ids.iter().for_each(|&i| area[i as usize] += a);
+/// Areas of an element's covers over that of a full cover.
+#[derive(Debug, Clone, Copy)]
+struct Quality {
+    lightest: f64,
+    total: f64,
+}
+
+impl Quality {
+    /// Whether the lightest cover is the heavier one; of elements that share it, all covers count.
+    fn exceeds(&self, other: &Self) -> bool {
+        let above = |a: f64, b: f64| a > b * (1.0 + TIE);
+        above(self.lightest, other.lightest) || !above(other.lightest, self.lightest) && above(self.total, other.total)
     }
-    let full = 6.0 * 0.25 * 3f64.sqrt() * covers.mesh.size * covers.mesh.size;
-    let lightest = |ids: &[u32; 3]| ids.iter().map(|&i| area[i as usize]).fold(f64::INFINITY, f64::min) / full;
-    covers.element_covers.iter().map(lightest).collect()
+}
+
+impl Covers {
+    fn qualities(&self) -> Vec<Quality> {
+        let mut area = vec![0.0; self.cover_count()];
+        for (ids, a) in self.element_covers.iter().zip(&self.element_area) {
+            ids.iter().for_each(|&i| area[i as usize] += a);
+        }
+        let full = 6.0 * 0.25 * 3f64.sqrt() * self.mesh.size * self.mesh.size;
+        let quality = |ids: &[u32; 3]| {
+            let areas = ids.map(|i| area[i as usize] / full);
+            Quality { lightest: areas.into_iter().fold(f64::INFINITY, f64::min), total: areas.iter().sum() }
+        };
+        self.element_covers.iter().map(quality).collect()
+    }
+
+    /// Of two elements that meet at a point of the boundary, the one that carries the point where they do not move it
+    /// alike: the one that is no sliver, or else the host of the heavier. Mirrored, it is the same one.
+    pub(crate) fn carriers(&self) -> impl Fn(u32, u32) -> usize {
+        let (quality, host) = (self.qualities(), self.host.clone());
+        move |before, after| {
+            let [before, after] = [before, after].map(|element| [element, host[element as usize]]);
+            let is_sliver = |[element, host]: [u32; 2]| element != host;
+            let is_heavier = quality[before[1] as usize].exceeds(&quality[after[1] as usize]);
+            let takes_before = is_sliver(after) && (!is_sliver(before) || is_heavier);
+            (if takes_before { before } else { after })[1] as usize
+        }
+    }
 }
 
 /// Pairs of covers with the elements that have both, sorted.

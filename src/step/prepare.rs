@@ -32,7 +32,7 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
 fn expose(slope: &Slope, exposed: &mut Vec<bool>) {
     exposed.clear();
     exposed.resize(slope.covers.cover_count(), false);
-    let of_contacts = slope.boundary.covers.iter();
+    let of_contacts = slope.boundary.covers.iter().chain(&slope.boundary.edge_covers);
     let of_supports = slope.supports.iter().map(|support| &support.covers);
     let of_bolts = slope.bolts.iter().flat_map(|bolt| &bolt.covers);
     for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {

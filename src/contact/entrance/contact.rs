@@ -52,7 +52,7 @@ impl Narrow<'_> {
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
         let normal = right_of(pick.tangent);
-        let covers = [boundary.covers[point], boundary.covers[edge]];
+        let covers = [boundary.covers[point], boundary.edge_covers[edge]];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b as usize].centre);

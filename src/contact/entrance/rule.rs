@@ -167,7 +167,7 @@ impl Narrow<'_> {
     fn opened(&self, node: usize, pick: &Pick) -> f64 {
         let boundary = self.boundary;
         let point = boundary.node_point[node] as usize;
-        let covers = &boundary.covers[pick.edge as usize];
+        let covers = &boundary.edge_covers[pick.edge as usize];
         let weights = self.weights_at(covers, self.node_place(node));
         let relative = boundary.sample(point, self.velocity) - cover::sample(covers, &weights, self.velocity);
         relative.dot(&right_of(pick.tangent)) * self.dt_last

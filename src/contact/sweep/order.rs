@@ -269,12 +269,13 @@ impl Colours {
 
     /// Covers of held blocks that a node and the near edges of a side may push.
     fn meet(&mut self, boundary: &Boundary, edges: &[Candidate], view: &SweepView) {
-        let points = edges.iter().map(|c| c.edge).chain([boundary.node_point[edges[0].node as usize]]);
-        for point in points.map(|point| point as usize) {
-            if !view.metric.is_free(boundary.block[point] as usize) {
-                self.covers.extend(boundary.covers[point]);
+        let mut meet = |at: u32, covers: &[[u32; 3]]| {
+            if !view.metric.is_free(boundary.block[at as usize] as usize) {
+                self.covers.extend(covers[at as usize]);
             }
-        }
+        };
+        edges.iter().for_each(|candidate| meet(candidate.edge, &boundary.edge_covers));
+        meet(boundary.node_point[edges[0].node as usize], &boundary.covers);
     }
 
     /// The first colour that a manifold in hand may have.
