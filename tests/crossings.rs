@@ -4,7 +4,8 @@
 mod common;
 
 use common::claims::rock;
-use common::{run_stage, simulation};
+use common::{run_stage, simulation, varied_rules};
+use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 
 /// Gravity on a plane of 30° in axes along it (m/s²).
@@ -23,6 +24,7 @@ struct Plane {
     young: f64,
     friction_deg: f64,
     seconds: f64,
+    rule: EntranceRule,
 }
 
 impl Plane {
@@ -38,6 +40,7 @@ impl Plane {
             young: 10e9,
             friction_deg: 20.0,
             seconds: 0.6,
+            rule: EntranceRule::default(),
         }
     }
 
@@ -55,6 +58,7 @@ impl Plane {
             young: 10e9,
             friction_deg,
             seconds: 0.5,
+            rule: EntranceRule::default(),
         }
     }
 
@@ -88,7 +92,8 @@ impl Plane {
             rock(self.young, 2650.0),
             self.seconds,
             self.friction_deg,
-        ));
+        ))
+        .with_entrance(self.rule);
         let report = run_stage(&mut simulation);
         assert!(simulation.at_rest(&report), "{report:?}");
         simulation
@@ -168,5 +173,23 @@ fn a_joint_more_never_bears_more() {
     for cut in [1.45, 1.5, 1.55, 1.6] {
         let (slides, _) = Plane::block("[[0, -1], [6, -1], [6, 0]", [0.5, 1.5], &[cut]).slide();
         assert!(slides[0] > 0.99 * whole[0], "a joint at {cut}: {slides:?} of {whole:?}");
+    }
+}
+
+/// Half or twice any constant of contact: blocks slide over crossings and level tops, and steps hold them.
+#[test]
+fn no_constant_decides_what_holds() {
+    let base = "[[0, -1], [6, -1], [6, 0]";
+    for (name, rule) in varied_rules() {
+        let mut planes: Vec<Plane> = [60.0, 90.0, 135.0].map(|angle| Plane::crossing(angle, 20.0, SIZE)).into();
+        planes.push(Plane::block(base, [0.5, 1.5], &[1.4, 1.61, 1.82, 2.03, 2.24]));
+        planes.push(stepped(0.002, 0.0));
+        for plane in planes {
+            let (slides, exact) = Plane { rule, ..plane }.slide();
+            println!("{name}: {slides:?} of {exact}");
+            assert!(slides.iter().all(|slide| (slide / exact - 1.0).abs() < 0.02), "{name}: {slides:?} of {exact}");
+        }
+        let (slides, _) = Plane { rule, ..stepped(0.002, 1e-2 * SIZE) }.slide();
+        assert!((slides[0] - 0.052).abs() < 1e-3, "{name}: {slides:?} of 0.052");
     }
 }

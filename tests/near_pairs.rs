@@ -70,6 +70,5 @@ fn the_search_finds_what_all_against_all_find() {
             assert!(found == expected, "{} pairs at {share}, not {}", found.len(), expected.len());
         }
         assert!(grids[0].1 == grids[1].1, "a run of all nodes and many runs differ at {share}");
-        assert!(!grids[0].1.behind.is_empty());
     }
 }

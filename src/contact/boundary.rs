@@ -144,6 +144,11 @@ impl Boundary {
         if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.node_edge_before[node] as usize] }
     }
 
+    /// Covers that may carry places on an edge: its own and those of both of its ends.
+    pub fn covers_on(&self, edge: usize) -> impl Iterator<Item = u32> {
+        [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
+    }
+
     /// Edges before and after a node on its loop.
     pub fn edges_of_node(&self, node: usize) -> [u32; 2] {
         [self.node_edge_before[node], self.node_point[node]]
@@ -152,18 +157,6 @@ impl Boundary {
     /// Whether the node lies on a partial cut.
     pub fn node_partial(&self, node: usize) -> bool {
         self.edges_of_node(node).iter().any(|&edge| self.partial[edge as usize])
-    }
-
-    /// The edge round the corner that a point beyond the start or the end of edge `edge` faces, if the side ends there.
-    pub fn side_round(&self, edge: u32, before: bool, beyond: bool) -> Option<u32> {
-        let side = self.side[edge as usize] as usize;
-        if before && self.side_first[side] == edge {
-            Some(self.side_last[self.side_previous[side] as usize])
-        } else if beyond && self.side_last[side] == edge {
-            Some(self.side_first[self.side_next[side] as usize])
-        } else {
-            None
-        }
     }
 
     /// Side that ends at or passes through a node.
@@ -285,8 +278,8 @@ fn place_nodes(stations: &mut Vec<Station>, size: f64) {
     *stations = placed;
 }
 
-/// Divides one span between two nodes evenly: a node lies on the nearest point within a tenth of a part, or else on a new
-/// one. The same from either end.
+/// Divides one span between two nodes evenly: a node lies on the nearest point within a tenth of a part, or else on a
+/// new one. The same from either end.
 fn divide(mut span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
     let mut at = vec![0.0];
     at.extend(span.iter().scan(0.0, |sum, station| {

@@ -14,7 +14,7 @@ mod vertex_edge;
 
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner, SideEnd};
-pub use entrance::{Admitted, Approach, Bearings, Frames, Narrow, Remembered, entrance_edges};
+pub use entrance::{Admitted, Approach, Bearings, EntranceRule, Frames, Narrow, Remembered, entrance_edges};
 pub use law::{Closure, JointLaw, Limits, Roughness};
 pub use pair::Pair;
 pub use search::{Candidate, Near, SearchGrid, SearchView};

@@ -1,7 +1,6 @@
 //! Which nodes are near which edges: stretches of the boundary are laid into a grid, and nodes look round in it, anew
 //! when nodes have moved far enough.
 
-mod behind;
 mod find;
 mod grid;
 mod within;
@@ -13,7 +12,6 @@ use enmm_lanes::dispatch;
 use crate::geometry::Point;
 
 use super::Boundary;
-use behind::Before;
 use find::{Find, Run};
 use grid::Grid;
 
@@ -36,9 +34,6 @@ pub struct Candidate {
 pub struct Near {
     /// Near pairs, ordered by node, side and edge.
     pub candidates: Vec<Candidate>,
-    /// Nodes and sides, sorted, that came into view with the side's own rock between them: at the start, when nothing
-    /// overlaps, or through a thin block. The node is not inside such a side, however deep it lies behind it.
-    pub behind: Vec<[u32; 2]>,
     found_at: Vec<Point>,
 }
 
@@ -57,22 +52,18 @@ impl Near {
     pub fn fits(&self, boundary: &Boundary) -> bool {
         let (nodes, sides, edges) = (boundary.node_count(), boundary.side_first.len(), boundary.len());
         let within = |index: u32, count: usize| (index as usize) < count;
-        let candidates = self.candidates.iter();
-        candidates.clone().all(|c| within(c.node, nodes) && within(c.side, sides) && within(c.edge, edges))
-            && self.behind.iter().all(|[node, side]| within(*node, nodes) && within(*side, sides))
+        self.candidates.iter().all(|c| within(c.node, nodes) && within(c.side, sides) && within(c.edge, edges))
             && (self.found_at.is_empty() || self.found_at.len() == nodes)
     }
 
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
-        let pairs = size_of_val(self.candidates.as_slice()) + size_of_val(self.behind.as_slice());
-        pairs + size_of_val(self.found_at.as_slice())
+        size_of_val(self.candidates.as_slice()) + size_of_val(self.found_at.as_slice())
     }
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.candidates.clone_from(&other.candidates);
-        self.behind.clone_from(&other.behind);
         self.found_at.clone_from(&other.found_at);
     }
 
@@ -85,14 +76,9 @@ impl Near {
     fn take(&mut self, runs: &mut [Run], view: &SearchView) {
         if let [run] = runs {
             std::mem::swap(&mut self.candidates, &mut run.candidates);
-            std::mem::swap(&mut self.behind, &mut run.behind);
         } else {
             self.candidates.clear();
-            self.behind.clear();
-            for run in runs {
-                self.candidates.extend_from_slice(&run.candidates);
-                self.behind.extend_from_slice(&run.behind);
-            }
+            runs.iter().for_each(|run| self.candidates.extend_from_slice(&run.candidates));
         }
         self.found_at.clear();
         self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.place[point as usize]));
@@ -136,8 +122,7 @@ impl SearchGrid {
         self.runs.resize_with(nodes.div_ceil(length), Run::default);
         let find = |(k, run)| {
             let nodes = k * length..nodes.min((k + 1) * length);
-            let before = Before::of(found, nodes.start, view.cutoff);
-            dispatch(Find { grid: &self.grid, view, nodes, before, run });
+            dispatch(Find { grid: &self.grid, view, nodes, run });
         };
         match self.runs.as_mut_slice() {
             [run] => find((0, run)),

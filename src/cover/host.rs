@@ -2,8 +2,10 @@
 
 use super::cut::Covers;
 
-/// Share of a full cover's area below which a cover is too light to carry forces of its own.
-const LIGHT_COVER: f64 = 0.05;
+/// Share of a full cover's area below which a cover is too light to carry forces of its own,
+const LIGHT: f64 = 0.05;
+/// and share of the heaviest one near by, in thin blocks, in which all are light.
+const LIGHT_BESIDE: f64 = 0.25;
 /// Relative difference below which two elements are equally heavy.
 const TIE: f64 = 1e-9;
 /// Rings of neighbours that are searched for a host.
@@ -17,22 +19,22 @@ const RINGS: usize = 3;
 pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
     let quality = covers.qualities();
     let edges = MeshEdges::new(covers);
-    let light = |e: usize| quality[e].lightest < LIGHT_COVER;
-    (0..covers.element_count())
-        .map(|e| {
-            let mut ring = vec![e as u32];
-            for _ in 0..RINGS {
-                if !light(best(&ring, &quality)) {
-                    break;
-                }
-                let around: Vec<u32> = ring.iter().flat_map(|&f| edges.neighbours(covers, f)).collect();
-                ring.extend(around);
-                ring.sort_unstable();
-                ring.dedup();
-            }
-            if light(e) { best(&ring, &quality) as u32 } else { e as u32 }
-        })
-        .collect()
+    let host = |e: u32| {
+        let mut rings = vec![vec![e]];
+        for _ in 0..RINGS {
+            let last = rings.last().into_iter().flatten();
+            let mut ring: Vec<u32> = last.flat_map(|&f| edges.neighbours(covers, f)).collect();
+            ring.sort_unstable();
+            ring.dedup();
+            rings.push(ring);
+        }
+        let best = rings.iter().map(|ring| best(ring, &quality)).collect::<Vec<usize>>();
+        let most = best.iter().map(|&f| quality[f].lightest).fold(0.0, f64::max);
+        let enough = LIGHT.min(LIGHT_BESIDE * most);
+        let is_enough = |f: usize| quality[f].lightest >= enough;
+        best.into_iter().find(|&f| is_enough(f)).map_or(e, |f| f as u32)
+    };
+    (0..covers.element_count() as u32).map(host).collect()
 }
 
 /// The heaviest element, the first of equals.

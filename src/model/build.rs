@@ -11,7 +11,7 @@ mod stage;
 
 use std::collections::BTreeMap;
 
-use crate::contact::{BoltState, Boundary, BoundaryOptions, JointLaw, Resistance, Roughness, Support};
+use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, Resistance, Roughness, Support};
 use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
@@ -86,6 +86,10 @@ pub(super) fn outlines(case: &Case) -> Result<Outlines, Invalid> {
     Ok(cover::cut(mesh, arrangement).1)
 }
 
+/// Length (m) of rock that gives joints their default stiffness. Meshes that are coarser than this give it by their size,
+/// since they do not resolve stiffer joints.
+const STIFFNESS_LENGTH: f64 = 1.0;
+
 /// The fixed part of the model, and what its bolts have to tell.
 fn slope(
     case: &Case,
@@ -98,8 +102,7 @@ fn slope(
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
-    let stiffness = case.solver.contact_stiffness * stiffest(&rocks) / covers.mesh.size;
-    let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock, stiffness };
+    let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
@@ -117,7 +120,7 @@ fn slope(
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
         metric: Metric::free(&covers, &rocks, &element_rock),
-        laws: joint_laws(case, stiffness),
+        laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         fixities,
@@ -138,6 +141,7 @@ fn slope(
         theta: case.solver.contact_theta,
         mass_scaling: case.solver.mass_scaling,
         tolerance: case.solver.contact_tolerance,
+        entrance: EntranceRule::default(),
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,
         failure_displacement: case.solver.failure_displacement.unwrap_or(covers.mesh.size),
@@ -150,7 +154,7 @@ fn slope(
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
 fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
-    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness)?;
+    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness())?;
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))
@@ -166,8 +170,9 @@ fn places_tolerance(noding: &NodingReport) -> f64 {
     2.0 * noding.tolerance
 }
 
-fn stiffest(rocks: &[Elasticity]) -> f64 {
-    rocks.iter().map(Elasticity::confined_modulus).fold(0.0, f64::max)
+/// Stiffness (Pa/m) of joints or supports that are as stiff as some length (m) of the stiffest rock.
+fn stiffness_over(length: f64, case: &Case, rocks: &[Elasticity]) -> f64 {
+    case.solver.contact_stiffness * rocks.iter().map(Elasticity::confined_modulus).fold(0.0, f64::max) / length
 }
 
 /// The internal step: an integer fraction of a tenth of the communication step, within the stability limit.

@@ -668,7 +668,7 @@ pub struct Solver {
     pub dt_max: Option<f64>,
     /// Share of the stability limit that is used.
     pub dt_safety: f64,
-    /// Contact stiffness: normal_stiffness = this·(λ+2μ)/mesh size.
+    /// Default stiffness of joints: normal_stiffness = this·(λ+2μ) over 1 m, or over the mesh size where that is more.
     pub contact_stiffness: f64,
     /// Shear over normal contact stiffness.
     pub shear_ratio: f64,
@@ -705,7 +705,7 @@ impl Default for Solver {
             communication_step: None,
             dt_max: None,
             dt_safety: 0.9,
-            contact_stiffness: 0.5,
+            contact_stiffness: 0.6,
             shear_ratio: 0.5,
             contact_theta: 4.0,
             contact_tolerance: 1e-2,

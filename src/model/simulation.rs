@@ -1,6 +1,6 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
-use crate::contact::{BoltState, VertexEdge};
+use crate::contact::{BoltState, EntranceRule, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Inputs, Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
@@ -41,6 +41,13 @@ impl Simulation {
             Self { case, built, scratch: Scratch::default(), regime: Regime::Dynamic { damping: 0.0 } };
         simulation.begin_stage(0, 0.0)?;
         Ok(simulation)
+    }
+
+    /// The same with other constants of contact, for studies of what they do.
+    #[must_use]
+    pub fn with_entrance(mut self, rule: EntranceRule) -> Self {
+        self.built.slope.entrance = rule;
+        self
     }
 
     /// The case.

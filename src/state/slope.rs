@@ -1,6 +1,6 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, JointLaw, Support};
+use crate::contact::{BoltSegment, Boundary, EntranceRule, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
@@ -181,6 +181,8 @@ pub struct Slope {
     pub mass_scaling: f64,
     /// Relative change of force at which the open–close iteration has settled.
     pub tolerance: f64,
+    /// Constants of contact.
+    pub entrance: EntranceRule,
     /// Most sweeps of the open–close iteration.
     pub sweeps_max: u32,
     /// What the implicit integrator needs; none for the explicit one.

@@ -112,7 +112,7 @@ impl Step<'_> {
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
             penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
-            speed_max: scratch.speed_max,
+            speed_max: report::speed_max(slope, state),
         }
     }
 

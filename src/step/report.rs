@@ -25,8 +25,15 @@ pub struct StepReport {
     pub slipping: u32,
     /// Largest penetration (m).
     pub penetration_max: f64,
-    /// Largest speed (m/s).
+    /// Largest speed of rock (m/s).
     pub speed_max: f64,
+}
+
+/// Largest speed (m/s) of rock: of the corners of its blocks. Covers may be faster, since their stars lie outside small
+/// blocks.
+pub(super) fn speed_max(slope: &Slope, state: &State) -> f64 {
+    let boundary = &slope.boundary;
+    (0..boundary.len()).map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Kinetic energy (J/m) of all blocks that can move.

@@ -39,7 +39,7 @@ impl Step<'_> {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
             points.map(place).collect_into_vec(&mut scratch.place);
         }
-        scratch.frames.update(boundary, &scratch.place, scratch.serial);
+        scratch.frames.update(boundary, &scratch.place, slope.entrance.flush_sine, scratch.serial);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -107,9 +107,9 @@ impl Step<'_> {
             bearings: &scratch.bearings,
             approach: dt.map(approach),
             size,
+            rule: slope.entrance,
             reach,
             theta: slope.theta,
-            behind: &state.near.behind,
             first: state.step == 0,
             in_situ: slope.in_situ.as_ref(),
             serial: scratch.serial,

@@ -7,6 +7,7 @@ pub mod shared;
 
 use std::path::Path;
 
+use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 use enmm::step::StepReport;
 
@@ -37,4 +38,29 @@ pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
         reports.push(run_stage(simulation));
     }
     reports
+}
+
+/// Constants of contact with one of them halved or doubled, and which.
+pub fn varied_rules() -> Vec<(String, EntranceRule)> {
+    type Constant = fn(&mut EntranceRule) -> &mut f64;
+    let constants: [(&str, Constant); 10] = [
+        ("ledge", |rule| &mut rule.ledge),
+        ("closure_most", |rule| &mut rule.closure_most),
+        ("flush_sine", |rule| &mut rule.flush_sine),
+        ("opposed_cosine", |rule| &mut rule.opposed_cosine),
+        ("held_beyond", |rule| &mut rule.held_beyond),
+        ("deep", |rule| &mut rule.deep),
+        ("deep_share", |rule| &mut rule.deep_share),
+        ("wedge_ratio", |rule| &mut rule.wedge_ratio),
+        ("stiffness_floor", |rule| &mut rule.stiffness_floor),
+        ("hardens", |rule| &mut rule.hardens),
+    ];
+    let vary = |(name, constant): (&str, Constant)| {
+        [0.5, 2.0].map(|factor| {
+            let mut rule = EntranceRule::default();
+            *constant(&mut rule) *= factor;
+            (format!("{factor} {name}"), rule)
+        })
+    };
+    constants.into_iter().flat_map(vary).collect()
 }

@@ -50,6 +50,12 @@ impl Audit {
 
     /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
     pub fn deepest(&self, simulation: &Simulation) -> Overlap {
+        let overlaps = self.overlaps(simulation).into_par_iter();
+        overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
+    }
+
+    /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
+    pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
         let (boundary, place) = (&simulation.slope().boundary, &simulation.scratch().place);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let mut pairs: Vec<[u32; 2]> = Vec::new();
@@ -73,8 +79,7 @@ impl Audit {
             }
             pair_depth(&placed[p], &placed[q])
         };
-        let overlaps = pairs.par_iter().map(|blocks| Overlap { depth: depth(blocks), blocks: *blocks });
-        overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
+        pairs.par_iter().map(|blocks| Overlap { depth: depth(blocks), blocks: *blocks }).collect()
     }
 
     fn placed(&self, block: usize, place: &[Point]) -> Placed {

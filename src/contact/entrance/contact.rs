@@ -8,10 +8,7 @@ use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
 use super::length::Tributary;
-use super::{Approach, GRAIN, Narrow, Pick, right_of};
-
-/// Penetration, relative to the mesh size, at which the solver's own stiffness has doubled.
-const HARDENS: f64 = 3e-3;
+use super::{Approach, CORNER_TOLERANCE, GRAIN, Narrow, Pick, right_of};
 
 /// Contacts are made of what was admitted: compiled for every kind of lanes.
 struct Make<'a> {
@@ -52,7 +49,7 @@ impl Narrow<'_> {
         let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
         let p = self.place[point];
         let normal = right_of(pick.tangent);
-        let covers = [boundary.covers[point], boundary.edge_covers[edge]];
+        let covers = [boundary.covers[point], self.covers_under(pick)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b as usize].centre);
@@ -66,13 +63,13 @@ impl Narrow<'_> {
             None => self.first_sight(node, pick, length, closure, stiffness[1], normal),
         };
         let history = ContactHistory { edge: pick.edge, share, ..history };
-        let resisted = pick.gap + history.offset;
-        if self.laws[law as usize].penalty[0] {
-            stiffness[0] *= 1.0 + (resisted.min(0.0) / (HARDENS * self.size)).powi(2);
-        }
-        let gap = resisted - history.rest;
+        let gap = pick.gap + history.offset;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
+        if self.laws[law as usize].penalty[0] {
+            stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
+        }
+        let gap = gap - history.rest;
         *contact = VertexEdge {
             pair,
             normal,
@@ -91,6 +88,14 @@ impl Narrow<'_> {
         if let Some(approach) = &self.approach {
             self.answer(contact, compliance, approach);
         }
+    }
+
+    /// How many times stiffer the solver's own stiffness is at the penetration that a step would reach from a gap (m) that
+    /// opens at some rate (m/s).
+    #[inline(always)]
+    fn hardening(&self, gap: f64, rate: f64) -> f64 {
+        let reached = gap + rate * self.approach.as_ref().map_or(0.0, |approach| approach.dt);
+        1.0 + (reached.min(0.0) / (self.rule.hardens * self.size)).powi(2)
     }
 
     /// How a contact with these inverse effective masses (m/kg) answers in an explicit step. A joint's own springs are
@@ -122,6 +127,20 @@ impl Narrow<'_> {
         };
         contact.answers = [closing, shear.linear(contact.shear_stored())];
         contact.expect();
+    }
+
+    /// Covers that carry the place on an edge under a node: at a point of the boundary those of the point, since there
+    /// round-off decides which of two edges is the nearer.
+    #[inline(always)]
+    fn covers_under(&self, pick: &Pick) -> [u32; 3] {
+        let (boundary, edge, band) = (self.boundary, pick.edge as usize, CORNER_TOLERANCE * self.size);
+        if pick.along.abs() < band {
+            boundary.covers[edge]
+        } else if (pick.length - pick.along).abs() < band {
+            boundary.covers[boundary.after(edge)]
+        } else {
+            boundary.edge_covers[edge]
+        }
     }
 
     /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.

@@ -89,10 +89,10 @@ impl EdgeFrame {
 }
 
 impl NodeFrame {
-    fn new(place: Point, neighbours: [Point; 2]) -> Self {
+    fn new(place: Point, neighbours: [Point; 2], flush_sine: f64) -> Self {
         let to = neighbours.map(|q| q - place);
         let distance = to.map(|d| d.norm());
-        Self { place, to, distance, is_convex: is_convex(to, distance) }
+        Self { place, to, distance, is_convex: is_convex(to, distance, flush_sine) }
     }
 }
 
@@ -102,12 +102,13 @@ impl Frames {
         size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
     }
 
-    /// Frames of all edges and nodes, where `place` are the current places of the boundary points.
-    pub fn update(&mut self, boundary: &Boundary, place: &[Point], serial: bool) {
+    /// Frames of all edges and nodes, where `place` are the current places of the boundary points; corners turn by more
+    /// than an angle given by its sine.
+    pub fn update(&mut self, boundary: &Boundary, place: &[Point], flush_sine: f64, serial: bool) {
         let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
         let at = |node: u32| place[boundary.node_point[node as usize] as usize];
         let node = |((point, previous), next): ((&u32, &u32), &u32)| {
-            NodeFrame::new(place[*point as usize], [at(*previous), at(*next)])
+            NodeFrame::new(place[*point as usize], [at(*previous), at(*next)], flush_sine)
         };
         let Boundary { node_point, node_previous, node_next, .. } = boundary;
         if serial {

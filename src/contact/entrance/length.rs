@@ -2,14 +2,11 @@
 
 use crate::contact::Corner;
 
-use super::rule::{End, FLUSH_COSINE, LEDGE};
-use super::{HELD_BEYOND, Narrow, Pick};
+use super::rule::End;
+use super::{Narrow, Pick};
 
 /// Least tributary length, relative to the mean of the neighbouring node segments: no division by nothing.
-const LENGTH_FLOOR: f64 = 1e-6;
-/// The same for the solver's own stiffness of a contact in full strength: rock that meets in a point is no softer than
-/// where it meets in a face.
-const PENALTY_LENGTH_FLOOR: f64 = 0.5;
+const LENGTH_FLOOR: f64 = 1e-9;
 
 /// Lengths over which a node acts on an edge.
 #[derive(Debug, Clone, Copy)]
@@ -37,14 +34,14 @@ impl Narrow<'_> {
     #[inline(always)]
     pub(super) fn tributary(&self, node: usize, pick: &Pick) -> Tributary {
         let [start, finish] = pick.overlap;
-        let ramp = |overlap: f64| (overlap / (LEDGE * self.size) - 1.0).clamp(0.0, 1.0);
+        let ramp = |overlap: f64| (overlap / (self.rule.ledge * self.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(start.min(finish));
         let Facing { flush, oblique } = self.facing(node, pick);
         let share = at_ends.max(ramp(flush));
         let distance = &self.frames.nodes[node].distance;
         let span = 0.5 * (distance[0] + distance[1]);
         let length = (0.5 * (flush + at_ends * oblique)).max(LENGTH_FLOOR * span);
-        let penalty = length.max(PENALTY_LENGTH_FLOOR * span * share);
+        let penalty = length.max(self.rule.stiffness_floor * span * share);
         let at_corner = self.share_at_corner(node, pick);
         Tributary { length: length * at_corner, penalty: penalty * at_corner, share }
     }
@@ -63,9 +60,10 @@ impl Narrow<'_> {
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(place);
         let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
+        let flush_cosine = self.rule.flush_cosine();
         let mut facing = Facing::default();
         let mut add = |over: f64, along: f64, distance: f64, overlap: f64| {
-            if along > FLUSH_COSINE * distance {
+            if along > flush_cosine * distance {
                 facing.flush += over.min(overlap.max(0.0));
             } else {
                 facing.oblique += over;
@@ -88,7 +86,7 @@ impl Narrow<'_> {
     /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
     #[inline(always)]
     fn tie_shares(&self, node: usize, pick: &Pick, before: usize, distances: [f64; 2]) -> [f64; 2] {
-        let (boundary, band) = (self.boundary, HELD_BEYOND * self.size);
+        let (boundary, band) = (self.boundary, self.rule.held_beyond * self.size);
         if !boundary.node_convex[node] {
             return [0.0; 2];
         }
@@ -116,7 +114,7 @@ impl Narrow<'_> {
     /// an inner node, whose segments that corner has. One that is kept by the overlap of the corners fades with it.
     #[inline(always)]
     fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
-        let band = HELD_BEYOND * self.size;
+        let band = self.rule.held_beyond * self.size;
         let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
         for (end, within) in [(End::Start, pick.along), (End::Finish, pick.length - pick.along)] {

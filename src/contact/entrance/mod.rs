@@ -1,6 +1,7 @@
 //! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
 
 mod bearing;
+mod constants;
 mod contact;
 mod frame;
 mod length;
@@ -8,7 +9,7 @@ mod rule;
 
 use rayon::prelude::*;
 
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::{BlockMotion, Metric, StressField};
 
 use frame::{EdgeFrame, Over};
@@ -16,6 +17,7 @@ use frame::{EdgeFrame, Over};
 use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
 
 pub use bearing::Bearings;
+pub use constants::EntranceRule;
 pub use frame::Frames;
 
 /// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
@@ -25,20 +27,10 @@ const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
 
-/// Share of a node segment by which a neighbour may lie inside the edge: 0.17 ≈ sin 10°.
-const ENTRANCE_SINE: f64 = 0.17;
-/// Depth, relative to the mesh size, from which a contact at first sight starts without force.
-const FIRST_SIGHT_DEPTH: f64 = 3e-3;
-/// The same relative to the thickness of the thinner block, where that is less.
-const FIRST_SIGHT_SHARE: f64 = 0.25;
-/// Distance beyond a corner, relative to the mesh size, up to which a contact that carries force is kept.
-const HELD_BEYOND: f64 = 1e-3;
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
 const CORNER_TOLERANCE: f64 = 1e-9;
 /// Difference of two depths, relative to the mesh size, below which they count as equal.
 const TIE_TOLERANCE: f64 = 1e-6;
-/// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
-const WEDGE_RATIO: f64 = 0.5;
 
 /// What the narrow phase reads.
 pub struct Narrow<'a> {
@@ -78,12 +70,12 @@ pub struct Narrow<'a> {
     pub approach: Option<Approach<'a>>,
     /// Mesh size (m).
     pub size: f64,
+    /// Constants.
+    pub rule: EntranceRule,
     /// Gap (m) below which a contact takes part in the iteration.
     pub reach: f64,
     /// θ of the contact springs.
     pub theta: f64,
-    /// Nodes and sides with the side's rock between them, sorted.
-    pub behind: &'a [[u32; 2]],
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by place.
@@ -294,7 +286,7 @@ impl Narrow<'_> {
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
         let near = bonded | (gap - known.map_or(0.0, |h| h.rest - h.offset) < self.reach);
         pick.admitted = near & self.enters(node, pick);
-        beyond <= WEDGE_RATIO * gap.abs() + HELD_BEYOND * self.size
+        beyond <= self.rule.wedge_ratio * gap.abs() + self.rule.held_beyond * self.size
     }
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.
@@ -304,14 +296,50 @@ impl Narrow<'_> {
         edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 
-    /// Whether it is a first sight that cannot be a contact: deep within one block, or of a side with rock before it.
+    /// Whether it is a first sight that cannot be a contact: deep and not of the nearest side of the rock that the node is
+    /// in, or from outside the rock past a side that does not meet this one, or deep within one block.
     fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
-        if pick.held.is_some() || pick.gap >= -TIE_TOLERANCE * self.size {
+        let tie = TIE_TOLERANCE * self.size;
+        if pick.held.is_some() || pick.gap >= -tie {
             return false;
         }
         let boundary = self.boundary;
-        let own = boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize];
-        own && self.is_deep(node, pick, pick.gap) || self.behind.binary_search(&[node as u32, pick.side]).is_ok()
+        let is_deep = self.is_deep(node, pick, pick.gap);
+        if boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize] {
+            return is_deep;
+        }
+        let (depth, nearest) = self.depth_in_rock(node, pick.edge);
+        if is_deep {
+            return -pick.gap > depth + tie;
+        }
+        let meets = nearest == pick.side || self.end_between(pick.side, nearest).is_some();
+        depth <= tie && !meets
+    }
+
+    /// How deep (m) a node is in the rock that the loop of an edge bounds, 0 outside, and the nearest side of the loop.
+    #[cold]
+    fn depth_in_rock(&self, node: usize, edge: u32) -> (f64, u32) {
+        let p = self.node_place(node);
+        let next = |point: u32| self.boundary.next[point as usize];
+        let (mut point, mut area, mut turns, mut nearest) = (edge, 0.0, 0, (f64::INFINITY, edge));
+        loop {
+            let ends = [point, next(point)].map(|point| self.place[point as usize]);
+            let [a, b] = ends.map(|end| end - p);
+            area += a.perp(&b);
+            if (a.y > 0.0) != (b.y > 0.0) && (a.perp(&b) > 0.0) == (b.y > 0.0) {
+                turns += if b.y > 0.0 { 1 } else { -1 };
+            }
+            let distance = segment::distance(p, ends[0], ends[1]);
+            if distance < nearest.0 {
+                nearest = (distance, point);
+            }
+            point = next(point);
+            if point == edge {
+                break;
+            }
+        }
+        let is_inside = turns > 0 || area < 0.0 && turns == 0;
+        (if is_inside { nearest.0 } else { 0.0 }, self.boundary.side[nearest.1 as usize])
     }
 
     /// Whether a gap (m) of a pick is too deep for what has come in within a step.
@@ -319,7 +347,7 @@ impl Narrow<'_> {
         let Boundary { block, block_thickness, node_point, .. } = self.boundary;
         let blocks = [node_point[node], pick.edge].map(|point| block[point as usize] as usize);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
-        -gap > (FIRST_SIGHT_DEPTH * self.size).min(FIRST_SIGHT_SHARE * thin)
+        -gap > (self.rule.deep * self.size).min(self.rule.deep_share * thin)
     }
 
     #[inline(always)]
@@ -329,7 +357,7 @@ impl Narrow<'_> {
 
     /// Distance (m) beyond a corner that counts as the corner.
     fn corner_tolerance(&self, pick: &Pick) -> f64 {
-        self.size * if pick.is_held { HELD_BEYOND } else { CORNER_TOLERANCE }
+        self.size * if pick.is_held { self.rule.held_beyond } else { CORNER_TOLERANCE }
     }
 }
 
@@ -351,13 +379,14 @@ fn right_of(along: Vector) -> Vector {
 }
 
 /// Whether the rock between the ways to the previous and the next node, of these lengths (m), is a corner of less than
-/// half a turn.
-fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2]) -> bool {
+/// half a turn, by more than an angle given by its sine.
+fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2], sine: f64) -> bool {
     let (cross, dot) = (next.perp(&previous), next.dot(&previous));
-    cross > 0.0 && (dot > 0.0 || cross > ENTRANCE_SINE * distance[0] * distance[1])
+    cross > 0.0 && (dot > 0.0 || cross > sine * distance[0] * distance[1])
 }
 
-/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge.
-fn faces(chord: Vector, normal: Vector) -> bool {
-    chord.perp(&normal) > -ENTRANCE_SINE * chord.norm()
+/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge up to an angle given
+/// by its sine.
+fn faces(chord: Vector, normal: Vector, sine: f64) -> bool {
+    chord.perp(&normal) > -sine * chord.norm()
 }

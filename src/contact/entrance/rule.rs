@@ -4,16 +4,7 @@ use crate::contact::{ContactState, Corner, SideEnd};
 use crate::cover;
 use crate::geometry::{Point, Vector};
 
-use super::{ENTRANCE_SINE, Narrow, Pick, TIE_TOLERANCE, faces, right_of};
-
-/// Height of a ledge, relative to the mesh size, up to which it catches nothing; one of twice that catches in full.
-pub(super) const LEDGE: f64 = 1e-3;
-/// Penetration, relative to the mesh size, that contacts stay below.
-const CLOSURE_MOST: f64 = 0.02;
-/// Cosine from which two sides of a block look apart, with rock between them: 60°.
-const OPPOSED_COSINE: f64 = 0.5;
-/// Cosine from which two faces that look at each other lie on each other: 10°.
-pub(super) const FLUSH_COSINE: f64 = 0.985;
+use super::{Narrow, Pick, TIE_TOLERANCE, faces, right_of};
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +58,7 @@ impl Narrow<'_> {
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let normal = right_of(pick.tangent);
-        let flush = -facing.dot(&normal) > FLUSH_COSINE;
+        let flush = -facing.dot(&normal) > self.rule.flush_cosine();
         let faces_round = flush || own.dot(&outward) >= 0.0;
         let out = if faces_round { outward } else { -facing };
         let depth = (q - p).dot(&out);
@@ -75,7 +66,7 @@ impl Narrow<'_> {
             let pierced = flush && (q - p).dot(&facing) <= 0.0 && !self.came_in_elsewhere(node, pick, Some(end));
             return (pierced || self.is_kept(node, pick, end)).then_some(f64::INFINITY);
         }
-        let most = CLOSURE_MOST * self.size;
+        let most = self.rule.closure_most * self.size;
         let along = out.dot(&pick.tangent).abs().max(f64::MIN_POSITIVE);
         if -pick.gap < most && depth > 2.0 * most {
             return Some(depth / along);
@@ -133,8 +124,8 @@ impl Narrow<'_> {
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     pub(super) fn enters(&self, node: usize, pick: &Pick) -> bool {
         let (normal, frame) = (right_of(pick.tangent), &self.frames.nodes[node]);
-        let outside = |k: usize| frame.to[k].dot(&normal) >= -ENTRANCE_SINE * frame.distance[k];
-        outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal))
+        let outside = |k: usize| frame.to[k].dot(&normal) >= -self.rule.flush_sine * frame.distance[k];
+        outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal, self.rule.flush_sine))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
@@ -180,7 +171,7 @@ impl Narrow<'_> {
     }
 
     /// The end of side `s` at which it meets side `t`.
-    fn end_between(&self, s: u32, t: u32) -> Option<End> {
+    pub(super) fn end_between(&self, s: u32, t: u32) -> Option<End> {
         if self.boundary.side_next[s as usize] == t {
             Some(End::Finish)
         } else {
@@ -194,7 +185,7 @@ impl Narrow<'_> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
-        let opposed = cosine < -OPPOSED_COSINE && shallow.gap < deep.gap * cosine;
+        let opposed = cosine < -self.rule.opposed_cosine && shallow.gap < deep.gap * cosine;
         let end = self.end_between(deep.side, shallow.side);
         if end.is_none() && !opposed {
             return None;

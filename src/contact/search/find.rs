@@ -1,4 +1,4 @@
-//! Near edges of nodes, and sides that come into view behind rock.
+//! Near edges of nodes.
 
 use std::ops::Range;
 
@@ -6,7 +6,6 @@ use enmm_lanes::{Kernel, LANES, Lanes};
 
 use crate::contact::Boundary;
 
-use super::behind::Before;
 use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
 use super::{Candidate, SearchView};
@@ -20,7 +19,6 @@ const SHORT: usize = 32;
 #[derive(Debug, Clone, Default)]
 pub struct Run {
     pub candidates: Vec<Candidate>,
-    pub behind: Vec<[u32; 2]>,
     /// Stretches round a few nodes, and their boxes.
     around: Vec<u32>,
     boxes: Vec<Boxes>,
@@ -32,7 +30,7 @@ impl Run {
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(self.around.as_slice()) + size_of_val(self.near.as_slice());
         let around = lists + size_of_val(self.boxes.as_slice());
-        size_of_val(self.candidates.as_slice()) + size_of_val(self.behind.as_slice()) + around
+        size_of_val(self.candidates.as_slice()) + around
     }
 }
 
@@ -41,7 +39,6 @@ pub struct Find<'a> {
     pub grid: &'a Grid,
     pub view: &'a SearchView<'a>,
     pub nodes: Range<usize>,
-    pub before: Before<'a>,
     pub run: &'a mut Run,
 }
 
@@ -52,7 +49,6 @@ impl Kernel for Find<'_> {
     fn run<L: Lanes>(mut self, lanes: L) {
         let within = Within::new(lanes, self.view.cutoff);
         self.run.candidates.clear();
-        self.run.behind.clear();
         while !self.nodes.is_empty() {
             let (few, block, span) = self.next_few();
             if !self.view.removed[block as usize] {
@@ -115,9 +111,8 @@ impl Find<'_> {
     #[inline(always)]
     fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
         let (boundary, grid) = (self.view.boundary, self.grid);
-        let Run { candidates, behind, around, boxes, near } = &mut *self.run;
+        let Run { candidates, around, boxes, near } = &mut *self.run;
         let p = self.view.place[boundary.node_point[node] as usize];
-        let first = candidates.len();
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);
@@ -138,7 +133,6 @@ impl Find<'_> {
             marks.push(stretch.edge, edges, &mut add);
         }
         marks.see(&mut add);
-        self.before.renew(self.view, node as u32, &candidates[first..], behind);
     }
 }
 

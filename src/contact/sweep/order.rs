@@ -269,13 +269,14 @@ impl Colours {
 
     /// Covers of held blocks that a node and the near edges of a side may push.
     fn meet(&mut self, boundary: &Boundary, edges: &[Candidate], view: &SweepView) {
-        let mut meet = |at: u32, covers: &[[u32; 3]]| {
-            if !view.metric.is_free(boundary.block[at as usize] as usize) {
-                self.covers.extend(covers[at as usize]);
-            }
-        };
-        edges.iter().for_each(|candidate| meet(candidate.edge, &boundary.edge_covers));
-        meet(boundary.node_point[edges[0].node as usize], &boundary.covers);
+        let is_held = |point: usize| !view.metric.is_free(boundary.block[point] as usize);
+        let node = boundary.node_point[edges[0].node as usize] as usize;
+        if is_held(node) {
+            self.covers.extend(boundary.covers[node]);
+        }
+        for edge in edges.iter().map(|candidate| candidate.edge as usize).filter(|&edge| is_held(edge)) {
+            self.covers.extend(boundary.covers_on(edge));
+        }
     }
 
     /// The first colour that a manifold in hand may have.

@@ -7,7 +7,7 @@ use crate::model::case::{self, Axes, Axis, BaseMotionKind, Case, Invalid};
 use crate::state::{BaseMotion, Fixity, FreeFieldPoint, MotionKind, QuietBoundary, Slope, TimedRecord};
 
 use super::place::{OuterPiece, Places};
-use super::{EDGE_RATIO, in_situ};
+use super::{EDGE_RATIO, in_situ, stiffness_over};
 
 /// Height of a lattice row over the mesh size: cells of columns are about as high, so that waves in both travel alike.
 const ROW: f64 = 0.866_025_403_784_438_6;
@@ -20,8 +20,13 @@ pub(super) struct Ground<'a> {
     pub places: &'a Places<'a>,
     pub rocks: &'a [Elasticity],
     pub element_rock: &'a [u16],
-    /// Stiffness of contacts (Pa/m).
-    pub stiffness: f64,
+}
+
+impl Ground<'_> {
+    /// Stiffness (Pa/m) that those of supports are measured by.
+    pub fn stiffness(&self) -> f64 {
+        stiffness_over(self.places.covers.mesh.size, self.case, self.rocks)
+    }
 }
 
 /// Quiet boundaries and columns as built.
@@ -104,7 +109,7 @@ impl Ground<'_> {
         let held = [axes != Axes::Y, axes != Axes::X];
         for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| held[*axis]) {
             supports.extend(pieces.iter().map(|piece| {
-                let hold = piece.support(EDGE_RATIO * self.stiffness, &stress);
+                let hold = piece.support(EDGE_RATIO * self.stiffness(), &stress);
                 Support {
                     fix: quiet.springs,
                     block: hold.block,

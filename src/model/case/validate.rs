@@ -314,7 +314,7 @@ fn solver(key: &Key, solver: &Solver) -> Check {
     optional(key, "communication_step", solver.communication_step, time, "s", "leave it out for the default")?;
     optional(key, "dt_max", solver.dt_max, time, "s", "leave it out for the stability limit")?;
     number(key, "dt_safety", solver.dt_safety, share, "", "0.9 is the default")?;
-    number(key, "contact_stiffness", solver.contact_stiffness, Range::above(0.0).to(1e6), "", "0.5 is the default")?;
+    number(key, "contact_stiffness", solver.contact_stiffness, Range::above(0.0).to(1e6), "", "0.6 is the default")?;
     number(key, "shear_ratio", solver.shear_ratio, Range::above(0.0).to(10.0), "", "0.5 is the default")?;
     number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
     number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;

@@ -45,7 +45,7 @@ impl Step<'_> {
         for near in &self.state.near.candidates {
             let node = boundary.covers[boundary.node_point[near.node as usize] as usize];
             for a in node {
-                boundary.edge_covers[near.edge as usize].iter().for_each(|&b| couple(a, b));
+                boundary.covers_on(near.edge as usize).for_each(|b| couple(a, b));
             }
         }
         pairs.sort_unstable();

@@ -7,7 +7,7 @@ use crate::state::{Implicit, Ledger, Rule};
 
 use super::balance::norm;
 use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
-use crate::step::report::{potential, stored, strain};
+use crate::step::report::{potential, speed_max, stored, strain};
 
 impl Step<'_> {
     /// Ends a sub-step with the forces and places that the iteration left.
@@ -126,7 +126,7 @@ impl Step<'_> {
             locked: self.count_contacts(ContactState::Lock),
             slipping: self.count_contacts(ContactState::Slip),
             penetration_max: scratch.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
-            speed_max: scratch.speed_max,
+            speed_max: speed_max(slope, state),
         }
     }
 

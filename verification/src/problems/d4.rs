@@ -64,6 +64,8 @@ const DENSITY: f64 = 2000.0;
 const SHORTENING: f64 = 1.6;
 /// Time of the push over that of a wave through the sample.
 const TRANSITS: f64 = 800.0;
+/// Stiffness of the joint (1/m), relative to the rock's, in parts of the mesh size: stiff beside the sample.
+const JOINT_STIFFNESS: f64 = 0.5;
 /// Part of the run over which the load is averaged.
 const PLATEAU: f64 = 0.05;
 
@@ -108,7 +110,8 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
          angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
          {:e}\n\
          poisson = 0.25\ncohesion = {:e}\nfriction_deg = {:?}\n[joint_law.joint]\ncohesion = {:e}\n\
-         friction_deg = {:?}\n[[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
+         friction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n\
+         [[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
          [[fix]]\npoint = [{:?}, 0.0]\naxes = \"x\"\n[[stage]]\nname = \"press\"\nkind = \"dynamic\"\ndamping = 0.5\n\
          duration = 1e9\n",
@@ -120,6 +123,7 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
         setup.get("phi_deg"),
         strength.joint[0],
         setup.get("joint_phi_deg"),
+        JOINT_STIFFNESS * (setup.get("mesh") * w).recip().max(1.0),
         0.5 * w,
     )
 }

@@ -55,7 +55,7 @@ fn text(setup: &Setup, columns: usize, courses: usize, bond: bool, seconds: f64)
          origin = [0.137, 0.071]\n{joints}[joint_law.mortar]\nfriction_deg = {:e}\n\
          [rock.brick]\ndensity = {DENSITY:e}\n\
          young = {:e}\npoisson = 0.25\n[[fix]]\nblock = [-0.9, -0.5]\n[[stage]]\nname = \"settle\"\nkind = \"static\"\n\
-         duration = 60.0\nconvergence = 1e-6\n[[stage]]\nname = \"rest\"\nkind = \"dynamic\"\nduration = {seconds:e}\n\
+         duration = 60.0\nconvergence = 1e-8\n[[stage]]\nname = \"rest\"\nkind = \"dynamic\"\nduration = {seconds:e}\n\
          damping = 0.1\n",
         setup.get("friction_deg"),
         setup.get("young"),

@@ -1,0 +1,55 @@
+//! The constants of the vertex rule and of the lengths and springs that follow from it.
+
+/// Constants of contact. Lengths are relative to the mesh size unless told otherwise.
+///
+/// They are no setting of a case: tests halve and double each of them, and answers stay (theory §5).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EntranceRule {
+    /// Height of a ledge up to which it catches nothing; one of twice that catches in full.
+    pub ledge: f64,
+    /// Penetration that contacts stay below: what is farther apart does not touch with springs unloaded.
+    pub closure_most: f64,
+    /// Sine of the angle up to which two faces that look at each other lie on each other, and by which a neighbour of a
+    /// node may lie inside the edge that the node enters: 10°.
+    pub flush_sine: f64,
+    /// Cosine from which two sides of a block look apart, with rock between them: 60°.
+    pub opposed_cosine: f64,
+    /// Distance beyond a corner up to which a contact that carries force is kept.
+    pub held_beyond: f64,
+    /// Depth from which a contact at first sight starts without force,
+    pub deep: f64,
+    /// and the same relative to the thickness of the thinner block, where that is less.
+    pub deep_share: f64,
+    /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
+    pub wedge_ratio: f64,
+    /// Least length of the solver's own stiffness of a contact in full strength, relative to the mean of the node
+    /// segments: rock that meets in a point is no softer than where it meets in a face.
+    pub stiffness_floor: f64,
+    /// Penetration at which the solver's own stiffness has doubled.
+    pub hardens: f64,
+}
+
+impl Default for EntranceRule {
+    fn default() -> Self {
+        Self {
+            ledge: 1e-3,
+            closure_most: 0.02,
+            flush_sine: 0.17,
+            opposed_cosine: 0.5,
+            held_beyond: 1e-3,
+            deep: 3e-3,
+            deep_share: 0.25,
+            wedge_ratio: 0.5,
+            stiffness_floor: 0.5,
+            hardens: 3e-3,
+        }
+    }
+}
+
+impl EntranceRule {
+    /// Cosine of the angle up to which faces lie on each other.
+    #[inline(always)]
+    pub(super) fn flush_cosine(&self) -> f64 {
+        (1.0 - self.flush_sine * self.flush_sine).sqrt()
+    }
+}

@@ -1,0 +1,172 @@
+//! Claim: in fast failures no corner enters unseen: blocks overlap by less than a hundredth of the mesh size, by the
+//! audit of their polygons alone, and no rock is faster than its fall explains.
+
+mod common;
+
+use common::claims::{dynamic, motion, rock};
+use common::overlap::Audit;
+use common::{run_stage, simulation};
+use enmm::model::Simulation;
+
+const SIZE: f64 = 1.0;
+const G: f64 = 9.81;
+const FLAT: &str = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [0.0, 0.0]]";
+
+/// Loose blocks over a held base, with further text; E = 10 GPa.
+fn case(base: &str, islands: &str, friction_deg: f64, seconds: f64, more: &str) -> Simulation {
+    simulation(&format!(
+        "title = \"fast\"\n[domain]\noutline = {base}\nislands = {islands}\n[mesh]\nsize = {SIZE}\n\
+         origin = [0.137, 0.071]\n[joint_law.joint]\nfriction_deg = {friction_deg:?}\n[[fix]]\nblock = [0.1, -0.9]\n\
+         {more}{}{}",
+        rock(1e10, 2500.0),
+        dynamic("fast", seconds, 0.1)
+    ))
+}
+
+fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
+    format!("[[initial_velocity]]\nblock = {point:?}\nvelocity = {velocity:?}\n")
+}
+
+/// What the audit of a run found.
+#[derive(Debug, Default)]
+struct Worst {
+    /// Deepest overlap (m).
+    overlap: f64,
+    /// Largest speed of rock (m/s).
+    speed: f64,
+}
+
+/// Runs the stage in progress to its end, with an audit every so many steps.
+fn audit(simulation: &mut Simulation, every: u64) -> Worst {
+    let overlaps = Audit::new(simulation);
+    let (mut worst, mut k) = (Worst::default(), 0u64);
+    while !simulation.stage_is_over(None) {
+        k += 1;
+        let seen = k.is_multiple_of(every);
+        let report = simulation.advance(seen).unwrap_or_else(|e| panic!("{e}"));
+        if seen {
+            worst.overlap = worst.overlap.max(overlaps.deepest(simulation).depth);
+            worst.speed = worst.speed.max(report.speed_max);
+        }
+    }
+    println!("{worst:?}, {:?}", simulation.state().counters);
+    worst
+}
+
+/// A square on one corner slides over a level base, whose crack ends under its way: without friction nothing takes its
+/// velocity along the base, closed as the crack's mouth is.
+#[test]
+fn a_tilted_block_slides_over_a_crack_mouth() {
+    let (sin, cos) = 20.0f64.to_radians().sin_cos();
+    let corner = |x: f64, y: f64| [3.0 + x * cos - y * sin, 0.001 + x * sin + y * cos];
+    let block = format!("[{:?}]", [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+    for crack in ["[[4.0, 0.0], [4.0, -0.6]]", "[[4.0, 0.0], [3.7, -0.6]]", "[[4.0, 0.0], [4.4, -0.6]]"] {
+        for speed in [4.0, 6.0, 12.0] {
+            let more = format!("[[joint]]\npoints = {crack}\n{}", thrown([3.5, 0.5], [speed, -1.0]));
+            let mut simulation = case(FLAT, &block, 0.0, 0.3, &more);
+            let worst = audit(&mut simulation, 1);
+            let velocity = motion(&simulation, [3.5, 0.5]).1;
+            assert!((velocity.x / speed - 1.0).abs() < 1e-3, "{crack} at {speed} m/s: {velocity}");
+            assert!(worst.overlap < 0.002 * SIZE, "{crack} at {speed} m/s: {worst:?}");
+            assert_eq!(simulation.state().counters.deep_contacts, 0);
+        }
+    }
+}
+
+/// Squares meet corner to corner, a millimetre off: each passes on its side or both stop, and none is seen late.
+#[test]
+fn corners_meet_at_speed() {
+    let diamond =
+        |x: f64, y: f64| format!("[[{x}, {}], [{}, {y}], [{x}, {}], [{}, {y}]]", y - 1.0, x + 1.0, y + 1.0, x - 1.0);
+    for (shift, speed) in [(1e-3, 5.0), (-1e-3, 15.0), (2e-4, 15.0), (0.02, 15.0), (1e-3, 30.0)] {
+        let islands = format!("[{}, {}]", diamond(4.0, 3.0), diamond(4.0 + shift, 5.05));
+        let more = thrown([4.0, 5.05], [0.0, -speed]);
+        let mut simulation = case(FLAT, &islands, 20.0, 0.1, &more);
+        let worst = audit(&mut simulation, 1);
+        assert!(worst.overlap < 0.01 * SIZE, "{shift} m off at {speed} m/s: {worst:?}");
+        assert_eq!(simulation.state().counters.deep_contacts, 0, "{shift} m off at {speed} m/s");
+    }
+}
+
+/// A sharp wedge is driven at 10 m/s into a mouth of 2 mm between two loose blocks: it opens the mouth and stays in it.
+#[test]
+fn a_wedge_is_driven_into_a_narrow_mouth() {
+    for shift in [0.0, 4e-4, -7e-4] {
+        let wedge = format!("[[{}, 2.005], [5.201, 3.5], [4.801, 3.5]]", 5.001 + shift);
+        let islands = format!(
+            "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
+             [[5.002, 0.001], [6.002, 0.001], [6.002, 2.0], [5.002, 2.0]], {wedge}]"
+        );
+        let mut simulation = case(FLAT, &islands, 20.0, 0.1, &thrown([5.001, 3.0], [0.0, -10.0]));
+        let worst = audit(&mut simulation, 1);
+        let [left, right, wedge] = [[4.5, 1.0], [5.5, 1.0], [5.001, 3.2]].map(|p| motion(&simulation, p).0);
+        println!("{left} {wedge} {right}");
+        assert!(right.x - left.x > 1.01 && left.x < wedge.x && wedge.x < right.x, "{left} {wedge} {right}");
+        assert!(worst.overlap < 0.01 * SIZE, "tip {shift} m off: {worst:?}");
+        assert_eq!(simulation.state().counters.deep_contacts, 0);
+    }
+}
+
+/// A block strikes a floor with its corner at 30 m/s: what has entered is pushed out by where it entered.
+#[test]
+fn a_corner_strikes_a_floor() {
+    for tilt_deg in [3.0f64, 20.0, 44.0] {
+        let (sin, cos) = tilt_deg.to_radians().sin_cos();
+        let corner = |x: f64, y: f64| [5.0 + x * cos - y * sin, 0.01 + x * sin + y * cos];
+        let block = format!("[{:?}]", [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+        let inside = corner(0.5, 0.5);
+        let mut simulation = case(FLAT, &block, 20.0, 0.05, &thrown(inside, [5.0, -30.0]));
+        let worst = audit(&mut simulation, 1);
+        assert!(worst.overlap < 0.01 * SIZE, "{tilt_deg}°: {worst:?}");
+        assert_eq!(simulation.state().counters.deep_contacts, 0);
+    }
+}
+
+/// A slope of 15 m cut by two sets of joints, which rests by a friction of 50° and fails by one of 15°.
+fn slope(seed: u64) -> String {
+    let dips = [34.5 + (seed % 4) as f64 - 1.5, 112.0 + 2.0 * (seed % 3) as f64];
+    let spacings = [1.2 + 0.05 * (seed % 5) as f64, 1.1 + 0.07 * (seed % 4) as f64];
+    let set = |k: usize| {
+        format!(
+            "[[joint_set]]\ndip_deg = {}\ndip_sd_deg = {}\nspacing = {}\nspacing_sd = 0.3\nseed = {}\n\
+             region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n",
+            dips[k],
+            [1.5, 3.0][k],
+            spacings[k],
+            100 * (k as u64 + 1) + seed
+        )
+    };
+    format!(
+        "title = \"slope {seed}\"\n[domain]\noutline = [[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [24.0, 20.0], \
+         [14.0, 5.0], [0.0, 5.0]]\n[mesh]\nsize = {SIZE}\nangle_deg = 7.0\n[[joint]]\npoints = [[12.0, 4.0], \
+         [39.0, 21.0]]\n{}{}[joint_law.joint]\nfriction_deg = 50.0\n{}[[fix]]\nedge = [[0.0, 0.0], [40.0, 0.0]]\n\
+         [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 6.0\n{}[[stage.law]]\nlaw = \"joint\"\n\
+         friction_deg = 15\n",
+        set(0),
+        set(1),
+        rock(5e9, 2650.0),
+        dynamic("failure", 1.5, 0.1)
+    )
+}
+
+/// The slope fails without overlap, and its rock is no faster than a fall over its whole height makes it, 10 % to spare.
+fn fails_cleanly(seed: u64) {
+    let mut simulation = simulation(&slope(seed));
+    run_stage(&mut simulation);
+    simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
+    let worst = audit(&mut simulation, 5);
+    println!("slope {seed}");
+    assert!(worst.overlap < 0.01 * SIZE, "slope {seed}: {worst:?}");
+    assert!(worst.speed > 2.0 && worst.speed < 1.1 * (2.0 * G * 15.0f64).sqrt(), "slope {seed}: {worst:?}");
+}
+
+#[test]
+fn small_slopes_fail_cleanly() {
+    (0..3).for_each(fails_cleanly);
+}
+
+#[test]
+fn long_small_slopes_fail_cleanly() {
+    let last = if std::env::var_os("ENMM_LONG").is_some() { 16 } else { 4 };
+    (3..last).for_each(fails_cleanly);
+}
