@@ -5,7 +5,7 @@ mod common;
 
 use common::claims::{dynamic, motion, rock};
 use common::overlap::Audit;
-use common::{run_stage, simulation};
+use common::{run_stage, simulation, varied_rules};
 use enmm::model::Simulation;
 
 const SIZE: f64 = 1.0;
@@ -122,6 +122,21 @@ fn a_corner_strikes_a_floor() {
     }
 }
 
+/// Half or twice any constant of contact: corners and wedges that come in fast stay outside.
+#[test]
+fn no_constant_decides_who_enters() {
+    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
+                   [[5.002, 0.001], [6.002, 0.001], [6.002, 2.0], [5.002, 2.0]], \
+                   [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
+    for (name, rule) in varied_rules() {
+        let more = thrown([5.001, 3.0], [0.0, -10.0]);
+        let mut simulation = case(FLAT, islands, 20.0, 0.05, &more).with_entrance(rule);
+        let worst = audit(&mut simulation, 1);
+        assert!(worst.overlap < 0.01 * SIZE, "{name}: {worst:?}");
+        assert_eq!(simulation.state().counters.deep_contacts, 0, "{name}");
+    }
+}
+
 /// A slope of 15 m cut by two sets of joints, which rests by a friction of 50° and fails by one of 15°.
 fn slope(seed: u64) -> String {
     let dips = [34.5 + (seed % 4) as f64 - 1.5, 112.0 + 2.0 * (seed % 3) as f64];
@@ -149,7 +164,7 @@ fn slope(seed: u64) -> String {
     )
 }
 
-/// The slope fails without overlap, and its rock is no faster than a fall over its whole height makes it, 10 % to spare.
+/// The slope fails without overlap, and its rock is no faster than a fall over its height makes it, 10 % to spare.
 fn fails_cleanly(seed: u64) {
     let mut simulation = simulation(&slope(seed));
     run_stage(&mut simulation);

@@ -14,18 +14,19 @@ const BLOCKS: u32 = 5;
 fn column(size: f64) -> String {
     let joints: String = (1..BLOCKS).map(|y| format!("[[joint]]\npoints = [[0, {y}], [1, {y}]]\n")).collect();
     format!(
-        "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, {BLOCKS}], [0, {BLOCKS}]]\n[mesh]\nsize = {size}\n\
-         angle_deg = 8\norigin = [0.0137, 0.0071]\n{joints}\
-         [rock.rock]\ndensity = {DENSITY}\nyoung = {YOUNG:e}\npoisson = {POISSON}\n[joint_law.joint]\nfriction_deg = 35\n\
-         [[fix]]\nedge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0.0]\naxes = \"x\"\n[[stage]]\n\
-         name = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n\
+        "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, {BLOCKS}], [0, {BLOCKS}]]\n[mesh]\n\
+         size = {size}\nangle_deg = 8\norigin = [0.0137, 0.0071]\n{joints}\
+         [rock.rock]\ndensity = {DENSITY}\nyoung = {YOUNG:e}\npoisson = {POISSON}\n\
+         [joint_law.joint]\nfriction_deg = 35\n\
+         [[fix]]\nedge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0.0]\naxes = \"x\"\n\
+         [[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n\
          [[monitor]]\nname = \"top\"\npoint = [0.5, {BLOCKS}]\n"
     )
 }
 
 /// Settlement of the top (m): the rock shortens by ½γH²(1 − ν²)/E, and the joint under each block by its load over the
-/// joint's stiffness. On the coarsest mesh a block stands on two or three nodes and bends between them: 10 % more, then 3 %,
-/// then less than 1 %. A stiffness that goes as 1/h gives half the settlement on the finest mesh.
+/// joint's stiffness. On the coarsest mesh a block stands on two or three nodes and bends between them: 10 % more, then
+/// 3 %, then less than 1 %. A stiffness that goes as 1/h gives half the settlement on the finest mesh.
 #[test]
 fn a_column_settles_alike_on_any_mesh() {
     let weight = DENSITY * 9.81;

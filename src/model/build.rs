@@ -86,8 +86,8 @@ pub(super) fn outlines(case: &Case) -> Result<Outlines, Invalid> {
     Ok(cover::cut(mesh, arrangement).1)
 }
 
-/// Length (m) of rock that gives joints their default stiffness. Meshes that are coarser than this give it by their size,
-/// since they do not resolve stiffer joints.
+/// Length (m) of rock that gives joints their default stiffness. Meshes that are coarser than this give it by their
+/// size, since they do not resolve stiffer joints.
 const STIFFNESS_LENGTH: f64 = 1.0;
 
 /// The fixed part of the model, and what its bolts have to tell.

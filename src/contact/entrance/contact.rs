@@ -90,8 +90,8 @@ impl Narrow<'_> {
         }
     }
 
-    /// How many times stiffer the solver's own stiffness is at the penetration that a step would reach from a gap (m) that
-    /// opens at some rate (m/s).
+    /// How many times stiffer the solver's own stiffness is at the penetration that a step would reach from a gap (m)
+    /// that opens at some rate (m/s).
     #[inline(always)]
     fn hardening(&self, gap: f64, rate: f64) -> f64 {
         let reached = gap + rate * self.approach.as_ref().map_or(0.0, |approach| approach.dt);

@@ -296,8 +296,8 @@ impl Narrow<'_> {
         edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 
-    /// Whether it is a first sight that cannot be a contact: deep and not of the nearest side of the rock that the node is
-    /// in, or from outside the rock past a side that does not meet this one, or deep within one block.
+    /// Whether it is a first sight that cannot be a contact: deep and not of the nearest side of the rock that the node
+    /// is in, or from outside the rock past a side that does not meet this one, or deep within one block.
     fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
         let tie = TIE_TOLERANCE * self.size;
         if pick.held.is_some() || pick.gap >= -tie {
@@ -385,8 +385,8 @@ fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2], sine: f64) -> bo
     cross > 0.0 && (dot > 0.0 || cross > sine * distance[0] * distance[1])
 }
 
-/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge up to an angle given
-/// by its sine.
+/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge up to an angle
+/// given by its sine.
 fn faces(chord: Vector, normal: Vector, sine: f64) -> bool {
     chord.perp(&normal) > -sine * chord.norm()
 }
