@@ -231,7 +231,7 @@ impl Narrow<'_> {
             let picks = self.pick_edges(node, group, sides);
             let mut contested = false;
             for pick in picks.iter_mut().filter(|pick| pick.admitted) {
-                let overlap = if self.is_false_sight(node, pick) { None } else { self.overlap_at_ends(node, pick) };
+                let overlap = self.overlap_at_ends(node, pick).filter(|_| !self.is_false_sight(node, pick));
                 pick.admitted = overlap.is_some();
                 pick.overlap = overlap.unwrap_or_default();
                 contested |= pick.admitted & !pick.is_held & (pick.gap < -TIE_TOLERANCE * self.size);
