@@ -20,6 +20,9 @@ pub(super) fn hosts(covers: &Covers) -> Vec<u32> {
     let quality = covers.qualities();
     let edges = MeshEdges::new(covers);
     let host = |e: u32| {
+        if quality[e as usize].lightest >= LIGHT {
+            return e;
+        }
         let mut rings = vec![vec![e]];
         for _ in 0..RINGS {
             let last = rings.last().into_iter().flatten();
@@ -75,9 +78,9 @@ impl Covers {
     /// Of two elements that meet at a point of the boundary, the one that carries the point where they do not move it
     /// alike: the one that is no sliver, or else the host of the heavier. Mirrored, it is the same one.
     pub(crate) fn carriers(&self) -> impl Fn(u32, u32) -> usize {
-        let (quality, host) = (self.qualities(), self.host.clone());
+        let quality = self.qualities();
         move |before, after| {
-            let [before, after] = [before, after].map(|element| [element, host[element as usize]]);
+            let [before, after] = [before, after].map(|element| [element, self.host[element as usize]]);
             let is_sliver = |[element, host]: [u32; 2]| element != host;
             let is_heavier = quality[before[1] as usize].exceeds(&quality[after[1] as usize]);
             let takes_before = is_sliver(after) && (!is_sliver(before) || is_heavier);

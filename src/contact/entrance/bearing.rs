@@ -48,6 +48,12 @@ impl Bearings {
 }
 
 impl Narrow<'_> {
+    /// Contacts of a node in the last step.
+    #[inline(always)]
+    pub(super) fn known(&self, node: usize) -> &[ContactHistory] {
+        &self.history[self.remembered.of_node(node)]
+    }
+
     /// How deep (m) a contact is at the present places, as far as it bears, and the direction out of its side.
     #[inline(always)]
     fn closure(&self, contact: &ContactHistory) -> (f64, Vector) {
@@ -58,8 +64,7 @@ impl Narrow<'_> {
 
     /// How deep (m) a contact of a node with a side is, as far as it bears; 0 where it was none in the last step.
     pub(super) fn closure_with(&self, node: usize, side: u32) -> f64 {
-        let known = &self.history[self.remembered.of_node(node)];
-        known.iter().find(|contact| contact.side == side).map_or(0.0, |contact| self.closure(contact).0)
+        self.known(node).iter().find(|contact| contact.side == side).map_or(0.0, |contact| self.closure(contact).0)
     }
 
     /// The sides before and after a node: those that lie towards the start and the finish of a side that it faces.
@@ -72,7 +77,7 @@ impl Narrow<'_> {
     pub(super) fn let_in(&self, node: usize, direction: Vector, others: [u32; 2]) -> f64 {
         let boundary = self.boundary;
         let mut depth = 0.0f64;
-        for contact in &self.history[self.remembered.of_node(node)] {
+        for contact in self.known(node) {
             if !others.contains(&contact.side) {
                 let (closure, outward) = self.closure(contact);
                 depth = depth.max(closure * outward.dot(&direction));

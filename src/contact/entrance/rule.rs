@@ -117,8 +117,7 @@ impl Narrow<'_> {
 
     /// Whether a node carried force against a side in the last step.
     fn carries(&self, node: u32, side: u32) -> bool {
-        let known = &self.history[self.remembered.of_node(node as usize)];
-        known.iter().any(|h| h.side == side && h.state != ContactState::Open)
+        self.known(node as usize).iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
