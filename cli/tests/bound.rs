@@ -3,35 +3,11 @@
 
 mod support;
 
-use support::Place;
-
-/// A block on a plane that rises by 1 in 2, with tan φ = 0.65: F = 1.3.
-const INCLINE: &str = r#"
-title = "Block on an incline"
-[domain]
-outline = [[0, -1], [8, -1], [8, 0], [4, 2], [4.4, 2.8], [3.2, 3.4], [2.8, 2.6], [0, 4]]
-[mesh]
-size = 0.9
-origin = [0.07, 0.03]
-[[joint]]
-points = [[4, 2], [2.8, 2.6]]
-[rock.rock]
-density = 2600
-young = 1e9
-poisson = 0.25
-[joint_law.plane]
-friction_deg = 33.0238675555
-[[fix]]
-block = [1, 0]
-[[stage]]
-name = "rest"
-kind = "static"
-duration = 5.0
-"#;
+use support::{Place, incline};
 
 #[test]
 fn a_block_on_an_incline_is_bounded_by_its_tangents() {
-    let place = Place::with(INCLINE);
+    let place = Place::with(&incline(0.65, ""));
     let answer = place.enmm(&["bound", "case.toml"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
     assert!(answer.stdout.contains("associated            1.3000"), "{answer:?}");
@@ -47,7 +23,8 @@ fn a_block_on_an_incline_is_bounded_by_its_tangents() {
 #[test]
 fn a_block_on_a_level_floor_never_falls() {
     let outline = "[[0, -1], [8, -1], [8, 2], [4, 2], [4, 3], [3, 3], [3, 2], [0, 2]]";
-    let lines = INCLINE.lines().map(|line| match line {
+    let case = incline(0.65, "");
+    let lines = case.lines().map(|line| match line {
         _ if line.starts_with("outline") => format!("outline = {outline}\n"),
         _ if line.starts_with("points") => "points = [[4, 2], [3, 2]]\n".to_owned(),
         _ => format!("{line}\n"),
@@ -63,7 +40,7 @@ fn a_block_on_a_level_floor_never_falls() {
 
 #[test]
 fn rock_that_yields_is_bad_input() {
-    let place = Place::with(&INCLINE.replace("poisson = 0.25", "poisson = 0.25\nfriction_deg = 30.0"));
+    let place = Place::with(&incline(0.65, "").replace("poisson = 0.25", "poisson = 0.25\nfriction_deg = 30.0"));
     let answer = place.enmm(&["bound", "case.toml", "--json"]);
     assert_eq!(answer.status, Some(2), "{answer:?}");
     assert!(answer.stdout.contains("\"error\"") && answer.stderr.contains("rock.rock.friction_deg"), "{answer:?}");

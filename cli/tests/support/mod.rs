@@ -120,3 +120,33 @@ friction_deg = 0.1
 "#
     )
 }
+
+/// A block of 1 m × 1 m on a plane that rises by 1 in 2 (tan a = 0.5), with friction tan φ = `tangent`, and what comes
+/// after its static stage.
+pub fn incline(tangent: f64, more: &str) -> String {
+    let friction = tangent.atan().to_degrees();
+    format!(
+        r#"
+title = "Block on an incline"
+[domain]
+outline = [[0, -1], [8, -1], [8, 0], [4, 2], [4.4, 2.8], [3.2, 3.4], [2.8, 2.6], [0, 4]]
+[mesh]
+size = 0.9
+origin = [0.07, 0.03]
+[[joint]]
+points = [[4, 2], [2.8, 2.6]]
+[rock.rock]
+density = 2600
+young = 1e9
+poisson = 0.25
+[joint_law.plane]
+friction_deg = {friction}
+[[fix]]
+block = [1, 0]
+[[stage]]
+name = "rest"
+kind = "static"
+duration = 5.0
+{more}"#
+    )
+}
