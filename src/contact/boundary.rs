@@ -154,6 +154,12 @@ impl Boundary {
         [self.node_edge_before[node], self.node_point[node]]
     }
 
+    /// Sides before and after a node: those that lie towards the start and the finish of a side that it faces.
+    #[inline(always)]
+    pub fn sides_of_node(&self, node: usize) -> [u32; 2] {
+        self.edges_of_node(node).map(|edge| self.side[edge as usize])
+    }
+
     /// Whether the node lies on a partial cut.
     pub fn node_partial(&self, node: usize) -> bool {
         self.edges_of_node(node).iter().any(|&edge| self.partial[edge as usize])

@@ -86,7 +86,7 @@ impl Step<'_> {
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
         scratch.remembered.index(&state.contacts, slope.boundary.node_count());
-        scratch.bearings.index(&slope.boundary, &state.contacts);
+        scratch.bearings.index(&slope.boundary, &scratch.frames, &state.contacts);
         let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = Narrow {
             boundary: &slope.boundary,
@@ -108,6 +108,7 @@ impl Step<'_> {
             approach: dt.map(approach),
             size,
             rule: slope.entrance,
+            flush_cosine: slope.entrance.flush_cosine(),
             reach,
             theta: slope.theta,
             first: state.step == 0,

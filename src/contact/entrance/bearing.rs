@@ -3,47 +3,91 @@
 use crate::contact::{Boundary, ContactHistory};
 use crate::geometry::Vector;
 
-use super::Narrow;
+use super::{Frames, Narrow};
 
-/// The contacts of the last step by the node segment that they lie on.
+/// A contact of the last step that is in penetration at the present places.
+#[derive(Debug, Clone, Copy)]
+struct Bearing {
+    /// Side that the node is in.
+    side: u32,
+    /// Sides before and after the node.
+    own: [u32; 2],
+    /// How deep (m) the node is, as far as the contact bears.
+    closure: f64,
+    /// Direction out of the side.
+    outward: Vector,
+}
+
+/// The contacts of the last step that are in penetration, by their nodes and by the node segments that they lie on.
 #[derive(Debug, Clone, Default)]
 pub struct Bearings {
-    /// First place of the contacts on the segment after each node, and their number.
+    /// First of each node, and their number.
     first: Vec<u32>,
-    /// Contacts by segment.
-    contacts: Vec<u32>,
+    /// Bearings, ordered by node and side.
+    bearings: Vec<Bearing>,
+    /// First place of those on the segment after each node, and their number.
+    first_after: Vec<u32>,
+    /// Bearings by segment.
+    after: Vec<u32>,
+    /// Segment of each.
+    segment: Vec<u32>,
 }
 
 impl Bearings {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.first.as_slice()) + size_of_val(self.contacts.as_slice())
+        let indices = self.first.len() + self.first_after.len() + self.after.len() + self.segment.len();
+        size_of::<u32>() * indices + size_of_val(self.bearings.as_slice())
     }
 
-    /// Sorts contacts by segment; within one they keep their order.
-    pub fn index(&mut self, boundary: &Boundary, history: &[ContactHistory]) {
-        let Self { first, contacts } = self;
-        let segment = |contact: &ContactHistory| boundary.node_before[contact.edge as usize] as usize;
-        first.clear();
-        first.resize(boundary.node_count() + 1, 0);
-        history.iter().for_each(|contact| first[segment(contact)] += 1);
+    /// Finds which contacts are in penetration and sorts them by segment; within one they keep their order.
+    pub fn index(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {
+        self.find(boundary, frames, history);
+        let Self { first_after, after, segment, .. } = self;
+        first_after.clear();
+        first_after.resize(boundary.node_count() + 1, 0);
+        segment.iter().for_each(|&node| first_after[node as usize] += 1);
         let mut end = 0;
-        for count in first.iter_mut() {
+        for count in first_after.iter_mut() {
             end += *count;
             *count = end;
         }
-        contacts.resize(history.len(), 0);
-        for (k, contact) in history.iter().enumerate().rev() {
-            let place = &mut first[segment(contact)];
+        after.resize(segment.len(), 0);
+        for (k, &node) in segment.iter().enumerate().rev() {
+            let place = &mut first_after[node as usize];
             *place -= 1;
-            contacts[*place as usize] = k as u32;
+            after[*place as usize] = k as u32;
         }
     }
 
-    /// Contacts on the segment after a node.
+    fn find(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {
+        let Self { first, bearings, segment, .. } = self;
+        (first.clear(), bearings.clear(), segment.clear());
+        for contact in history {
+            let (node, edge) = (contact.node as usize, &frames.edges[contact.edge as usize]);
+            let gap = (frames.nodes[node].place - edge.start).dot(&edge.normal());
+            let closure = (-gap).max(0.0) * contact.share;
+            if closure > 0.0 {
+                first.resize(first.len().max(node + 1), bearings.len() as u32);
+                segment.push(boundary.node_before[contact.edge as usize]);
+                let own = boundary.sides_of_node(node);
+                bearings.push(Bearing { side: contact.side, own, closure, outward: edge.normal() });
+            }
+        }
+        first.resize(boundary.node_count() + 1, bearings.len() as u32);
+    }
+
+    /// Those of a node.
     #[inline(always)]
-    fn after(&self, node: usize) -> &[u32] {
-        &self.contacts[self.first[node] as usize..self.first[node + 1] as usize]
+    fn of_node(&self, node: usize) -> &[Bearing] {
+        &self.bearings[self.first[node] as usize..self.first[node + 1] as usize]
+    }
+
+    /// Those on the segment after a node.
+    #[inline(always)]
+    fn after(&self, node: usize) -> impl Iterator<Item = &Bearing> {
+        let places = self.first_after[node] as usize..self.first_after[node + 1] as usize;
+        self.after[places].iter().map(|&k| &self.bearings[k as usize])
     }
 }
 
@@ -54,41 +98,26 @@ impl Narrow<'_> {
         &self.history[self.remembered.of_node(node)]
     }
 
-    /// How deep (m) a contact is at the present places, as far as it bears, and the direction out of its side.
-    #[inline(always)]
-    fn closure(&self, contact: &ContactHistory) -> (f64, Vector) {
-        let edge = &self.frames.edges[contact.edge as usize];
-        let gap = (self.node_place(contact.node as usize) - edge.start).dot(&edge.normal());
-        ((-gap).max(0.0) * contact.share, edge.normal())
-    }
-
     /// How deep (m) a contact of a node with a side is, as far as it bears; 0 where it was none in the last step.
+    #[inline(always)]
     pub(super) fn closure_with(&self, node: usize, side: u32) -> f64 {
-        self.known(node).iter().find(|contact| contact.side == side).map_or(0.0, |contact| self.closure(contact).0)
-    }
-
-    /// The sides before and after a node: those that lie towards the start and the finish of a side that it faces.
-    pub(super) fn sides_at(&self, node: usize) -> [u32; 2] {
-        self.boundary.edges_of_node(node).map(|edge| self.boundary.side[edge as usize])
+        self.bearings.of_node(node).iter().find(|bearing| bearing.side == side).map_or(0.0, |bearing| bearing.closure)
     }
 
     /// How deep (m), along a direction, the contacts of a node and of the faces next to it have let it in, but for
     /// those with the sides `others`: how far it would move that way with their springs unloaded.
+    #[inline(always)]
     pub(super) fn let_in(&self, node: usize, direction: Vector, others: [u32; 2]) -> f64 {
-        let boundary = self.boundary;
         let mut depth = 0.0f64;
-        for contact in self.known(node) {
-            if !others.contains(&contact.side) {
-                let (closure, outward) = self.closure(contact);
-                depth = depth.max(closure * outward.dot(&direction));
+        for bearing in self.bearings.of_node(node) {
+            if !others.contains(&bearing.side) {
+                depth = depth.max(bearing.closure * bearing.outward.dot(&direction));
             }
         }
-        for node in [boundary.node_previous[node] as usize, node] {
-            for &contact in self.bearings.after(node) {
-                let contact = &self.history[contact as usize];
-                if !self.sides_at(contact.node as usize).iter().any(|side| others.contains(side)) {
-                    let (closure, outward) = self.closure(contact);
-                    depth = depth.max(-closure * outward.dot(&direction));
+        for node in [self.boundary.node_previous[node] as usize, node] {
+            for bearing in self.bearings.after(node) {
+                if !bearing.own.iter().any(|side| others.contains(side)) {
+                    depth = depth.max(-bearing.closure * bearing.outward.dot(&direction));
                 }
             }
         }

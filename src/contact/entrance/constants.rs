@@ -48,8 +48,7 @@ impl Default for EntranceRule {
 
 impl EntranceRule {
     /// Cosine of the angle up to which faces lie on each other.
-    #[inline(always)]
-    pub(super) fn flush_cosine(&self) -> f64 {
+    pub fn flush_cosine(&self) -> f64 {
         (1.0 - self.flush_sine * self.flush_sine).sqrt()
     }
 }

@@ -60,7 +60,7 @@ impl Narrow<'_> {
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(place);
         let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
-        let flush_cosine = self.rule.flush_cosine();
+        let flush_cosine = self.flush_cosine;
         let mut facing = Facing::default();
         let mut add = |over: f64, along: f64, distance: f64, overlap: f64| {
             if along > flush_cosine * distance {

@@ -64,7 +64,7 @@ pub struct Narrow<'a> {
     pub history: &'a [ContactHistory],
     /// Where those of each node are.
     pub remembered: &'a Remembered,
-    /// Those by the node segment that they lie on.
+    /// Those in penetration, by node and by the node segment that they lie on.
     pub bearings: &'a Bearings,
     /// How contacts come on in an explicit step; none in an implicit one.
     pub approach: Option<Approach<'a>>,
@@ -72,6 +72,8 @@ pub struct Narrow<'a> {
     pub size: f64,
     /// Constants.
     pub rule: EntranceRule,
+    /// Cosine of the angle up to which faces lie on each other.
+    pub flush_cosine: f64,
     /// Gap (m) below which a contact takes part in the iteration.
     pub reach: f64,
     /// θ of the contact springs.

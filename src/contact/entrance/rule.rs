@@ -58,7 +58,7 @@ impl Narrow<'_> {
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let normal = right_of(pick.tangent);
-        let flush = -facing.dot(&normal) > self.rule.flush_cosine();
+        let flush = -facing.dot(&normal) > self.flush_cosine;
         let faces_round = flush || own.dot(&outward) >= 0.0;
         let out = if faces_round { outward } else { -facing };
         let depth = (q - p).dot(&out);
@@ -74,21 +74,22 @@ impl Narrow<'_> {
         let closure = if faces_round {
             self.closure_with(node, boundary.side[round as usize])
         } else {
-            self.closure_with(meets, self.sides_at(node)[end as usize])
+            self.closure_with(meets, self.boundary.sides_of_node(node)[end as usize])
         };
         let beyond = depth - closure.max(self.let_in_by_others(node, meets, out));
         if flush {
             return Some(beyond / along);
         }
         let closure = pick.held.map_or(0.0, |known| -pick.gap * self.history[known as usize].share);
-        let way_out = -pick.gap - closure.max(self.let_in_by_others(node, meets, normal));
-        (way_out <= beyond + TIE_TOLERANCE * self.size).then_some(beyond / along)
+        let tie = TIE_TOLERANCE * self.size;
+        let way_out = || -pick.gap - closure.max(self.let_in_by_others(node, meets, normal));
+        (-pick.gap <= beyond + tie || way_out() <= beyond + tie).then_some(beyond / along)
     }
 
     /// How far (m) a node and a corner of another block part along a direction, out of that block, when the springs of
     /// their other contacts are unloaded.
     fn let_in_by_others(&self, node: usize, corner: usize, out: Vector) -> f64 {
-        let [own, others] = [node, corner].map(|node| self.sides_at(node));
+        let [own, others] = [node, corner].map(|node| self.boundary.sides_of_node(node));
         self.let_in(node, out, others).max(self.let_in(corner, -out, own))
     }
 
@@ -112,7 +113,7 @@ impl Narrow<'_> {
 
     /// Whether the corner at an end of a side carried force against the node's own side towards that end.
     fn is_borne(&self, node: usize, corner: u32, end: End) -> bool {
-        self.carries(self.boundary.node_before[corner as usize], self.sides_at(node)[end as usize])
+        self.carries(self.boundary.node_before[corner as usize], self.boundary.sides_of_node(node)[end as usize])
     }
 
     /// Whether a node carried force against a side in the last step.
