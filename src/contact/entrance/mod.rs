@@ -240,7 +240,7 @@ impl Narrow<'_> {
             }
             // Those that are not admitted matter only where a deep one without force is.
             let count = if contested { picks.len() } else { keep_admitted(picks) };
-            self.choose_sides(node, &mut picks[..count]);
+            self.choose_sides(&mut picks[..count]);
             admitted.extend(picks[..count].iter().filter(|p| p.admitted));
         }
     }

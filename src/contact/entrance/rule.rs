@@ -1,7 +1,6 @@
 //! The vertex rule of theory §6: which of the sides near a node it may enter.
 
 use crate::contact::{ContactState, Corner, SideEnd};
-use crate::cover;
 use crate::geometry::{Point, Vector};
 
 use super::{Narrow, Pick, TIE_TOLERANCE, faces, right_of};
@@ -63,7 +62,7 @@ impl Narrow<'_> {
         let out = if faces_round { outward } else { -facing };
         let depth = (q - p).dot(&out);
         if depth < -self.corner_tolerance(pick) {
-            let pierced = flush && (q - p).dot(&facing) <= 0.0 && !self.came_in_elsewhere(node, pick, Some(end));
+            let pierced = flush && (q - p).dot(&facing) <= 0.0;
             return (pierced || self.is_kept(node, pick, end)).then_some(f64::INFINITY);
         }
         let most = self.rule.closure_most * self.size;
@@ -130,7 +129,7 @@ impl Narrow<'_> {
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    pub(super) fn choose_sides(&self, node: usize, picks: &mut [Pick]) {
+    pub(super) fn choose_sides(&self, picks: &mut [Pick]) {
         let block = |p: &Pick| self.boundary.block[p.edge as usize];
         for i in 0..picks.len() {
             for j in i + 1..picks.len() {
@@ -138,30 +137,11 @@ impl Narrow<'_> {
                 if block(a) != block(b) || self.is_notch(a.side, b.side) {
                     continue;
                 }
-                if let Some(first) = self.loser(node, a, b) {
+                if let Some(first) = self.loser(a, b) {
                     picks[if first { i } else { j }].admitted = false;
                 }
             }
         }
-    }
-
-    /// Whether a node at first sight was behind the side already before the last step, while the corner at this end of
-    /// the side did not bear on the node's own: it came in neither through the side nor round that corner.
-    fn came_in_elsewhere(&self, node: usize, pick: &Pick, end: Option<End>) -> bool {
-        let at = &self.boundary.side_ends[pick.side as usize];
-        let was_deep = || self.is_deep(node, pick, pick.gap - self.opened(node, pick));
-        let is_met = |end: End| self.is_borne(node, at[end as usize].point, end);
-        pick.held.is_none() && was_deep() && !end.is_some_and(is_met)
-    }
-
-    /// How far (m) the gap opened in the last step.
-    fn opened(&self, node: usize, pick: &Pick) -> f64 {
-        let boundary = self.boundary;
-        let point = boundary.node_point[node] as usize;
-        let covers = &boundary.edge_covers[pick.edge as usize];
-        let weights = self.weights_at(covers, self.node_place(node));
-        let relative = boundary.sample(point, self.velocity) - cover::sample(covers, &weights, self.velocity);
-        relative.dot(&right_of(pick.tangent)) * self.dt_last
     }
 
     /// Whether two sides meet in a notch.
@@ -181,7 +161,7 @@ impl Narrow<'_> {
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
     /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
-    fn loser(&self, node: usize, a: &Pick, b: &Pick) -> Option<bool> {
+    fn loser(&self, a: &Pick, b: &Pick) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
@@ -194,8 +174,7 @@ impl Narrow<'_> {
         let deep_loses = if deep.is_held {
             shallow.is_held && shallow.admitted
         } else {
-            let far = || end.is_none() && shallow.gap > 0.0 || self.came_in_elsewhere(node, deep, end);
-            behind && far() || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
+            behind && end.is_none() && shallow.gap > 0.0 || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
             return Some(first_is_deeper);
