@@ -1,6 +1,9 @@
 //! Claim: `enmm bench` times models of the counts that their names say, which slide without overlap, and its report
 //! accounts for the whole step.
 
+mod common;
+
+use common::overlap::Audit;
 use enmm::io::bench::{BenchOptions, Model, bench, slope_case};
 use enmm::model::Simulation;
 
@@ -63,8 +66,13 @@ fn the_same_name_is_the_same_model() {
 #[test]
 fn blocks_slide_down_the_base() {
     let mut simulation = build(Model::Slope(500, 4));
-    let steps = simulation.steps_in(0.5);
-    advance(&mut simulation, steps);
+    let (steps, overlaps) = (simulation.steps_in(0.5), Audit::new(&simulation));
+    let mut audited = [0.0f64; 2];
+    for _ in 0..steps.div_ceil(5) {
+        advance(&mut simulation, 5);
+        let [overlap, unheld] = overlaps.worst(&simulation);
+        audited = [audited[0].max(overlap), audited[1].max(unheld)];
+    }
     let slope = simulation.slope();
     let time = simulation.time();
     let gravity = slope.gravity.norm();
@@ -84,6 +92,8 @@ fn blocks_slide_down_the_base() {
     assert!(sliding > free.len() * 7 / 10, "{sliding} of {}", free.len());
     let worst = simulation.state().counters.penetration_max / slope.covers.mesh.size;
     assert!(worst < 0.01, "overlap {worst} of the mesh size");
+    let [overlap, unheld] = audited.map(|depth| depth / slope.covers.mesh.size);
+    assert!(overlap < 0.01 && unheld < slope.entrance.ledge, "{overlap}, {unheld} without a spring, of the mesh size");
 }
 
 #[test]

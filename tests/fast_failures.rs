@@ -6,6 +6,7 @@ mod common;
 use common::claims::{dynamic, motion, rock};
 use common::overlap::Audit;
 use common::{run_stage, simulation, varied_rules};
+use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 
 const SIZE: f64 = 1.0;
@@ -32,6 +33,8 @@ fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
 struct Worst {
     /// Deepest overlap (m).
     overlap: f64,
+    /// Overlap (m) that no spring explains.
+    unheld: f64,
     /// Largest speed of rock (m/s).
     speed: f64,
 }
@@ -45,11 +48,14 @@ fn audit(simulation: &mut Simulation, every: u64) -> Worst {
         let seen = k.is_multiple_of(every);
         let report = simulation.advance(seen).unwrap_or_else(|e| panic!("{e}"));
         if seen {
-            worst.overlap = worst.overlap.max(overlaps.deepest(simulation).depth);
+            let [overlap, unheld] = overlaps.worst(simulation);
+            (worst.overlap, worst.unheld) = (worst.overlap.max(overlap), worst.unheld.max(unheld));
             worst.speed = worst.speed.max(report.speed_max);
         }
     }
     println!("{worst:?}, {:?}", simulation.state().counters);
+    // A ledge lower than that bears nothing.
+    assert!(worst.unheld < EntranceRule::default().ledge * SIZE, "{worst:?}");
     worst
 }
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use enmm::contact::Boundary;
+use enmm::contact::{Boundary, VertexEdge};
 use enmm::geometry::{Point, Vector, polygon, segment};
 use enmm::model::Simulation;
 
@@ -16,6 +16,18 @@ pub struct Overlap {
     pub depth: f64,
     /// Blocks.
     pub blocks: [u32; 2],
+}
+
+impl Overlap {
+    /// How much (m) of it no spring explains: what is more than 1.2 times the closure of the most deeply pressed contact
+    /// between the two blocks, which is force over stiffness, and what that contact was first seen with.
+    pub fn unheld(&self, simulation: &Simulation) -> f64 {
+        let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
+        let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
+        let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
+        let contacts = simulation.scratch().contacts.iter().filter(is_between);
+        self.depth - 1.2 * contacts.map(closure).fold(0.0, f64::max)
+    }
 }
 
 /// The blocks of a model, cut into triangles once.
@@ -52,6 +64,13 @@ impl Audit {
     pub fn deepest(&self, simulation: &Simulation) -> Overlap {
         let overlaps = self.overlaps(simulation).into_par_iter();
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
+    }
+
+    /// Deepest overlap (m), and how much of one no spring explains at most.
+    pub fn worst(&self, simulation: &Simulation) -> [f64; 2] {
+        let worst = |overlap: Overlap| [overlap.depth, overlap.unheld(simulation)];
+        let deep = self.overlaps(simulation).into_par_iter().filter(|overlap| overlap.depth > 0.0);
+        deep.map(worst).reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
