@@ -16,7 +16,7 @@ fn fractured_slope() -> Case {
 }
 
 #[test]
-fn the_fractured_slope_rests_and_then_fails() {
+fn long_the_fractured_slope_rests_and_then_fails() {
     let case = fractured_slope();
     let size = case.mesh.size;
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
