@@ -28,7 +28,7 @@ fn case(friction: f64, cohesion: f64, more: &str) -> enmm::model::Case {
 
 fn reduce(case: &enmm::model::Case, threads: usize) -> Reduction {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let found = pool.install(|| factor_of_safety(case, &ReductionOptions::default(), &mut |_| {}));
+    let found = pool.install(|| factor_of_safety(case, &ReductionOptions::default(), &mut |_, _| {}));
     found.unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -81,7 +81,7 @@ fn dynamic_stages_are_left_out_and_said_to_be() {
 fn what_cannot_be_judged_is_an_error_or_an_end() {
     let mut no_rest = case(40.0, 0.0, "");
     no_rest.stages[0].kind = enmm::model::case::StageKind::Dynamic;
-    let find = |case: &_, options: ReductionOptions| factor_of_safety(case, &options, &mut |_| {});
+    let find = |case: &_, options: ReductionOptions| factor_of_safety(case, &options, &mut |_, _| {});
     let error = find(&no_rest, ReductionOptions::default()).expect_err("no static stage");
     assert!(matches!(&error, ReductionError::Case(invalid) if invalid.key == "stage[0].kind"), "{error}");
     let mut short = case(40.0, 0.0, "");

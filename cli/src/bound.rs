@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use enmm::io::{BoundFailure, bound_record};
-use enmm::model::limit_analysis::{Bound, Collapse, Factor};
+use enmm::model::limit_analysis::{Bound, Collapse};
 
 use crate::{BAD_INPUT, FAILED, fail, print_line};
 
@@ -43,7 +43,7 @@ fn text(bound: &Bound) -> String {
         ("every corner catches", &bound.catching, "what blocks bear that no crossing lets pass".to_owned()),
     ];
     let row = |(name, collapse, meaning): (&str, &Collapse, String)| {
-        format!("{name:<21} {:<14} {meaning}", factor(&collapse.factor))
+        format!("{name:<21} {:<14} {meaning}", collapse.factor.to_string())
     };
     let mut lines: Vec<String> = rows.into_iter().map(row).collect();
     lines.push(format!("{:<21} {}", "mechanism", mechanism(bound)));
@@ -53,14 +53,6 @@ fn text(bound: &Bound) -> String {
     ));
     lines.extend(bound.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")
-}
-
-fn factor(factor: &Factor) -> String {
-    match factor {
-        Factor::Found(factor) => format!("{factor:.4}"),
-        Factor::AtLeast(least) => format!("at least {least}"),
-        Factor::AtMost(most) => format!("at most {most}"),
-    }
 }
 
 /// The blocks that move when level tops pass, fastest first.

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use enmm::io::fos::remedy;
+use enmm::io::fos::{Found, remedy};
 use enmm::io::{FosError, FosOptions};
-use enmm::model::strength_reduction::{End, Reduction, TOLERANCE, Trial};
+use enmm::model::strength_reduction::{End, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict};
 
 use crate::run::{INTERRUPT, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
@@ -28,6 +28,13 @@ pub struct Arguments {
     /// Width of the final bracket relative to F.
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
+    /// Pass over mechanisms of less rock (m²), such as single key blocks; they are told, cleared away, and the search
+    /// begins anew.
+    #[arg(long, value_name = "AREA", default_value_t = 0.0)]
+    least_area: f64,
+    /// Mechanisms to find, each without the blocks of those before.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    mechanisms: u16,
     /// Threads; default: all. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -36,8 +43,10 @@ pub struct Arguments {
     json: bool,
 }
 
+/// Failing blocks that are named.
+const NAMED: usize = 8;
 /// Heads the columns of [`row`].
-const HEAD: &str = "         F  verdict   by            time (s)  displacement (m)  speed (m/s)  kinetic (J/m)  \
+const HEAD: &str = "trial           F  verdict   by            time (s)  displacement (m)  speed (m/s)  kinetic (J/m)  \
                     failing    steps  wall (s)";
 
 /// Finds the factor of safety of a case.
@@ -47,6 +56,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         low: arguments.low,
         high: arguments.high,
         tolerance: arguments.tolerance,
+        mechanisms: MechanismOptions { least_area: arguments.least_area, count: arguments.mechanisms.into() },
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),
     };
@@ -60,18 +70,16 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
     }
-    let mut begun = false;
-    let mut hear = |trial: &Trial| {
+    let mut hear = |trial: &Trial, progress: Progress| {
         if !arguments.json {
-            if !begun {
+            if progress.trials == 1 {
                 print_line(HEAD);
             }
-            begun = true;
-            print_line(&row(trial));
+            print_line(&row(trial, progress));
         }
     };
     match enmm::io::fos(&loaded, &options, &mut hear) {
-        Ok(reduction) => report(arguments, &reduction, &options.directory),
+        Ok(found) => report(arguments, &found, &options.directory),
         Err(error @ (FosError::NoRest(_) | FosError::Output(_))) => refuse(arguments, &error, FAILED),
         Err(error @ FosError::Interrupted) => refuse(arguments, &error, INTERRUPTED),
         Err(error) => refuse(arguments, &error, BAD_INPUT),
@@ -85,9 +93,10 @@ fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -
     fail(message, status)
 }
 
-fn row(t: &Trial) -> String {
+fn row(t: &Trial, progress: Progress) -> String {
+    let number = format!("{} of ~{}", progress.trials, progress.expected);
     format!(
-        "{:10.5}  {:<8}  {:<12}  {:8.3}  {:16.3e}  {:11.3e}  {:13.3e}  {:7}  {:7}  {:8.2}",
+        "{number:<9}{:8.5}  {:<8}  {:<12}  {:8.3}  {:16.3e}  {:11.3e}  {:13.3e}  {:7}  {:7}  {:8.2}",
         t.factor,
         t.verdict.name(),
         t.reason.name(),
@@ -101,37 +110,74 @@ fn row(t: &Trial) -> String {
     )
 }
 
-fn report(arguments: &Arguments, reduction: &Reduction, directory: &Path) -> ExitCode {
+fn report(arguments: &Arguments, found: &Found, directory: &Path) -> ExitCode {
     if arguments.json {
         match std::fs::read_to_string(directory.join("fos.json")) {
             Ok(text) => print_line(text.trim_end()),
             Err(error) => return refuse(arguments, &format!("cannot read fos.json again ({error})"), FAILED),
         }
     } else {
-        print_line(&result(reduction, directory));
+        let results = format!("results              {}", directory.display());
+        print_line(&found.searches.iter().map(|search| result(search, found)).chain([results]).collect::<String>());
     }
-    let message = remedy(reduction).unwrap_or_default();
-    match reduction.end {
+    let main = found.main();
+    let message = remedy(main).unwrap_or_default();
+    match main.end {
         End::Found => ExitCode::SUCCESS,
+        End::StableThroughout => {
+            if !arguments.json {
+                print_line(&message);
+            }
+            ExitCode::SUCCESS
+        }
         End::Interrupted => fail(&message, INTERRUPTED),
-        End::StableThroughout | End::UnstableThroughout | End::Failed(_) => fail(&message, FAILED),
+        End::UnstableThroughout | End::Failed(_) => fail(&message, FAILED),
     }
 }
 
-fn result(reduction: &Reduction, directory: &Path) -> String {
+/// What a search found, as lines of a name and a text.
+fn result(reduction: &Reduction, found: &Found) -> String {
     let mut lines = vec![String::new()];
+    let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));
     if let (Some(factor), Some(low), Some(high)) = (reduction.factor(), reduction.low, reduction.high) {
-        lines.push(format!("factor of safety     {factor:.4} (stable at {low:.4}, unstable at {high:.4})"));
+        tell("factor of safety", format!("{factor:.4} (stable at {low:.4}, not at {high:.4})"));
+    } else if let Some(least) = reduction.at_least() {
+        tell("factor of safety", format!("at least {least:.4}"));
+    }
+    match &reduction.bound {
+        Ok(bound) => {
+            let [level, associated] =
+                [&bound.level_tops, &bound.associated].map(|collapse| collapse.factor.to_string());
+            tell("limit analysis", format!("{level} where level tops pass, {associated} associated"));
+        }
+        Err(refused) => tell("limit analysis", format!("none: {refused}")),
     }
     if let Some(trial) = reduction.first_unstable() {
-        let blocks = trial.failing.iter().take(8);
-        let names: Vec<String> =
-            blocks.map(|b| format!("{} at ({:.2}, {:.2}) m", b.block, b.place.x, b.place.y)).collect();
-        let more = trial.failing.len().saturating_sub(8);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        lines.push(format!("failing blocks       {}{more}", names.join(", ")));
+        tell("mechanism", mechanism(trial, reduction, found));
+        tell("failing blocks", names(trial));
     }
-    lines.push(format!("results              {}", directory.display()));
     lines.extend(reduction.warnings.iter().map(|warning| format!("warning: {warning}")));
-    lines.join("\n")
+    lines.join("\n") + "\n"
+}
+
+/// How much rock fails.
+fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
+    let blocks = if trial.failing.len() == 1 { "block" } else { "blocks" };
+    let fate = if trial.verdict == Verdict::Caught { ", caught after sliding" } else { "" };
+    let passed = if found.which.counts(reduction) { "" } else { "; passed over, less than --least-area" };
+    format!(
+        "{} {blocks}{fate}: {:.4} m², {:.4e} kg/m, {:.1} % of the free rock{passed}",
+        trial.failing.len(),
+        trial.failing_area(),
+        trial.failing_mass(),
+        100.0 * trial.failing_area() / reduction.free_area
+    )
+}
+
+fn names(trial: &Trial) -> String {
+    let blocks = trial.failing.iter().take(NAMED);
+    let names: Vec<String> = blocks.map(|b| format!("{} at ({:.2}, {:.2}) m", b.block, b.place.x, b.place.y)).collect();
+    let more = trial.failing.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{}{more}", names.join(", "))
 }

@@ -49,12 +49,13 @@ fn threads_change_nothing_and_json_is_the_file() {
 }
 
 #[test]
-fn a_slope_that_cannot_fail_in_range_exits_with_3_and_a_remedy() {
+fn a_slope_that_cannot_fail_in_range_has_at_least_its_end() {
     let place = Place::with(&incline(0.65, ""));
     let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--low", "0.9", "--high", "1.1"]);
-    assert_eq!(answer.status, Some(3), "{answer:?}");
-    assert!(answer.stderr.contains("--high"), "{answer:?}");
-    assert_eq!(json(&place.path("out/fos.json"))["status"], "stable_throughout");
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("at least 1.1") && answer.stdout.contains("--high"), "{answer:?}");
+    let found = json(&place.path("out/fos.json"));
+    assert_eq!((&found["status"], found["at_least"].as_f64()), (&"stable_throughout".into(), Some(1.1)));
 }
 
 #[test]

@@ -94,6 +94,15 @@ impl Covers {
         first / self.block_area(block)
     }
 
+    /// A reference point inside a block: the centre of the largest triangle of its largest element.
+    pub fn point_inside(&self, block: usize) -> Point {
+        let largest = |a: &usize, b: &usize| self.element_area[*a].total_cmp(&self.element_area[*b]);
+        let triangles = self.elements_of(block).max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
+        let area = |t: &[Point; 3]| polygon::area(t);
+        let triangle = triangles.into_iter().flatten().max_by(|a, b| area(a).total_cmp(&area(b)));
+        triangle.map_or_else(|| self.block_centroid(block), |t| t.iter().sum::<Point>() / 3.0)
+    }
+
     /// The element that holds a reference point, on its boundary included; the lowest when several do.
     pub fn element_at(&self, p: Point) -> Option<usize> {
         self.around(p, 0.0).filter(|&e| polygon::contains(self.polygon(e), p)).min()

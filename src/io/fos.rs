@@ -9,13 +9,15 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
+use super::bound::bound_record;
 use super::case_error::CaseError;
 use super::case_file::LoadedCase;
 use super::checkpoint::engine_version;
 use super::files::{at_path, write_atomic};
 use super::picture::{failure_picture, trials_picture};
 use crate::model::strength_reduction::{
-    End, FACTOR_RANGE, Reduction, ReductionError, ReductionOptions, TOLERANCE, Trial, factor_of_safety,
+    End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
+    TOLERANCE, Trial, mechanisms,
 };
 
 /// How to look for the factor of safety of a case, and where results go.
@@ -29,6 +31,8 @@ pub struct FosOptions<'a> {
     pub high: Option<f64>,
     /// Width of the final bracket relative to F.
     pub tolerance: f64,
+    /// Which ways to fail to look for.
+    pub mechanisms: MechanismOptions,
     /// Threads; all that there are when none is given. The results do not depend on it.
     pub threads: Option<usize>,
     /// Set by another thread to end the search with the trials that are done.
@@ -38,7 +42,15 @@ pub struct FosOptions<'a> {
 impl FosOptions<'_> {
     /// The defaults of a search with results in a directory.
     pub fn into_directory(directory: PathBuf) -> Self {
-        Self { directory, low: None, high: None, tolerance: TOLERANCE, threads: None, interrupt: None }
+        Self {
+            directory,
+            low: None,
+            high: None,
+            tolerance: TOLERANCE,
+            mechanisms: MechanismOptions::default(),
+            threads: None,
+            interrupt: None,
+        }
     }
 
     /// Refuses options with which no search can be made.
@@ -60,6 +72,12 @@ impl FosOptions<'_> {
         }
         if !(1e-4..=0.5).contains(&self.tolerance) {
             return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", self.tolerance));
+        }
+        let area = self.mechanisms.least_area;
+        if !(area >= 0.0 && area.is_finite()) {
+            return Err(format!(
+                "--least-area: is {area}, must be 0 m² or more; the area of a block that does not count"
+            ));
         }
         Ok(())
     }
@@ -88,6 +106,23 @@ pub enum FosError {
     Output(io::Error),
 }
 
+/// What was found: one search for each mechanism, in their order.
+#[derive(Debug)]
+pub struct Found {
+    /// Searches; none is left out, also where too little rock fails to count.
+    pub searches: Vec<Reduction>,
+    /// Which of them count.
+    pub which: MechanismOptions,
+}
+
+impl Found {
+    /// The first search that counts, else the last.
+    pub fn main(&self) -> &Reduction {
+        let counts = self.searches.iter().find(|search| self.which.counts(search));
+        counts.unwrap_or(&self.searches[self.searches.len() - 1])
+    }
+}
+
 /// Finds the factor of safety of a case and writes its results.
 ///
 /// # Errors
@@ -95,13 +130,13 @@ pub enum FosError {
 pub fn fos(
     loaded: &LoadedCase,
     options: &FosOptions,
-    hear: &mut (dyn FnMut(&Trial) + Send),
-) -> Result<Reduction, FosError> {
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Found, FosError> {
     options.check().map_err(FosError::Options)?;
     let clock = Instant::now();
-    let FosOptions { low, high, tolerance, interrupt, .. } = *options;
+    let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
     let search = ReductionOptions { low, high, tolerance, interrupt };
-    let mut find = || factor_of_safety(&loaded.case, &search, hear);
+    let mut find = || mechanisms(&loaded.case, which, &search, hear);
     let found = match options.threads {
         None => find(),
         Some(threads) => {
@@ -109,14 +144,15 @@ pub fn fos(
             pool.map_err(|_| FosError::Threads(threads))?.install(find)
         }
     };
-    let reduction = found.map_err(|error| match error {
+    let searches = found.map_err(|error| match error {
         ReductionError::Case(invalid) => FosError::Case(loaded.source.locate(&invalid.key, &invalid.message)),
         ReductionError::Interrupted => FosError::Interrupted,
         other => FosError::NoRest(other),
     })?;
-    let record = record(loaded, options, &reduction, clock.elapsed().as_secs_f64());
-    write(&options.directory, &record, &reduction).map_err(FosError::Output)?;
-    Ok(reduction)
+    let found = Found { searches, which };
+    let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
+    write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
+    Ok(found)
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
@@ -146,7 +182,8 @@ pub fn remedy(reduction: &Reduction) -> Option<String> {
     match &reduction.end {
         End::Found => None,
         End::StableThroughout => Some(format!(
-            "the slope bears even F = {:.4}: raise --high, or no joint on which it can fail daylights",
+            "the slope bears even F = {:.4}, the greatest that was tried: raise --high to go on; where no joint on \
+             which it could fail daylights there is no end",
             edge(f64::max, 0.0)
         )),
         End::UnstableThroughout => Some(format!(
@@ -161,29 +198,63 @@ pub fn remedy(reduction: &Reduction) -> Option<String> {
     }
 }
 
-fn record(loaded: &LoadedCase, options: &FosOptions, reduction: &Reduction, wall: f64) -> Value {
-    let failing = reduction.first_unstable().map_or(&[][..], |trial| &trial.failing);
-    json!({
+fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -> Value {
+    let mut record = json!({
         "title": loaded.case.title,
         "version": engine_version(),
         "case_file": loaded.source.file(),
         "case_hash": loaded.hash,
+        "tolerance": options.tolerance,
+        "least_area": options.mechanisms.least_area,
+        "wall_seconds": wall,
+        "mechanisms": found.searches.iter().map(|search| {
+            let mut mechanism = search_record(search);
+            mechanism["counts"] = json!(found.which.counts(search));
+            mechanism
+        }).collect::<Vec<_>>(),
+    });
+    if let (Value::Object(record), Value::Object(main)) = (&mut record, search_record(found.main())) {
+        record.extend(main);
+    }
+    record
+}
+
+/// One search as an object.
+fn search_record(reduction: &Reduction) -> Value {
+    let failing = reduction.first_unstable();
+    json!({
         "status": end_name(&reduction.end),
         "factor_of_safety": reduction.factor(),
+        "at_least": reduction.at_least(),
         "bracket": { "stable": reduction.low, "unstable": reduction.high },
-        "tolerance": options.tolerance,
         "rest": { "strength_factor": reduction.rest_factor, "time": reduction.rest.0, "steps": reduction.rest.1 },
         "trials": reduction.trials.iter().map(trial_record).collect::<Vec<_>>(),
-        "failing_blocks": failing.iter().map(|block| json!({
-            "block": block.block,
-            "place": [block.place.x, block.place.y],
-            "displacement": block.displacement,
-            "rotation": block.rotation,
-            "speed": block.speed,
-        })).collect::<Vec<_>>(),
+        "failing": failing.map(|trial| json!({
+            "verdict": trial.verdict.name(),
+            "blocks": trial.failing.len(),
+            "area": trial.failing_area(),
+            "mass": trial.failing_mass(),
+            "share": trial.failing_area() / reduction.free_area,
+        })),
+        "failing_blocks": failing.map_or(&[][..], |trial| &trial.failing).iter().map(block_record).collect::<Vec<_>>(),
+        "bound": match &reduction.bound {
+            Ok(bound) => bound_record(bound),
+            Err(refused) => json!({ "refused": refused }),
+        },
         "remedy": remedy(reduction),
         "warnings": reduction.warnings,
-        "wall_seconds": wall,
+    })
+}
+
+fn block_record(block: &FailingBlock) -> Value {
+    json!({
+        "block": block.block,
+        "place": [block.place.x, block.place.y],
+        "area": block.area,
+        "mass": block.mass,
+        "displacement": block.displacement,
+        "rotation": block.rotation,
+        "speed": block.speed,
     })
 }
 
@@ -200,13 +271,14 @@ fn trial_record(trial: &Trial) -> Value {
         "released_energy": trial.released,
         "acceleration": trial.acceleration,
         "failing_blocks": trial.failing.len(),
+        "failing_area": trial.failing_area(),
         "steps": trial.steps,
         "ledger_residual": trial.ledger_residual,
         "wall_seconds": trial.wall,
     })
 }
 
-const HEADER: [&str; 12] = [
+const HEADER: [&str; 13] = [
     "factor",
     "verdict",
     "reason",
@@ -217,6 +289,7 @@ const HEADER: [&str; 12] = [
     "released_energy [J/m]",
     "acceleration [m/s2]",
     "failing_blocks",
+    "failing_area [m2]",
     "steps",
     "wall [s]",
 ];
@@ -229,7 +302,8 @@ fn write_table(path: &Path, trials: &[Trial]) -> io::Result<()> {
         let numbers = [t.time, t.displacement, t.speed, t.kinetic, t.released, t.acceleration];
         let mut row = vec![t.factor.to_string(), t.verdict.name().to_owned(), t.reason.name().to_owned()];
         row.extend(numbers.map(|number| number.to_string()));
-        row.extend([t.failing.len().to_string(), t.steps.to_string(), t.wall.to_string()]);
+        row.extend([t.failing.len().to_string(), t.failing_area().to_string()]);
+        row.extend([t.steps.to_string(), t.wall.to_string()]);
         csv.write_record(row).map_err(io::Error::from).map_err(at_path(path))?;
     }
     let bytes = csv.into_inner().map_err(|error| error.into_error()).map_err(at_path(path))?;

@@ -34,6 +34,16 @@ pub enum Factor {
     AtMost(f64),
 }
 
+impl std::fmt::Display for Factor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Found(factor) => write!(f, "{factor:.4}"),
+            Self::AtLeast(least) => write!(f, "at least {least}"),
+            Self::AtMost(most) => write!(f, "at most {most}"),
+        }
+    }
+}
+
 impl Factor {
     /// The factor where equilibrium ends; infinite when it does not, zero when there is none.
     pub fn value(&self) -> f64 {

@@ -2,7 +2,9 @@
 //! greatest F that it bears is known (theory F).
 
 mod bracket;
+mod doubt;
 mod judge;
+mod mechanism;
 mod reference;
 mod trial;
 
@@ -13,8 +15,10 @@ use crate::step::StepError;
 
 use super::Simulation;
 use super::case::{Case, Invalid};
+use super::limit_analysis::{self, Bound};
 
 pub use judge::{Reason, Verdict};
+pub use mechanism::{MechanismOptions, mechanisms};
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
@@ -53,7 +57,7 @@ pub struct Trial {
     pub time: f64,
     /// Largest displacement of a block's covers since the trial began (m).
     pub displacement: f64,
-    /// Speed of the fastest block at the end (m/s).
+    /// Speed of the fastest block in the mean of the last window (m/s).
     pub speed: f64,
     /// Kinetic energy at the end (J/m).
     pub kinetic: f64,
@@ -61,7 +65,7 @@ pub struct Trial {
     pub released: f64,
     /// Acceleration of the fastest block by a straight line through its last speeds (m/s²).
     pub acceleration: f64,
-    /// Blocks that take part in the failure, fastest first; none when the slope is stable.
+    /// Blocks that fail or were caught, fastest first; none when the slope is stable.
     pub failing: Vec<FailingBlock>,
     /// Internal steps.
     pub steps: u64,
@@ -71,6 +75,27 @@ pub struct Trial {
     pub wall: f64,
 }
 
+impl Trial {
+    /// Area (m²) of the blocks that fail.
+    pub fn failing_area(&self) -> f64 {
+        self.failing.iter().map(|block| block.area).sum()
+    }
+
+    /// Their mass (kg/m).
+    pub fn failing_mass(&self) -> f64 {
+        self.failing.iter().map(|block| block.mass).sum()
+    }
+}
+
+/// How far a search has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Trials so far.
+    pub trials: usize,
+    /// How many there will be, as far as can be told.
+    pub expected: usize,
+}
+
 /// A block that moves with a failure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailingBlock {
@@ -78,6 +103,10 @@ pub struct FailingBlock {
     pub block: u32,
     /// Its centroid in the reference configuration (m).
     pub place: Point,
+    /// Area (m²).
+    pub area: f64,
+    /// Mass (kg/m).
+    pub mass: f64,
     /// Largest displacement of its covers since the trial began (m).
     pub displacement: f64,
     /// Turn since the trial began (rad), counter-clockwise.
@@ -93,7 +122,7 @@ pub enum End {
     Found,
     /// Stable even at the greatest F.
     StableThroughout,
-    /// Unstable even at the least F.
+    /// Not stable even at the least F.
     UnstableThroughout,
     /// The caller asked it to stop.
     Interrupted,
@@ -106,9 +135,9 @@ pub enum End {
 pub struct Reduction {
     /// All trials, ascending in F.
     pub trials: Vec<Trial>,
-    /// Greatest F that was stable, below every unstable one.
+    /// Greatest F that was stable, below every other.
     pub low: Option<f64>,
-    /// Least F that was unstable.
+    /// Least F that was not.
     pub high: Option<f64>,
     /// How the search ended.
     pub end: End,
@@ -116,9 +145,13 @@ pub struct Reduction {
     pub rest_factor: f64,
     /// Time (s) and steps that coming to rest took.
     pub rest: (f64, u64),
+    /// Area (m²) of all blocks that can move and have no support.
+    pub free_area: f64,
+    /// Limit analysis of the same model, or why there is none.
+    pub bound: Result<Bound, String>,
     /// What the user should know.
     pub warnings: Vec<String>,
-    /// The model at the end of the least unstable trial, else at rest.
+    /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,
 }
 
@@ -129,9 +162,14 @@ impl Reduction {
         (self.end == End::Found).then_some(0.5 * (low + high))
     }
 
-    /// The least unstable trial.
+    /// The least trial that was not stable.
     pub fn first_unstable(&self) -> Option<&Trial> {
         self.trials.iter().find(|trial| Some(trial.factor) == self.high)
+    }
+
+    /// The greatest F that was tried, when the slope bears it: the factor of safety is at least that.
+    pub fn at_least(&self) -> Option<f64> {
+        self.low.filter(|_| self.end == End::StableThroughout)
     }
 }
 
@@ -170,7 +208,8 @@ impl From<Invalid> for ReductionError {
     }
 }
 
-/// Finds the factor of safety of a case; `hear` is told each trial as it ends.
+/// Finds the factor of safety of a case; `hear` is told each trial as it ends. Limit analysis of the same model stands
+/// beside it.
 ///
 /// Trials are made in pairs, which two threads can share; what is tried does not depend on how many there are.
 ///
@@ -179,7 +218,7 @@ impl From<Invalid> for ReductionError {
 pub fn factor_of_safety(
     case: &Case,
     options: &ReductionOptions,
-    hear: &mut (dyn FnMut(&Trial) + Send),
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Reduction, ReductionError> {
     let rest = reference::settle(case, options)?;
     let base = trial::Base::new(rest.simulation, options.tolerance);
@@ -201,9 +240,10 @@ pub fn factor_of_safety(
         for outcome in both {
             match outcome {
                 Ok((trial, simulation)) => {
-                    hear(&trial);
                     search.note(trial.factor, trial.verdict);
-                    if trial.verdict == Verdict::Unstable && unstable.as_ref().is_none_or(|(f, _)| trial.factor < *f) {
+                    hear(&trial, Progress { trials: trials.len() + 1, expected: search.expected() });
+                    let is_least = unstable.as_ref().is_none_or(|(f, _)| trial.factor < *f);
+                    if trial.verdict != Verdict::Stable && is_least {
                         unstable = Some((trial.factor, simulation));
                     }
                     trials.push(trial);
@@ -215,38 +255,17 @@ pub fn factor_of_safety(
     }
     trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let end = end.unwrap_or_else(|| search.end());
+    let bound = match end {
+        End::Interrupted => Err("interrupted".to_owned()),
+        _ => limit_analysis::bound(case).map_err(|error| error.to_string()),
+    };
     let [low, high] = search.bracket();
-    let mut warnings = rest.warnings;
-    warnings.extend(doubts(&trials, case));
+    let free_area = base.free_area();
     let simulation = unstable.map_or(base.simulation, |(_, simulation)| simulation);
-    Ok(Reduction { trials, low, high, end, rest_factor: rest.factor, rest: rest.effort, warnings, simulation })
-}
-
-/// What a reader of the result should know of the trials.
-fn doubts(trials: &[Trial], case: &Case) -> Vec<String> {
-    let mut doubts = Vec::new();
-    let stable = trials.iter().filter(|t| t.verdict == Verdict::Stable).map(|t| t.factor).fold(0.0, f64::max);
-    let unstable = trials.iter().filter(|t| t.verdict == Verdict::Unstable).map(|t| t.factor);
-    let least = unstable.fold(f64::INFINITY, f64::min);
-    if least < stable {
-        doubts.push(format!(
-            "F = {least:.4} was unstable but F = {stable:.4} stable: the verdict is not monotone, look at both trials"
-        ));
-    }
-    for trial in trials.iter().filter(|t| t.reason == Reason::Trend) {
-        doubts.push(format!(
-            "F = {:.4} was judged {} by the trend of its speed when its time was over",
-            trial.factor,
-            trial.verdict.name()
-        ));
-    }
-    let rubbing = case.joint_laws.values().any(|law| law.friction_deg > 0.0);
-    if !rubbing && !case.joint_laws.is_empty() {
-        doubts.push("no joint has friction: the factor is one on cohesion and tensile strength alone".to_owned());
-    }
-    let worst = trials.iter().map(|t| t.ledger_residual.abs()).fold(0.0, f64::max);
-    if worst > 1e-3 {
-        doubts.push(format!("the energy ledger of a trial is open by {worst:.1e} of its largest term (limit 1e-3)"));
-    }
-    doubts
+    let (rest_factor, effort, warnings) = (rest.factor, rest.effort, rest.warnings);
+    let mut reduction =
+        Reduction { trials, low, high, end, rest_factor, rest: effort, free_area, bound, warnings, simulation };
+    let doubts = doubt::doubts(&reduction, case);
+    reduction.warnings.extend(doubts);
+    Ok(reduction)
 }

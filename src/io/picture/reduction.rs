@@ -44,11 +44,15 @@ pub fn trials_picture(title: &str, reduction: &Reduction) -> Picture {
 fn caption(reduction: &Reduction) -> String {
     match (reduction.factor(), reduction.low, reduction.high) {
         (Some(factor), Some(low), Some(high)) => {
-            format!("factor of safety {factor:.4}: stable at {low:.4}, unstable at {high:.4}")
+            let bound = match &reduction.bound {
+                Ok(bound) => format!("; limit analysis {}", bound.level_tops.factor),
+                Err(_) => String::new(),
+            };
+            format!("factor of safety {factor:.4}: stable at {low:.4}, not at {high:.4}{bound}")
         }
         (_, low, high) => {
             let text = |f: Option<f64>| f.map_or("none".to_owned(), |f| format!("{f:.4}"));
-            format!("no factor of safety; greatest stable F {}, least unstable F {}", text(low), text(high))
+            format!("no factor of safety; greatest stable F {}, least other F {}", text(low), text(high))
         }
     }
 }
@@ -56,6 +60,7 @@ fn caption(reduction: &Reduction) -> String {
 fn verdict_colour(verdict: Verdict) -> Colour {
     match verdict {
         Verdict::Stable => LINES[2],
+        Verdict::Caught => LINES[1],
         Verdict::Unstable => ACCENT,
     }
 }
@@ -63,6 +68,7 @@ fn verdict_colour(verdict: Verdict) -> Colour {
 fn draw_legend(sheet: &mut Svg, y: f64) {
     let entries = [
         (Some(verdict_colour(Verdict::Stable)), "stable"),
+        (Some(verdict_colour(Verdict::Caught)), "caught"),
         (Some(verdict_colour(Verdict::Unstable)), "unstable"),
         (None, "bracket"),
     ];
@@ -149,7 +155,14 @@ pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
     let view = View::fit(Bounds::of(&snapshot.elements.points), area);
     let mut sheet = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     let caption = match trial {
-        Some(trial) => format!("{} blocks fail at F = {:.4}", trial.failing.len(), trial.factor),
+        Some(trial) => format!(
+            "{} blocks {} at F = {:.4}: {:.4} m², {:.1} % of the free rock",
+            trial.failing.len(),
+            if trial.verdict == Verdict::Caught { "slide and are caught" } else { "fail" },
+            trial.factor,
+            trial.failing_area(),
+            100.0 * trial.failing_area() / reduction.free_area
+        ),
         None => "no trial failed".to_owned(),
     };
     draw_title(&mut sheet, title, &caption);

@@ -33,12 +33,24 @@ impl Search {
         self.tried.push((factor, verdict));
     }
 
-    /// Least unstable factor, and the greatest stable one below it.
+    /// Greatest stable factor below every other, and the least that is not stable.
     pub fn bracket(&self) -> [Option<f64>; 2] {
-        let of = |which: Verdict| self.tried.iter().filter(move |t| t.1 == which).map(|t| t.0);
-        let high = of(Verdict::Unstable).reduce(f64::min);
-        let low = of(Verdict::Stable).filter(|f| high.is_none_or(|high| *f < high)).reduce(f64::max);
+        let of = |stable: bool| self.tried.iter().filter(move |t| (t.1 == Verdict::Stable) == stable).map(|t| t.0);
+        let high = of(false).reduce(f64::min);
+        let low = of(true).filter(|f| high.is_none_or(|high| *f < high)).reduce(f64::max);
         [low, high]
+    }
+
+    /// How many trials there will be, as far as can be told: as many as the bracket needs that is known, or that the
+    /// next pair may find.
+    pub fn expected(&self) -> usize {
+        let width = match self.bracket() {
+            [Some(low), Some(high)] => high / low,
+            _ => STRIDE,
+        };
+        let thirds = (width.ln() / self.tolerance.ln_1p()).max(1.0).ln() / 3f64.ln();
+        let pair = if self.tried.is_empty() { 2 } else { 0 };
+        self.tried.len() + pair + 2 * (thirds - 1e-9).ceil().max(0.0) as usize
     }
 
     /// One or two factors to try next; none when the search is over.
@@ -106,6 +118,27 @@ mod tests {
             assert!(low <= limit && limit < high && high / low - 1.0 <= 5e-3, "{limit}: {low} {high}");
             assert!(end == End::Found && count <= 20, "{limit}: {count} trials");
         }
+    }
+
+    #[test]
+    fn a_caught_slope_is_not_borne() {
+        let mut search = Search::new([1.0, 1.5], [0.05, 20.0], 5e-3);
+        search.note(1.0, Verdict::Stable);
+        search.note(1.5, Verdict::Caught);
+        assert_eq!(search.bracket(), [Some(1.0), Some(1.5)]);
+    }
+
+    #[test]
+    fn the_expected_number_of_trials_is_about_that_of_the_search() {
+        let mut search = Search::new([1.0, 1.5], [0.05, 20.0], 5e-3);
+        let first = search.expected();
+        while let Some((a, b)) = search.next() {
+            for f in std::iter::once(a).chain(b) {
+                search.note(f, if f <= 1.23 { Verdict::Stable } else { Verdict::Unstable });
+            }
+        }
+        let made = search.tried.len();
+        assert!(first.abs_diff(made) <= 2 && search.expected() == made, "{first}, {made}, {}", search.expected());
     }
 
     #[test]

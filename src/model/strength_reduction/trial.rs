@@ -3,6 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use nalgebra::Vector3;
+
 use super::judge::{self, Sample, Scales, Verdict};
 use super::{FailingBlock, Trial};
 use crate::geometry::{Vector, polygon};
@@ -47,6 +49,26 @@ impl Base {
         Self { simulation, scales }
     }
 
+    /// Area (m²) of all blocks without a support.
+    pub fn free_area(&self) -> f64 {
+        let slope = self.simulation.slope();
+        let mut held = vec![false; slope.covers.block_count()];
+        slope.supports.iter().for_each(|support| held[support.block as usize] = true);
+        let motions = self.motions(&self.simulation);
+        motions.iter().filter(|block| !held[block.block as usize]).map(|block| block.area).sum()
+    }
+
+    /// Displacements (m) of all blocks: along x, along y, and by turning at their own radius.
+    fn places(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
+        let place = |b: usize| {
+            let motion = simulation.motion_of(b);
+            let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
+            Vector3::new(motion.displacement.x, motion.displacement.y, turn)
+        };
+        let free = |b: &usize| !simulation.scratch().metric.fixed[*b] && !simulation.state().removed[*b];
+        (0..simulation.slope().covers.block_count()).filter(free).map(place).collect()
+    }
+
     /// Makes one trial; returns the model at its end as well.
     pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
         let clock = Instant::now();
@@ -57,6 +79,7 @@ impl Base {
         drive.to.strength_factor = 1.0 / factor;
         (drive.since, drive.until) = (start, start + self.scales.ramp);
         let mut samples = Vec::new();
+        let mut places = self.places(&simulation);
         let steps = simulation.steps_in(self.scales.window);
         let mut first = None;
         let (mut judged, mut last) = (None, StepReport::default());
@@ -69,12 +92,13 @@ impl Base {
                 }
             }
             let first = *first.get_or_insert(last.ledger);
-            samples.push(self.sample(&simulation, &last, &first, start));
+            let before = std::mem::replace(&mut places, self.places(&simulation));
+            let way = places.iter().zip(&before).map(|(now, before)| (now - before).norm()).fold(0.0, f64::max);
+            samples.push(self.sample(&simulation, &last, &first, way));
             judged = judge::judge(&samples, &self.scales);
         }
         let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
         let end = samples.last().copied().unwrap_or_default();
-        let unstable = verdict == Verdict::Unstable;
         let trial = Trial {
             factor,
             verdict,
@@ -85,7 +109,7 @@ impl Base {
             kinetic: end.kinetic,
             released: end.released,
             acceleration: judge::acceleration(&samples),
-            failing: if unstable { self.failing(&simulation) } else { Vec::new() },
+            failing: self.failing(&simulation, verdict),
             steps: simulation.state().step - self.simulation.state().step,
             ledger_residual: last.ledger.residual() / last.ledger.largest().max(f64::MIN_POSITIVE),
             wall: clock.elapsed().as_secs_f64(),
@@ -93,13 +117,14 @@ impl Base {
         Ok((trial, simulation))
     }
 
-    fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, start: f64) -> Sample {
+    /// The motion at the end of a window in which the fastest block has gone a way (m).
+    fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, way: f64) -> Sample {
         let motions = self.motions(simulation);
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
-            time: simulation.time() - start,
+            time: simulation.time() - self.simulation.time(),
             displacement: motions.iter().map(|m| m.displacement).fold(0.0, f64::max),
-            speed: motions.iter().map(|m| m.speed).fold(0.0, f64::max),
+            speed: way / self.scales.window,
             kinetic: report.ledger.kinetic,
             released: energy(first) - energy(&report.ledger),
         }
@@ -120,6 +145,8 @@ impl Base {
                 FailingBlock {
                     block: b as u32,
                     place: slope.covers.block_centroid(b),
+                    area: slope.covers.block_area(b),
+                    mass: slope.metric.total[b],
                     displacement: moved.fold(0.0, f64::max),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
                     speed: velocity.norm().hypot(spin * radius),
@@ -128,12 +155,18 @@ impl Base {
             .collect()
     }
 
-    /// Blocks that move with the failure, fastest first.
-    fn failing(&self, simulation: &Simulation) -> Vec<FailingBlock> {
+    /// Blocks that move with the failure, fastest first, or that were caught after they had gone too far.
+    fn failing(&self, simulation: &Simulation, verdict: Verdict) -> Vec<FailingBlock> {
         let mut motions = self.motions(simulation);
         let most = |of: fn(&FailingBlock) -> f64| motions.iter().map(of).fold(0.0, f64::max);
         let (far, fast) = (most(|m| m.displacement), most(|m| m.speed));
-        motions.retain(|m| m.displacement >= TAKES_PART * far && m.speed >= TAKES_PART * fast);
+        match verdict {
+            Verdict::Stable => motions.clear(),
+            Verdict::Caught => motions.retain(|m| m.displacement > self.scales.elastic.max(TAKES_PART * far)),
+            Verdict::Unstable => {
+                motions.retain(|m| m.displacement >= TAKES_PART * far && m.speed >= TAKES_PART * fast);
+            }
+        }
         motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
         motions
     }

@@ -23,7 +23,7 @@ pub fn rock(young: f64, unit_weight: f64) -> String {
 pub fn reduce(setup: &mut Setup, name: &str, text: String) -> Result<Reduction, Trouble> {
     let case = setup.simulation(name, text)?.case().clone();
     let tolerance = if setup.quick { 5e-3 } else { 2e-3 };
-    let reduction = factor_of_safety(&case, &ReductionOptions { tolerance, ..Default::default() }, &mut |_| {})?;
+    let reduction = factor_of_safety(&case, &ReductionOptions { tolerance, ..Default::default() }, &mut |_, _| {})?;
     match reduction.factor() {
         Some(_) => Ok(reduction),
         None => Err(Trouble(format!("{name}: no factor of safety was found: {:?}", reduction.end))),

@@ -1,0 +1,84 @@
+//! One way to fail after the other: the next is looked for when the blocks of the last have gone.
+
+use crate::model::Simulation;
+use crate::model::case::{Case, Stage, StageKind};
+
+use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
+
+/// Which ways to fail to look for.
+#[derive(Debug, Clone, Copy)]
+pub struct MechanismOptions {
+    /// Area (m²) of failing blocks below which a way to fail is passed over.
+    pub least_area: f64,
+    /// How many of the others to find.
+    pub count: usize,
+}
+
+impl Default for MechanismOptions {
+    fn default() -> Self {
+        Self { least_area: 0.0, count: 1 }
+    }
+}
+
+impl MechanismOptions {
+    /// Whether a way to fail counts: blocks of at least the least area, or no blocks at all.
+    pub fn counts(&self, reduction: &Reduction) -> bool {
+        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= self.least_area)
+    }
+}
+
+/// Finds the factors of safety of one mechanism after the other; each search begins without the blocks that failed in
+/// those before, as if they had fallen and been cleared away. The last one of the list counts, unless the search ended.
+///
+/// # Errors
+/// A case that cannot be built, has no static stage or does not come to rest; not for the later ones, whose list ends.
+pub fn mechanisms(
+    case: &Case,
+    which: MechanismOptions,
+    options: &ReductionOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Vec<Reduction>, ReductionError> {
+    let mut found = vec![factor_of_safety(case, options, hear)?];
+    let mut case = case.clone();
+    while let Some(last) = found.last().filter(|last| last.end == End::Found) {
+        let Some(trial) = last.first_unstable() else { break };
+        if found.iter().filter(|reduction| which.counts(reduction)).count() >= which.count {
+            break;
+        }
+        let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
+        let cleared = without(&case.stages[..statics], &last.simulation, &trial.failing);
+        case.stages.insert(statics, cleared);
+        match factor_of_safety(&case, options, hear) {
+            Ok(reduction) => found.push(reduction),
+            Err(ReductionError::Interrupted) => break,
+            Err(error) => {
+                let message = format!("no further mechanism was found: without the blocks that fail, {error}");
+                found.last_mut().into_iter().for_each(|last| last.warnings.push(message.clone()));
+                break;
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// A static stage after those that there are, in which blocks are cleared away.
+fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) -> Stage {
+    let mut name = "cleared".to_owned();
+    while stages.iter().any(|stage| stage.name == name) {
+        name.push('\'');
+    }
+    let inside = |block: &FailingBlock| simulation.slope().covers.point_inside(block.block as usize);
+    Stage {
+        name,
+        kind: StageKind::Static,
+        ramp: None,
+        excavate: failing.iter().map(|block| inside(block).into()).collect(),
+        excavate_region: None,
+        law_changes: Vec::new(),
+        law_switches: Vec::new(),
+        install: Vec::new(),
+        fix: Vec::new(),
+        free: Vec::new(),
+        ..stages[stages.len() - 1].clone()
+    }
+}
