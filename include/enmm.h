@@ -15,6 +15,9 @@
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
+ * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
+ * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
+ *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header go on. Members that the library does not
  * know stay as they are.
@@ -785,9 +788,11 @@ enmm_status enmm_get_stop_time(struct enmm_model *model, double *time);
 
 /**
  * Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
- * depend on it, not even in the last bit. Acts from the next step on.
+ * depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
+ * of the threads: a model that it uses starts as many anew at its next step.
  *
- * Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants.
+ * Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
+ * and enmm_start can give it as well.
  */
 enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
 

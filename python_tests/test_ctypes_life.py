@@ -2,6 +2,7 @@
 
 import gc
 import math
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -176,6 +177,38 @@ def test_models_on_threads_keep_the_bits_of_serial_runs(package, case):
     with ThreadPoolExecutor(2) as pool:
         runs = [pool.submit(run_alone, package, case, which % 2) for which in range(4)]
         assert [run.result() for run in runs] == serial * 2
+
+
+PLATE = """
+title = "Plate of more than 4096 covers, so that a step is worth threads"
+domain.outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
+mesh.size = 0.014
+rock.rock = { density = 2500, young = 1e9, poisson = 0.25 }
+fix = [{ edge = [[0, 0], [1, 0]] }]
+stage = [{ name = "shake", kind = "dynamic", duration = 1.0 }]
+"""
+
+
+def test_a_model_with_threads_goes_on_in_a_forked_process(package):
+    """`multiprocessing` that forks: the child steps with threads of its own, and gives the bits of its parent."""
+    with package.Model.from_string(PLATE) as model:
+        model.threads = 2
+        model.do_step(0.0, 1e-4)
+        context = multiprocessing.get_context("fork")
+        answers = context.SimpleQueue()
+
+        def work():
+            model.do_step(1e-4, 1e-4)
+            answers.put(model.blocks().tobytes())
+
+        child = context.Process(target=work, daemon=True)
+        child.start()
+        child.join(60)
+        hangs = child.is_alive()
+        child.kill()
+        assert not hangs and child.exitcode == 0
+        model.do_step(1e-4, 1e-4)
+        assert answers.get() == model.blocks().tobytes()
 
 
 def test_failures_tell_their_own_thread(package, case):

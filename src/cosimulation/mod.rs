@@ -7,6 +7,7 @@ mod interval;
 mod observe;
 mod parameter;
 mod saved;
+mod threads;
 
 pub use crate::state::{Event, EventKind, PortKind};
 pub use error::CosimulationError;
@@ -25,7 +26,8 @@ pub use crate::model::case::limits;
 use crate::model::case::{Case, StageKind};
 use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
-use crate::step::{StepError, StepReport, THREADS_FROM};
+use crate::step::{StepReport, THREADS_FROM};
+use threads::Pool;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,7 +74,7 @@ pub struct Cosimulation {
     /// Number of the interval in progress; one with another number is over.
     serial: u64,
     /// Threads of steps, when they are more than the caller's own and the model is worth them.
-    pool: Option<Arc<rayon::ThreadPool>>,
+    pool: Option<Arc<Pool>>,
 }
 
 impl Cosimulation {
@@ -210,7 +212,7 @@ impl Cosimulation {
                 let report = self.step(None, wanted)?;
                 last = wanted.then_some(report);
             }
-            let report = last.unwrap_or_else(|| self.simulation.report());
+            let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
             self.standing.unrest = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
             self.next_stage()?;
         }
@@ -242,36 +244,45 @@ impl Cosimulation {
     }
 
     /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it.
-    /// Small models keep to the caller's thread: handing a step over would cost more than it saves.
+    /// Small models keep to the caller's thread: handing a step over would cost more than it saves. A forked process
+    /// starts as many of its own at its first step.
     ///
     /// # Errors
     /// No thread at all, more than 1024, or threads that the system refuses.
     pub fn set_threads(&mut self, threads: usize) -> Result<(), CosimulationError> {
-        let refuse = |limit: &str| CosimulationError::value("threads", threads, limit, "1 suits all small models");
         if !(1..=limits::THREADS_MAX).contains(&threads) {
-            return Err(refuse(&format!("at least 1 and at most {}", limits::THREADS_MAX)));
+            let limit = format!("at least 1 and at most {}", limits::THREADS_MAX);
+            return Err(CosimulationError::value("threads", threads, &limit, "1 suits all small models"));
         }
         let is_small = self.simulation.slope().covers.cover_count() < THREADS_FROM;
-        self.pool = if threads == 1 || is_small {
-            None
-        } else {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            Some(Arc::new(pool.map_err(|error| refuse(&format!("a number that the system grants ({error})")))?))
-        };
+        self.pool = if threads == 1 || is_small { None } else { Some(Arc::new(Pool::new(threads)?)) };
         self.simulation.set_serial(self.pool.is_none());
         Ok(())
     }
 
     /// Advances the model by an internal step, or the `part` (s) of one, on the threads that have been set.
-    fn step(&mut self, part: Option<f64>, report: bool) -> Result<StepReport, StepError> {
+    fn step(&mut self, part: Option<f64>, report: bool) -> Result<StepReport, CosimulationError> {
+        if let Some(foreign) = self.pool.as_ref().filter(|pool| pool.here().is_none()) {
+            self.set_threads(foreign.threads())?;
+        }
         let simulation = &mut self.simulation;
         let mut act = || match part {
             Some(dt) => simulation.advance_part(dt),
             None => simulation.advance(report),
         };
-        match &self.pool {
+        let advanced = match self.pool.as_ref().and_then(|pool| pool.here()) {
             Some(pool) => pool.install(act),
             None => act(),
+        };
+        Ok(advanced?)
+    }
+
+    /// What `look` sees of the model on the threads of steps or, by its second argument, on the caller's alone, as in a
+    /// forked process before its first step.
+    fn look<T: Send>(&self, look: impl FnOnce(&Simulation, bool) -> T + Send) -> T {
+        match self.pool.as_ref().and_then(|pool| pool.here()) {
+            Some(pool) => pool.install(|| look(&self.simulation, false)),
+            None => look(&self.simulation, true),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What a host can read: ports and totals. All of it follows from the state alone.
 
-use crate::contact::{Boundary, ContactHistory, ContactState};
+use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
 use crate::geometry::{Point, Vector};
+use crate::model::Simulation;
 use crate::state::{Event, EventKind, Ledger, Port, PortKind};
 
 use super::Cosimulation;
@@ -73,8 +74,8 @@ impl Cosimulation {
 
     /// Sums and extremes now.
     pub fn totals(&self) -> Totals {
-        let (simulation, state) = (&self.simulation, self.simulation.state());
-        let report = simulation.report();
+        let state = self.simulation.state();
+        let report = self.look(Simulation::report_on);
         let most = |field: &[Vector]| field.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let contacts = |which| state.contacts.iter().filter(|contact| contact.state == which).count() as u32;
         let of_kind = |event: &&Event, which| event.kind == which && event.subject != u32::MAX;
@@ -92,6 +93,11 @@ impl Cosimulation {
             slipped_joints: events(EventKind::Slipped),
             failed_blocks: events(EventKind::Failed),
         }
+    }
+
+    /// See [`Simulation::contacts`].
+    pub fn contacts(&self) -> Vec<VertexEdge> {
+        self.look(|simulation, serial| simulation.look_ahead_on(serial).1.contacts)
     }
 
     fn block_port(&self, block: u32) -> PortState {

@@ -170,9 +170,14 @@ impl Simulation {
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances.
     pub fn report(&self) -> StepReport {
+        self.report_on(self.scratch.serial)
+    }
+
+    /// As [`Simulation::report`]; with `serial` on the calling thread alone.
+    pub fn report_on(&self, serial: bool) -> StepReport {
         let mut state = self.state().clone();
         state.drive.hold_last();
-        step::outlook(self.slope(), self.regime, state, self.scratch.serial)
+        step::outlook(self.slope(), self.regime, state, serial)
     }
 
     /// Whether all indices and lengths of a state are those of this model.
@@ -228,7 +233,12 @@ impl Simulation {
 
     /// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
     pub fn look_ahead(&self) -> (State, Scratch) {
-        step::look_ahead(self.slope(), self.regime, self.state(), self.scratch.serial)
+        self.look_ahead_on(self.scratch.serial)
+    }
+
+    /// As [`Simulation::look_ahead`]; with `serial` on the calling thread alone.
+    pub fn look_ahead_on(&self, serial: bool) -> (State, Scratch) {
+        step::look_ahead(self.slope(), self.regime, self.state(), serial)
     }
 
     /// Shows [`Simulation::contacts`] one by one: all of them together can be larger than the model.

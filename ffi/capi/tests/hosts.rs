@@ -60,6 +60,11 @@ fn threads_with_their_own_models_give_the_bits_of_one_after_the_other() {
 }
 
 #[test]
+fn a_forked_process_goes_on_with_threads_of_its_own() {
+    succeed(&mut Command::new(host("ffi/capi/tests/c/fork.c")));
+}
+
+#[test]
 fn the_coupled_reservoir_holds_its_checks() {
     let host = host("ffi/c/coupled_reservoir.c");
     let table = succeed(Command::new(&host).arg(COUPLED));

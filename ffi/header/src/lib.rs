@@ -26,6 +26,9 @@ const INTRODUCTION: &str = "\
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
+ * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
+ * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
+ *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header go on. Members that the library does not
  * know stay as they are.

@@ -150,7 +150,7 @@ class Model:
     def threads(self) -> int:
         """Number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation.
 
-        Results do not depend on it, not even in the last bit.
+        Results do not depend on it, not even in the last bit. A forked process starts as many anew.
         """
         return self._threads
 

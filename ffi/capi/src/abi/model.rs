@@ -140,9 +140,11 @@ pub unsafe extern "C" fn enmm_get_stop_time(model: *mut enmm_model, time: *mut f
 }
 
 /// Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
-/// depend on it, not even in the last bit. Acts from the next step on.
+/// depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
+/// of the threads: a model that it uses starts as many anew at its next step.
 ///
-/// Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants.
+/// Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
+/// and enmm_start can give it as well.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> enmm_status {
     with_model(model.addr(), |model| Ok(model.inner.set_threads(threads)?))

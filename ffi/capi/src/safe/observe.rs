@@ -63,7 +63,7 @@ impl Model {
     pub fn contacts(&self) -> Vec<enmm_contact> {
         let simulation = self.inner.simulation();
         let (places, boundary) = (simulation.places(), &simulation.slope().boundary);
-        let contacts = simulation.contacts();
+        let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
             let history = &contact.history;
             let position = places[boundary.node_point[history.node as usize] as usize];
