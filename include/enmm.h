@@ -754,7 +754,8 @@ enmm_status enmm_start(struct enmm_model *model);
  * of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
  *
  * Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
- * with block, place and cause. The model then still is at `t`, with its inputs.
+ * with block, place and cause. The model then is what it was before, to the bit. Without enmm_start the first step
+ * also seeks the initial equilibrium, and takes it back when it fails.
  */
 enmm_status enmm_do_step(struct enmm_model *model, double t, double h, struct enmm_step_info *info);
 

@@ -59,7 +59,8 @@ impl Cosimulation {
     /// Advances from `t` to exactly `t + h` (s), or not at all.
     ///
     /// # Errors
-    /// Times that do not fit, or a numerical failure; the model is then as it was at `t`.
+    /// Times that do not fit, or a numerical failure; the model is then as it was, to the bit. A first step then takes
+    /// the initial equilibrium back as well, unless [`Cosimulation::start`] has sought it.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<StepInfo, CosimulationError> {
         let mut interval = self.begin(t, h)?;
         while self.advance(&mut interval)? {}
@@ -73,8 +74,10 @@ impl Cosimulation {
     /// Times that do not fit, or a failure of [`Cosimulation::start`].
     pub fn begin(&mut self, t: f64, h: f64) -> Result<Interval, CosimulationError> {
         let end = self.check_times(t, h)?;
-        self.start()?;
-        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.standing);
+        self.keep();
+        if !self.standing.started {
+            self.seek()?;
+        }
         if self.standing.changed {
             self.grid = None;
             self.set_drive(end);

@@ -172,27 +172,25 @@ impl Cosimulation {
     /// # Errors
     /// A numerical failure; the model is then as it was before.
     pub fn start(&mut self) -> Result<(), CosimulationError> {
-        if self.standing.started {
-            return Ok(());
+        if !self.standing.started {
+            self.keep();
+            self.seek()?;
         }
+        Ok(())
+    }
+
+    /// Seeks the initial equilibrium; where that fails the model goes back to what was kept.
+    fn seek(&mut self) -> Result<(), CosimulationError> {
         self.simulation.drive().arrive();
-        let before = self.save();
         let shaking = self.calm();
-        match self.run_initial_stages() {
-            Ok(()) => {
-                let drive = self.simulation.drive();
-                (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
-                self.standing.origin = self.simulation.state().step;
-                self.standing.start = self.simulation.time();
-                self.standing.started = true;
-                self.standing.changed = false;
-                Ok(())
-            }
-            Err(error) => {
-                self.return_to(&before);
-                Err(error)
-            }
-        }
+        self.run_initial_stages().inspect_err(|_| self.roll_back())?;
+        let drive = self.simulation.drive();
+        (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
+        self.standing.origin = self.simulation.state().step;
+        self.standing.start = self.simulation.time();
+        self.standing.started = true;
+        self.standing.changed = false;
+        Ok(())
     }
 
     /// Takes the acceleration of the base, which is no part of the initial equilibrium, out of the inputs; returns it.

@@ -84,14 +84,19 @@ impl Cosimulation {
             && std::iter::once(state).chain(grid.as_deref()).all(|state| on_grid(state) && self.simulation.fits(state))
     }
 
-    /// Goes back to the state at the start of the step in progress.
+    /// Keeps the state that a failure goes back to.
+    pub(super) fn keep(&mut self) {
+        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.standing);
+    }
+
+    /// Goes back to the state that was kept.
     pub(super) fn roll_back(&mut self) {
         self.serial += 1;
         self.standing = self.backup.give(&mut self.simulation, &mut self.grid);
     }
 
     /// Goes back to a saved state.
-    pub(super) fn return_to(&mut self, saved: &Saved) {
+    fn return_to(&mut self, saved: &Saved) {
         self.serial += 1;
         self.standing = saved.give(&mut self.simulation, &mut self.grid);
     }

@@ -65,6 +65,11 @@ fn a_forked_process_goes_on_with_threads_of_its_own() {
 }
 
 #[test]
+fn no_call_that_fails_changes_a_byte_of_the_state() {
+    succeed(Command::new(host("ffi/capi/tests/c/unchanged.c")).arg(SMALL));
+}
+
+#[test]
 fn the_coupled_reservoir_holds_its_checks() {
     let host = host("ffi/c/coupled_reservoir.c");
     let table = succeed(Command::new(&host).arg(COUPLED));

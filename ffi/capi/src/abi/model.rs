@@ -83,7 +83,8 @@ pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
 /// of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
 ///
 /// Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
-/// with block, place and cause. The model then still is at `t`, with its inputs.
+/// with block, place and cause. The model then is what it was before, to the bit. Without enmm_start the first step
+/// also seeks the initial equilibrium, and takes it back when it fails.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_do_step(
     model: *mut enmm_model,

@@ -15,8 +15,13 @@ use crate::types::{enmm_model, enmm_state, enmm_status};
 pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut enmm_state) -> enmm_status {
     // SAFETY: promised by the host. Without a model there is no state either; a NULL is told below.
     let _ = unsafe { pointers::write_handle("out", out, 0) };
-    // SAFETY: promised by the host.
-    with_model(model.addr(), |model| unsafe { pointers::write_handle("out", out, model.save()?) })
+    with_model(model.addr(), |model| {
+        // SAFETY: promised by the host. A state that cannot be handed out is not made.
+        unsafe {
+            pointers::write_handle("out", out, 0)?;
+            pointers::write_handle("out", out, model.save()?)
+        }
+    })
 }
 
 /// Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
@@ -72,6 +77,7 @@ pub unsafe extern "C" fn enmm_state_deserialize(
     let _ = unsafe { pointers::write_handle("out", out, 0) };
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe {
+        pointers::write_handle("out", out, 0)?;
         let bytes = pointers::slice("bytes", bytes, size)?;
         pointers::write_handle("out", out, model.deserialize(bytes)?)
     })
