@@ -62,7 +62,7 @@ pub struct Summary {
     pub penetration_max: f64,
     /// The same over the mesh size.
     pub penetration_max_relative: f64,
-    /// Wall time (s).
+    /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
     pub threads: usize,
@@ -153,8 +153,8 @@ pub struct StageRecord {
     pub steps: u64,
     /// Whether a static stage came to rest; null for a dynamic one.
     pub converged: Option<bool>,
-    /// Wall time (s).
-    pub wall_seconds: f64,
+    /// Wall time (s) in the process that writes this; null for a stage that ended before it went on from a checkpoint.
+    pub wall_seconds: Option<f64>,
     /// Unbalanced ratio at its end.
     pub unbalanced: f64,
     /// Kinetic energy at its end (J/m).
@@ -323,7 +323,7 @@ impl From<&Ledger> for EnergyRecord {
 }
 
 /// Wall time (s) by part of the step.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct WallSeconds {
     /// The whole run, outputs included.
     pub total: f64,
@@ -340,16 +340,10 @@ pub struct WallSeconds {
 }
 
 impl WallSeconds {
-    /// Adds the parts of a step to what was there, and a total.
-    pub fn plus(self, parts: &Seconds, total: f64) -> Self {
-        Self {
-            total: self.total + total,
-            elements: self.elements + parts.elements,
-            search: self.search + parts.search,
-            entrance: self.entrance + parts.entrance,
-            sweep: self.sweep + parts.sweep,
-            commit: self.commit + parts.commit,
-        }
+    /// Those of the parts of the step, and a total.
+    pub fn of(parts: &Seconds, total: f64) -> Self {
+        let &Seconds { elements, search, entrance, sweep, commit } = parts;
+        Self { total, elements, search, entrance, sweep, commit }
     }
 }
 

@@ -25,7 +25,7 @@ use super::{Observer, RunError, RunOptions, RunProgress, results};
 /// Most steps between two copies of the state to which a failed run falls back.
 const GOOD_STEPS: u64 = 200;
 
-/// What a run knows beyond its state; part of its checkpoints.
+/// What a run knows beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 struct Progress {
     /// Stages that are over.
@@ -42,10 +42,6 @@ struct Progress {
     unbalanced: f64,
     /// Ledger at the last report.
     ledger: Ledger,
-    /// Wall time before this process (s).
-    wall: WallSeconds,
-    /// Wall time of this stage before this process (s).
-    stage_wall: f64,
 }
 
 /// A checkpoint of a run. The state comes first, so that it can be read alone.
@@ -170,7 +166,6 @@ impl<'a> Driver<'a> {
         self.progress.unsettled_before = self.simulation.state().counters.unsettled;
         self.progress.potential_start = None;
         self.progress.penetration_max = 0.0;
-        self.progress.stage_wall = 0.0;
     }
 
     /// Runs the stage in progress to its end, unless a checkpoint says that it is over.
@@ -309,7 +304,7 @@ impl<'a> Driver<'a> {
             time: self.simulation.time() - state.stage_start,
             steps: state.stage_step,
             converged: converged.filter(|_| stage.kind == StageKind::Static),
-            wall_seconds: progress.stage_wall + self.stage_clock.elapsed().as_secs_f64(),
+            wall_seconds: Some(self.stage_clock.elapsed().as_secs_f64()),
             unbalanced: progress.unbalanced,
             kinetic_energy: progress.ledger.kinetic,
             potential_released: progress.potential_start.unwrap_or(potential) - potential,
@@ -347,14 +342,13 @@ impl<'a> Driver<'a> {
 
     fn wall(&self) -> WallSeconds {
         let parts: &Seconds = &self.simulation.scratch().seconds;
-        self.progress.wall.plus(parts, self.clock.elapsed().as_secs_f64())
+        WallSeconds::of(parts, self.clock.elapsed().as_secs_f64())
     }
 
     /// Writes the checkpoint of the state now.
     fn save(&self) -> Result<(), RunError> {
         let mut progress = self.progress.clone();
-        progress.wall = self.wall();
-        progress.stage_wall += self.stage_clock.elapsed().as_secs_f64();
+        progress.done.iter_mut().for_each(|stage| stage.wall_seconds = None);
         let saved = Saved { state: self.simulation.state(), progress };
         let path = self.options.directory.join("checkpoint.enmm");
         checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)
