@@ -139,7 +139,7 @@ fn a_saved_state_goes_on_with_the_same_bits() {
     let mut other = simulation(&text);
     let mut copy = other.state().clone();
     copy.copy_from(sim.state());
-    assert!(other.fits(&copy));
+    assert!(other.check(&copy).is_ok());
     other.restore(copy);
     advance(&mut sim, 300);
     advance(&mut other, 300);

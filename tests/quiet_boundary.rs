@@ -85,7 +85,7 @@ fn the_state_alone_goes_on_to_the_bit() {
     step(&mut first, 0.008);
     let bytes = encode(first.state(), "case").unwrap();
     let state: State = decode(&bytes, "case").unwrap();
-    assert!(second.fits(&state) && first.state() == &state);
+    assert!(second.check(&state).is_ok() && first.state() == &state);
     second.restore(state);
     assert!(first.state().columns[0].velocity.iter().any(|v| v.norm() > 1e-6));
     for simulation in [&mut first, &mut second] {
@@ -96,7 +96,7 @@ fn the_state_alone_goes_on_to_the_bit() {
     assert!(first.state() == second.state());
     let mut short = first.state().clone();
     short.columns[0].velocity.pop();
-    assert!(!first.fits(&short), "a column of another length");
+    assert!(first.check(&short).is_err(), "a column of another length");
 }
 
 /// Places without rock and sides that are not vertical.

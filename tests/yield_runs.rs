@@ -53,7 +53,7 @@ fn crushing_takes_energy_and_keeps_bits() {
     let mut first = one.clone();
     let report = advance(&mut first, 300);
     let saved = serde_json_round_trip(one.state());
-    assert!(one.fits(&saved));
+    assert!(one.check(&saved).is_ok());
     let mut second = one.clone();
     second.restore(saved);
     advance(&mut second, 300);
@@ -62,7 +62,7 @@ fn crushing_takes_energy_and_keeps_bits() {
     assert_ledger(&report);
     let mut short = one.state().clone();
     short.plastic.clear();
-    assert!(!one.fits(&short));
+    assert!(one.check(&short).is_err());
 }
 
 /// A state through its serialized form.

@@ -48,12 +48,9 @@ impl Near {
                 .any(|(&p, old)| (place[p as usize] - old).norm_squared() > slack * slack)
     }
 
-    /// Whether all indices are those of a boundary.
-    pub fn fits(&self, boundary: &Boundary) -> bool {
-        let (nodes, sides, edges) = (boundary.node_count(), boundary.side_first.len(), boundary.len());
-        let within = |index: u32, count: usize| (index as usize) < count;
-        self.candidates.iter().all(|c| within(c.node, nodes) && within(c.side, sides) && within(c.edge, edges))
-            && (self.found_at.is_empty() || self.found_at.len() == nodes)
+    /// Where the nodes were at the last search (m); empty when the next step has to search anew.
+    pub fn found_at(&self) -> &[Point] {
+        &self.found_at
     }
 
     /// Bytes of the lists.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::io::checkpoint::{self, CheckpointError};
 use crate::model::Simulation;
+use crate::model::fit::{self, Unfit};
 use crate::state::State;
 
 use super::{Cosimulation, CosimulationError, Standing};
@@ -56,15 +57,20 @@ impl Cosimulation {
     /// Goes back to a saved state of this model.
     ///
     /// # Errors
-    /// The state is of another model.
+    /// As [`Cosimulation::check`].
     pub fn restore(&mut self, saved: &Saved) -> Result<(), CosimulationError> {
-        self.check_case(saved)?;
-        if !self.fits(saved) {
-            let damage = "its state does not fit the model";
-            return Err(CheckpointError::Damaged(damage.to_owned()).into());
-        }
+        self.check(saved)?;
         self.return_to(saved);
         Ok(())
+    }
+
+    /// Whether a saved state can be one of this model.
+    ///
+    /// # Errors
+    /// The state is of another model, or one of its numbers, indices or lengths cannot be.
+    pub fn check(&self, saved: &Saved) -> Result<(), CosimulationError> {
+        self.check_case(saved)?;
+        self.check_saved(saved).map_err(|unfit| CheckpointError::Damaged(unfit.to_string()).into())
     }
 
     fn check_case(&self, saved: &Saved) -> Result<(), CheckpointError> {
@@ -74,14 +80,19 @@ impl Cosimulation {
         Err(CheckpointError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() })
     }
 
-    /// Whether every index and time of a saved state makes sense for this model.
-    fn fits(&self, saved: &Saved) -> bool {
-        let Saved { state, grid, standing, .. } = saved;
-        let dt = self.internal_step();
-        let on_grid = |state: &State| (0.0..dt).contains(&state.part) && standing.origin <= state.step;
-        standing.told.is_finite()
-            && standing.start.is_finite()
-            && std::iter::once(state).chain(grid.as_deref()).all(|state| on_grid(state) && self.simulation.fits(state))
+    fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
+        let Saved { hash: _, state, grid, standing } = saved;
+        let Standing { origin, start, started: _, unrest, changed: _, interpolation: _, told } = *standing;
+        self.simulation.check(state)?;
+        fit::at_most("origin", origin, state.step)?;
+        fit::between("start", start, 0.0, fit::TIME)?;
+        fit::between("unrest", unrest, 0.0, f64::INFINITY)?;
+        fit::number("told", told, fit::TIME)?;
+        let Some(grid) = grid else { return Ok(()) };
+        let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
+        self.simulation.check(grid).map_err(named)?;
+        fit::at_most("grid: the difference of steps", grid.step.abs_diff(state.step), 0)?;
+        fit::between("grid: part", grid.part, 0.0, state.part)
     }
 
     /// Keeps the state that a failure goes back to.
@@ -114,8 +125,10 @@ impl Cosimulation {
     /// The saved state in bytes that [`Cosimulation::serialize`] made, in this process or another.
     ///
     /// # Errors
-    /// The bytes are damaged, or of another model or version.
+    /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        Ok(checkpoint::decode(bytes, &self.hash)?)
+        let saved = checkpoint::decode(bytes, &self.hash)?;
+        self.check(&saved)?;
+        Ok(saved)
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod case;
+pub mod fit;
 pub mod limit_analysis;
 mod observe;
 mod simulation;
@@ -10,6 +11,7 @@ pub mod strength_reduction;
 
 pub use build::{BuildStage, Built, build};
 pub use case::Case;
+pub use fit::Unfit;
 pub use observe::BlockState;
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;

@@ -1,8 +1,8 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
-use crate::contact::{BoltState, EntranceRule, VertexEdge};
+use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Drive, Inputs, Ledger, Scratch, Slope, State};
+use crate::state::{Drive, Ledger, Scratch, Slope, State};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::build::{BuildStage, Built, build, index_of};
@@ -180,52 +180,6 @@ impl Simulation {
         step::outlook(self.slope(), self.regime, state, serial)
     }
 
-    /// Whether all indices and lengths of a state are those of this model.
-    pub fn fits(&self, state: &State) -> bool {
-        let (slope, own) = (self.slope(), self.state());
-        let covers = slope.covers.cover_count();
-        let boundary = &slope.boundary;
-        let inputs_fit = |inputs: &Inputs| {
-            inputs.block_force.len() == own.removed.len()
-                && inputs.block_moment.len() == own.removed.len()
-                && inputs.port_traction.len() == slope.ports.len()
-                && inputs.port_pressure.len() == slope.ports.len()
-        };
-        (state.stage as usize) < self.case.stages.len()
-            && [state.displacement.len(), state.velocity.len()] == [covers; 2]
-            && [&state.stage_displacement, &state.stage_force].iter().all(|v| v.is_empty() || v.len() == covers)
-            && state.support_force.len() == own.support_force.len()
-            && state.support_rest.len() == own.support_rest.len()
-            && state.fix_active.len() == own.fix_active.len()
-            && state.removed.len() == own.removed.len()
-            && state.laws.len() == own.laws.len()
-            && state.law_switch.len() == own.law_switch.len()
-            && state.law_switch.iter().all(|&law| (law as usize) < own.laws.len())
-            && [state.stage_start, state.dt_last, state.part, state.static_stretch]
-                .iter()
-                .all(|t| t.is_finite() && *t >= 0.0)
-            && state.bolts.len() == own.bolts.len()
-            && state.plastic.len() == own.plastic.len()
-            && state.columns.len() == slope.columns.len()
-            && state
-                .columns
-                .iter()
-                .zip(&slope.columns)
-                .all(|(state, column)| [state.displacement.len(), state.velocity.len()] == [column.node_count(); 2])
-            && state.stage_starts.len() == state.stage as usize + 1
-            && state.stage_starts.iter().all(|t| t.is_finite() && *t >= 0.0)
-            && (state.acceleration.is_empty() || state.acceleration.len() == covers)
-            && state.near.fits(boundary)
-            && inputs_fit(&state.drive.from)
-            && inputs_fit(&state.drive.to)
-            && state.events.fit(own.removed.len(), slope.trace_law.len())
-            && state.contacts.iter().all(|c| {
-                (c.node as usize) < boundary.node_count()
-                    && (c.edge as usize) < boundary.len()
-                    && (c.side as usize) < boundary.side_first.len()
-            })
-    }
-
     /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
     pub fn contacts(&self) -> Vec<VertexEdge> {
         self.look_ahead().1.contacts
@@ -286,7 +240,7 @@ impl Simulation {
     fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         let before = self.energies();
         self.excavate(stage)?;
-        self.change_laws(stage);
+        change_laws(&self.case, stage, &mut self.built.state.laws, &mut self.built.state.law_switch);
         self.change_fixities(stage);
         self.change_bolts(stage)?;
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
@@ -334,31 +288,12 @@ impl Simulation {
         Ok(())
     }
 
-    fn change_laws(&mut self, stage: usize) {
-        let stage_case = &self.case.stages[stage];
-        let state = &mut self.built.state;
-        for change in &stage_case.law_changes {
-            let Some(k) = index_of(&self.case.joint_laws, &change.law) else { continue };
-            let law = &mut state.laws[k as usize];
-            if let Some(degrees) = change.friction_deg {
-                law.friction = degrees.to_radians().tan();
-                law.residual_friction = law.friction;
-                if let Some(roughness) = &mut law.roughness {
-                    roughness.angle = degrees.to_radians();
-                }
-            }
-            if let Some(cohesion) = change.cohesion {
-                (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);
-            }
-            if let Some(tension) = change.tension {
-                law.tension = tension;
-            }
-        }
-        for switch in &stage_case.law_switches {
-            let find = |name: &str| index_of(&self.case.joint_laws, name);
-            let (Some(from), Some(to)) = (find(&switch.from), find(&switch.to)) else { continue };
-            state.law_switch.iter_mut().filter(|law| **law == from).for_each(|law| *law = to);
-        }
+    /// Laws and their switches as the stages of the case up to one make them.
+    pub(super) fn laws_in(&self, stage: u32) -> (Vec<JointLaw>, Vec<u32>) {
+        let mut laws = self.slope().laws.clone();
+        let mut switch: Vec<u32> = (0..laws.len() as u32).collect();
+        (0..=stage as usize).for_each(|stage| change_laws(&self.case, stage, &mut laws, &mut switch));
+        (laws, switch)
     }
 
     fn change_fixities(&mut self, stage: usize) {
@@ -414,5 +349,32 @@ impl Simulation {
     /// Linear and angular momentum of the free blocks, see [`step::momentum`].
     pub fn momentum(&self) -> (Vector, f64) {
         step::momentum(self.slope(), self.state(), &self.scratch.metric)
+    }
+}
+
+/// Changes and switches the laws as a stage of the case says.
+fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [u32]) {
+    let stage_case = &case.stages[stage];
+    for change in &stage_case.law_changes {
+        let Some(k) = index_of(&case.joint_laws, &change.law) else { continue };
+        let law = &mut laws[k as usize];
+        if let Some(degrees) = change.friction_deg {
+            law.friction = degrees.to_radians().tan();
+            law.residual_friction = law.friction;
+            if let Some(roughness) = &mut law.roughness {
+                roughness.angle = degrees.to_radians();
+            }
+        }
+        if let Some(cohesion) = change.cohesion {
+            (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);
+        }
+        if let Some(tension) = change.tension {
+            law.tension = tension;
+        }
+    }
+    for names in &stage_case.law_switches {
+        let find = |name: &str| index_of(&case.joint_laws, name);
+        let (Some(from), Some(to)) = (find(&names.from), find(&names.to)) else { continue };
+        switch.iter_mut().filter(|law| **law == from).for_each(|law| *law = to);
     }
 }

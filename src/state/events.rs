@@ -51,12 +51,6 @@ impl Events {
         }
     }
 
-    /// Whether all lengths are those of a model with so many blocks and joint traces.
-    pub fn fit(&self, blocks: usize, traces: usize) -> bool {
-        [&self.touching, &self.detached, &self.failed].iter().all(|list| list.len() == blocks)
-            && self.slipped.len() == traces + 1
-    }
-
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.list.clone_from(&other.list);

@@ -234,6 +234,23 @@ impl Variable {
         self.kind == Type::Real && self.causality != Causality::Parameter && !jumps
     }
 
+    /// Checks a value that is to be set.
+    ///
+    /// # Errors
+    /// It is not finite, or beyond the limits.
+    pub fn check(&self, value: f64) -> Result<(), String> {
+        let Self { name, unit, limits, .. } = self;
+        if !value.is_finite() {
+            return Err(format!("{name}: is {value}, must be a finite number; the old value still holds"));
+        }
+        match limits {
+            Some((low, high)) if !(*low..=*high).contains(&value) => Err(format!(
+                "{name}: is {value}, must be at least {low} and at most {high} {unit}; the old value still holds"
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// Number of values: those of an array, or 1.
     pub fn size(&self) -> usize {
         self.length.unwrap_or(1)

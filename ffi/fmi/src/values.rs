@@ -75,6 +75,16 @@ impl Values {
         &self.all[self.starts[k]..self.starts[k + 1]]
     }
 
+    /// Checks all values as if they were set.
+    ///
+    /// # Errors
+    /// The first that cannot be set.
+    pub fn check(&self, table: &Table) -> Result<(), String> {
+        let settable = |v: &&Variable| matches!(v.causality, Causality::Parameter | Causality::Input);
+        let mut variables = table.variables.iter().filter(settable);
+        variables.try_for_each(|v| self.get(v.reference).iter().try_for_each(|&value| v.check(value)))
+    }
+
     /// Replaces the values of a variable.
     pub fn set(&mut self, reference: u32, values: &[f64]) {
         let k = reference as usize;

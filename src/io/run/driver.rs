@@ -16,6 +16,7 @@ use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds
 use crate::io::vtu::PvdWriter;
 use crate::model::Simulation;
 use crate::model::case::{Invalid, StageKind};
+use crate::model::fit::{self, Unfit};
 use crate::state::{Ledger, Seconds, State};
 use crate::step::{StepError, StepReport};
 
@@ -42,6 +43,25 @@ struct Progress {
     unbalanced: f64,
     /// Ledger at the last report.
     ledger: Ledger,
+}
+
+impl Progress {
+    /// Whether it can be that of a state.
+    ///
+    /// # Errors
+    /// The first number that cannot.
+    fn check(&self, state: &State) -> Result<(), Unfit> {
+        let Self { done, unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger } = self;
+        let stages = u64::from(state.stage);
+        fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
+        fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
+        fit::number("potential_start", potential_start.unwrap_or_default(), fit::FORCE)?;
+        fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
+        fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
+        fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
+        fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
+        fit::check_ledger(ledger)
+    }
 }
 
 /// A checkpoint of a run. The state comes first, so that it can be read alone.
@@ -96,10 +116,9 @@ pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observe
 fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
     let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
     let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
-    if simulation.fits(&saved.state) {
-        return Ok(saved);
-    }
-    Err(refuse(CheckpointError::Damaged("its state does not fit the model".to_owned())))
+    let fits = simulation.check(&saved.state).and_then(|()| saved.progress.check(&saved.state));
+    fits.map_err(|unfit| refuse(CheckpointError::Damaged(unfit.to_string())))?;
+    Ok(saved)
 }
 
 impl<'a> Driver<'a> {

@@ -65,7 +65,9 @@ pub unsafe extern "C" fn enmm_state_serialize(
 ///
 /// `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure.
 ///
-/// Errors: ENMM_WRONG_STATE for bytes that are damaged, or of another case or version; ENMM_NULL_ARGUMENT.
+/// Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or hold what no state of the model
+/// can (a number that is not finite or beyond all bounds, an index or a length), which the message names;
+/// ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_deserialize(
     model: *mut enmm_model,

@@ -124,6 +124,21 @@ impl Instance {
         Ok(())
     }
 
+    /// Whether all that a state from outside holds can be of this FMU.
+    fn check_all(&self, state: &Whole) -> Result<(), Failure> {
+        self.check_whole(state)?;
+        let times =
+            [("start time", state.start), ("stop time", state.stop.unwrap_or(state.start)), ("time", state.time)];
+        for (what, time) in times {
+            if !time.is_finite() {
+                return Err(format!("the {what} of the saved state is {time} s, must be finite: use another one"));
+            }
+        }
+        self.values.with(&state.values).check(&self.table).map_err(|problem| format!("the saved state: {problem}"))?;
+        let other = if same_bits(&state.built, &self.built) { None } else { Some(self.model_of(&state.built)?) };
+        other.as_ref().unwrap_or(&self.model).check(&state.model).map_err(|error| error.to_string())
+    }
+
     fn check_whole(&self, state: &Whole) -> Result<Phase, Failure> {
         let fits = state.values.len() == self.values.all.len() && state.built.len() == self.built.len();
         let phase =
@@ -173,7 +188,7 @@ impl Instance {
         let outcome = legal.and_then(|()| {
             let decoded = checkpoint::decode(bytes, &self.table.token);
             let state: Whole = decoded.map_err(|error| format!("these bytes are no state of this FMU: {error}"))?;
-            self.check_whole(&state)?;
+            self.check_all(&state)?;
             self.states.put(number, state)
         });
         outcome.map_err(|failure| self.complain(failure))

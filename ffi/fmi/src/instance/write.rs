@@ -40,7 +40,7 @@ impl Instance {
                     return Err(format!("{}: cannot be set, only read", v.name));
                 }
             }
-            own.iter().try_for_each(|&value| check_value(v, value))?;
+            own.iter().try_for_each(|&value| v.check(value))?;
         }
         Ok(())
     }
@@ -86,20 +86,5 @@ impl Instance {
             return Ok(());
         }
         Err(format!("the number of values is {given}, must be {count}, that of all elements of the variables"))
-    }
-}
-
-fn check_value(v: &Variable, value: f64) -> Result<(), Failure> {
-    if !value.is_finite() {
-        return Err(format!("{}: is {value}, must be a finite number; the old value still holds", v.name));
-    }
-    match v.limits {
-        Some((low, high)) if !(low..=high).contains(&value) => {
-            let (name, unit) = (&v.name, v.unit);
-            Err(format!(
-                "{name}: is {value}, must be at least {low} and at most {high} {unit}; the old value still holds"
-            ))
-        }
-        _ => Ok(()),
     }
 }

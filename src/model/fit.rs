@@ -1,0 +1,358 @@
+//! Whether a state that comes from outside can be one of this model: lengths, indices and numbers. What passes makes no
+//! index go astray and no square of a number overflow; the first thing that does not is told by name.
+
+use std::fmt::Display;
+
+use crate::contact::{BoltState, ContactHistory, Near};
+use crate::geometry::Vector;
+use crate::state::{Counters, Drive, Event, EventKind, Events, Inputs, Ledger, State};
+
+use super::Simulation;
+use super::case::StageKind;
+use super::case::limits::FACTOR_MAX;
+
+/// What is wrong with a state.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{what} is {value}, must be {limit}")]
+pub struct Unfit {
+    /// Where.
+    pub what: String,
+    /// What is there.
+    pub value: String,
+    /// What may be there.
+    pub limit: String,
+}
+
+/// Outcome of a check.
+pub type Fit = Result<(), Unfit>;
+
+/// Greatest magnitude of places and lengths (m).
+pub const LENGTH: f64 = 1e12;
+/// Greatest magnitude of times (s).
+pub const TIME: f64 = 1e12;
+/// Greatest magnitude of velocities (m/s), accelerations (m/s²) and numbers without a unit.
+pub const RATE: f64 = 1e30;
+/// Greatest magnitude of forces, stresses, stiffnesses and energies (SI units).
+pub const FORCE: f64 = 1e60;
+/// Greatest count, beyond which a double no longer counts.
+const COUNT: u64 = 1 << 53;
+
+/// Checks a number by its magnitude.
+///
+/// # Errors
+/// It is not finite or greater.
+pub fn number(what: impl Display, value: f64, most: f64) -> Fit {
+    if value.is_finite() && value.abs() <= most {
+        return Ok(());
+    }
+    unfit(what, value, format!("a finite number of at most {most:e} in magnitude"))
+}
+
+/// Checks a number that lies between two others.
+///
+/// # Errors
+/// It is not a number, or outside.
+pub fn between(what: impl Display, value: f64, low: f64, high: f64) -> Fit {
+    if (low..=high).contains(&value) {
+        Ok(())
+    } else {
+        unfit(what, value, format!("at least {low:e} and at most {high:e}"))
+    }
+}
+
+/// Checks a count of steps and the like.
+///
+/// # Errors
+/// It is greater than `most`.
+pub fn at_most(what: impl Display, value: u64, most: u64) -> Fit {
+    if value <= most { Ok(()) } else { unfit(what, value, format!("at most {most}")) }
+}
+
+/// Checks the length of a list.
+///
+/// # Errors
+/// It is another.
+pub fn length(what: impl Display, found: usize, own: usize) -> Fit {
+    if found == own { Ok(()) } else { unfit(format!("the length of {what}"), found, format!("{own} in this model")) }
+}
+
+fn unfit(what: impl Display, value: impl Display, limit: String) -> Fit {
+    Err(Unfit { what: what.to_string(), value: value.to_string(), limit })
+}
+
+fn index(what: impl Display, value: u32, count: usize) -> Fit {
+    if (value as usize) < count { Ok(()) } else { unfit(what, value, format!("less than {count} in this model")) }
+}
+
+fn numbers(what: &str, list: &[f64], most: f64) -> Fit {
+    list.iter().enumerate().try_for_each(|(k, value)| number(format_args!("{what}[{k}]"), *value, most))
+}
+
+fn vector(what: impl Display, value: Vector, most: f64) -> Fit {
+    number(format_args!("{what}.x"), value.x, most)?;
+    number(format_args!("{what}.y"), value.y, most)
+}
+
+fn vectors(what: &str, list: &[Vector], most: f64) -> Fit {
+    list.iter().enumerate().try_for_each(|(k, value)| vector(format_args!("{what}[{k}]"), *value, most))
+}
+
+/// Checks a list that follows from the case.
+fn same<T: PartialEq>(what: &str, found: &[T], own: &[T]) -> Fit {
+    length(what, found.len(), own.len())?;
+    let other = found.iter().zip(own).position(|(found, own)| found != own);
+    other.map_or(Ok(()), |k| unfit(format!("{what}[{k}]"), "another", "what the case says of this stage".to_owned()))
+}
+
+fn in_order(what: &str, is_sorted: bool) -> Fit {
+    if is_sorted { Ok(()) } else { unfit(format!("the order of {what}"), "broken", "by node and side".to_owned()) }
+}
+
+impl Simulation {
+    /// Whether a state can be one of this model.
+    ///
+    /// # Errors
+    /// The first length, index or number that cannot.
+    pub fn check(&self, state: &State) -> Fit {
+        self.check_clock(state)?;
+        self.check_motion(state)?;
+        self.check_contacts(&state.contacts)?;
+        self.check_near(&state.near)?;
+        self.check_stages(state)?;
+        self.check_inputs("drive.from", &state.drive.from)?;
+        self.check_inputs("drive.to", &state.drive.to)?;
+        self.check_events(&state.events)?;
+        let Drive { from: _, to: _, since, until } = &state.drive;
+        number("drive.since", *since, TIME)?;
+        number("drive.until", *until, TIME)?;
+        check_ledger(&state.ledger)?;
+        check_counters(&state.counters)
+    }
+
+    fn check_clock(&self, state: &State) -> Fit {
+        let dt = self.slope().dt;
+        index("stage", state.stage, self.case().stages.len())?;
+        length("stage_starts", state.stage_starts.len(), state.stage as usize + 1)?;
+        for (k, &start) in state.stage_starts.iter().enumerate() {
+            between(format_args!("stage_starts[{k}]"), start, 0.0, TIME)?;
+        }
+        between("stage_start", state.stage_start, 0.0, TIME)?;
+        at_most("step", state.step, COUNT)?;
+        at_most("stage_step", state.stage_step, state.step)?;
+        if state.part >= dt {
+            unfit("part", state.part, format!("less than the internal step, {dt:e} s"))?;
+        }
+        between("part", state.part, 0.0, dt)?;
+        between("dt_last", state.dt_last, 0.0, (1.0 + 1e-9) * dt)?;
+        between("static_stretch", state.static_stretch, 0.0, RATE)
+    }
+
+    fn check_motion(&self, state: &State) -> Fit {
+        let (slope, covers) = (self.slope(), self.slope().covers.cover_count());
+        let is_static = self.case().stages[state.stage as usize].kind == StageKind::Static;
+        let of_static = if is_static { covers } else { 0 };
+        let of_implicit = if state.acceleration.is_empty() { 0 } else { covers };
+        for (what, list, own, most) in [
+            ("displacement", &state.displacement, covers, LENGTH),
+            ("velocity", &state.velocity, covers, RATE),
+            ("stage_displacement", &state.stage_displacement, of_static, LENGTH),
+            ("stage_force", &state.stage_force, of_static, FORCE),
+            ("acceleration", &state.acceleration, of_implicit, RATE),
+        ] {
+            length(what, list.len(), own)?;
+            vectors(what, list, most)?;
+        }
+        length("plastic", state.plastic.len(), self.state().plastic.len())?;
+        numbers("plastic", state.plastic.as_flattened(), RATE)?;
+        length("columns", state.columns.len(), slope.columns.len())?;
+        for (k, (column, own)) in state.columns.iter().zip(&slope.columns).enumerate() {
+            let names = ["displacement", "velocity"].map(|field| format!("columns[{k}].{field}"));
+            for (what, list, most) in [(&names[0], &column.displacement, LENGTH), (&names[1], &column.velocity, RATE)] {
+                length(what, list.len(), own.node_count())?;
+                vectors(what, list, most)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_contacts(&self, contacts: &[ContactHistory]) -> Fit {
+        let boundary = &self.slope().boundary;
+        for (k, contact) in contacts.iter().enumerate() {
+            let &ContactHistory {
+                node,
+                side,
+                edge,
+                normal_force,
+                shear_force,
+                trend,
+                sheared,
+                offset,
+                rest,
+                slip,
+                share,
+                state: _,
+                intact: _,
+            } = contact;
+            index(format_args!("contacts[{k}].node"), node, boundary.node_count())?;
+            index(format_args!("contacts[{k}].side"), side, boundary.side_first.len())?;
+            index(format_args!("contacts[{k}].edge"), edge, boundary.len())?;
+            for (field, value, most) in [
+                ("normal_force", normal_force, FORCE),
+                ("shear_force", shear_force, FORCE),
+                ("trend[0]", trend[0], FORCE),
+                ("trend[1]", trend[1], FORCE),
+                ("sheared", sheared, LENGTH),
+                ("offset", offset, LENGTH),
+                ("rest", rest, LENGTH),
+                ("slip", slip, LENGTH),
+                ("share", share, RATE),
+            ] {
+                number(format_args!("contacts[{k}].{field}"), value, most)?;
+            }
+        }
+        in_order("contacts", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
+    }
+
+    fn check_near(&self, near: &Near) -> Fit {
+        let boundary = &self.slope().boundary;
+        for (k, candidate) in near.candidates.iter().enumerate() {
+            index(format_args!("near.candidates[{k}].node"), candidate.node, boundary.node_count())?;
+            index(format_args!("near.candidates[{k}].side"), candidate.side, boundary.side_first.len())?;
+            index(format_args!("near.candidates[{k}].edge"), candidate.edge, boundary.len())?;
+        }
+        in_order("near.candidates", near.candidates.is_sorted())?;
+        let found_at = near.found_at();
+        length("near.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
+        vectors("near.found_at", found_at, LENGTH)
+    }
+
+    /// What stages change: supports, fixities, blocks that are gone, laws and bolts.
+    fn check_stages(&self, state: &State) -> Fit {
+        let own = self.state();
+        length("support_force", state.support_force.len(), own.support_force.len())?;
+        length("support_rest", state.support_rest.len(), own.support_rest.len())?;
+        length("fix_active", state.fix_active.len(), own.fix_active.len())?;
+        length("removed", state.removed.len(), own.removed.len())?;
+        length("bolts", state.bolts.len(), own.bolts.len())?;
+        numbers("support_force", &state.support_force, FORCE)?;
+        numbers("support_rest", &state.support_rest, LENGTH)?;
+        let (laws, switch) = self.laws_in(state.stage);
+        same("laws", &state.laws, &laws)?;
+        same("law_switch", &state.law_switch, &switch)?;
+        for (k, bolt) in state.bolts.iter().enumerate() {
+            let BoltState { active: _, broken: _, rest, natural, force } = *bolt;
+            number(format_args!("bolts[{k}].rest"), rest, LENGTH)?;
+            number(format_args!("bolts[{k}].natural"), natural, LENGTH)?;
+            number(format_args!("bolts[{k}].force"), force, FORCE)?;
+        }
+        Ok(())
+    }
+
+    fn check_inputs(&self, of: &str, inputs: &Inputs) -> Fit {
+        let (blocks, ports) = (self.state().removed.len(), self.slope().ports.len());
+        let Inputs {
+            gravity,
+            base_acceleration,
+            water_level,
+            strength_factor,
+            block_force,
+            block_moment,
+            port_traction,
+            port_pressure,
+        } = inputs;
+        vector(format_args!("{of}.gravity"), *gravity, RATE)?;
+        vector(format_args!("{of}.base_acceleration"), *base_acceleration, RATE)?;
+        number(format_args!("{of}.water_level"), *water_level, LENGTH)?;
+        between(format_args!("{of}.strength_factor"), *strength_factor, 0.0, FACTOR_MAX)?;
+        for (field, list, own) in [("block_force", block_force, blocks), ("port_traction", port_traction, ports)] {
+            length(format_args!("{of}.{field}"), list.len(), own)?;
+            vectors(&format!("{of}.{field}"), list, FORCE)?;
+        }
+        for (field, list, own) in [("block_moment", block_moment, blocks), ("port_pressure", port_pressure, ports)] {
+            length(format_args!("{of}.{field}"), list.len(), own)?;
+            numbers(&format!("{of}.{field}"), list, FORCE)?;
+        }
+        Ok(())
+    }
+
+    fn check_events(&self, events: &Events) -> Fit {
+        let (blocks, traces) = (self.state().removed.len(), self.slope().trace_law.len());
+        let Events { list, touching, detached, slipped, failed } = events;
+        length("events.touching", touching.len(), blocks)?;
+        length("events.detached", detached.len(), blocks)?;
+        length("events.slipped", slipped.len(), traces + 1)?;
+        length("events.failed", failed.len(), blocks)?;
+        for (k, Event { kind, subject, time }) in list.iter().enumerate() {
+            number(format_args!("events.list[{k}].time"), *time, TIME)?;
+            match kind {
+                EventKind::Slipped if *subject == u32::MAX => Ok(()),
+                EventKind::Slipped => index(format_args!("events.list[{k}].subject"), *subject, traces),
+                EventKind::Detached | EventKind::Failed => {
+                    index(format_args!("events.list[{k}].subject"), *subject, blocks)
+                }
+            }?;
+        }
+        Ok(())
+    }
+}
+
+/// Checks every energy and work of a ledger.
+///
+/// # Errors
+/// The first that is not finite or too great.
+pub fn check_ledger(ledger: &Ledger) -> Fit {
+    let &Ledger {
+        kinetic,
+        strain,
+        potential,
+        stored,
+        friction,
+        contact_work,
+        support_work,
+        damping,
+        yielding,
+        bolt_work,
+        bolt_stored,
+        bolt_installed,
+        radiation,
+        external_work,
+        baseline,
+    } = ledger;
+    let works = [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction];
+    numbers("ledger: energies", &[kinetic, strain, potential, stored, bolt_stored, bolt_installed, baseline], FORCE)?;
+    numbers("ledger: works", &works, FORCE)
+}
+
+fn check_counters(counters: &Counters) -> Fit {
+    let &Counters {
+        sweeps,
+        sweeps_max: _,
+        substeps,
+        halved,
+        unsettled,
+        deep_contacts,
+        deepest_contact,
+        penetration_max,
+        dt_min,
+        dt_max,
+        searches,
+        judged,
+        factorisations,
+    } = counters;
+    for (field, value) in [
+        ("sweeps", sweeps),
+        ("substeps", substeps),
+        ("halved", halved),
+        ("unsettled", unsettled),
+        ("deep_contacts", deep_contacts),
+        ("searches", searches),
+        ("judged", judged),
+        ("factorisations", factorisations),
+    ] {
+        at_most(format_args!("counters.{field}"), value, COUNT)?;
+    }
+    number("counters.deepest_contact", deepest_contact, LENGTH)?;
+    number("counters.penetration_max", penetration_max, LENGTH)?;
+    number("counters.dt_min", dt_min, TIME)?;
+    number("counters.dt_max", dt_max, TIME)
+}
