@@ -337,7 +337,8 @@ LEGAL = {
     "exit_initialization": ("initialization", "initialization"),
     "step": ("step", "step"),
     "terminate": ("step", "step"),
-    "get": ("initialization step terminated error", "instantiated initialization step terminated error"),
+    "get": ("initialization step terminated error", "initialization step terminated error"),
+    "get_start": ("initialization step terminated error", "instantiated initialization step terminated error"),
     "set": ("instantiated initialization step", "instantiated initialization step"),
     "parameter": ("instantiated initialization", "instantiated initialization"),
     "derivative": ("step terminated error", "step terminated error"),
@@ -371,6 +372,8 @@ def attempt(instance, call):
             return instance.step(0.0, H)
         case "get":
             return instance.get_raw(kind, reference(output))[0]
+        case "get_start":
+            return instance.get_raw(kind, reference("gravity_x"))[0]
         case "set":
             return instance.set_raw(kind, reference("gravity_x"), [0.0])
         case "parameter":

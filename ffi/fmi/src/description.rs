@@ -5,9 +5,19 @@ use std::io;
 use enmm::cosimulation::Cosimulation;
 
 use crate::log::LOG_CATEGORIES;
+use crate::naming::convention;
 use crate::table::{Causality, Table, Type, Variable};
 use crate::unit;
 use crate::xml::{Xml, number};
+
+/// Whose the model is: the case tells no name.
+const AUTHOR: &str = "Case: whoever wrote it; engine: the enmm developers";
+/// Whose the parts are.
+const COPYRIGHT: &str = "Case: its author; library: Copyright (c) 2026 the enmm developers";
+/// Terms of use of the parts.
+const LICENSE: &str = "Case: as its author says; library: MIT or Apache-2.0, see documentation/licenses/license.txt";
+/// Made when the times of the archive begin: no clock is read, so that the same case gives the same bytes.
+const MADE_AT: &str = "1980-01-01T00:00:00Z";
 
 /// What a model description says beside its variables.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +28,8 @@ pub struct Facts {
     pub identifier: String,
     /// What the model is.
     pub summary: String,
+    /// Version of the model: that of the engine, and the fingerprint of the case.
+    pub version: String,
     /// Time (s) that the stages of the case cover.
     pub stop_time: f64,
     /// Communication step (s) that the case suggests.
@@ -50,8 +62,13 @@ pub fn document(dialect: &Dialect, table: &Table, facts: &Facts) -> io::Result<V
         ("modelName", facts.title.clone()),
         (dialect.token, table.token.clone()),
         ("description", facts.summary.clone()),
+        ("author", AUTHOR.to_owned()),
+        ("version", facts.version.clone()),
+        ("copyright", COPYRIGHT.to_owned()),
+        ("license", LICENSE.to_owned()),
         ("generationTool", tool()),
-        ("variableNamingConvention", "flat".to_owned()),
+        ("generationDateAndTime", MADE_AT.to_owned()),
+        ("variableNamingConvention", convention(table.variables.iter().map(|v| v.name.as_str())).to_owned()),
     ];
     let mut capabilities = vec![("modelIdentifier", facts.identifier.clone())];
     capabilities.extend(dialect.capabilities.iter().map(|&(name, value)| (name, value.to_owned())));
@@ -87,6 +104,7 @@ impl Facts {
             title: title.to_owned(),
             identifier: identifier.to_owned(),
             summary: format!("Jointed rock slope of {blocks} blocks, explicit numerical manifold method"),
+            version: format!("{}+{}", enmm::io::checkpoint::engine_version(), model.hash()),
             stop_time: model.stop_time(),
             communication_step: short(model.communication_step()),
             internal_step: short(model.internal_step()),

@@ -10,6 +10,7 @@ pub mod instance;
 pub mod library;
 pub mod location;
 pub mod log;
+pub mod naming;
 pub mod pack;
 mod page;
 pub mod phase;

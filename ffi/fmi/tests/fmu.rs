@@ -131,6 +131,14 @@ fn the_description_says_what_the_table_says() {
         let first = &elements[0];
         assert_eq!(first.get(if two { "guid" } else { "instantiationToken" }), Some(table.token.as_str()));
         assert_eq!(first.get("modelName"), Some(case(path).case.title.as_str()));
+        for (name, part) in [("author", "case"), ("copyright", "enmm"), ("license", "MIT or Apache-2.0")] {
+            assert!(first.get(name).unwrap().to_lowercase().contains(&part.to_lowercase()), "{name}");
+        }
+        assert!(first.get("version").unwrap().ends_with(&format!("+{}", case(path).hash)));
+        assert_eq!(first.get("generationDateAndTime"), Some("1980-01-01T00:00:00Z"));
+        // The first case has a rock, a law and a monitor whose names are no words.
+        let convention = if path == &CASES[0] { "flat" } else { "structured" };
+        assert_eq!(first.get("variableNamingConvention"), Some(convention), "{path}");
     }
 }
 

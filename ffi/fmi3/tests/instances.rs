@@ -87,6 +87,7 @@ fn calls(fmu: &Fmu) -> Calls {
         ("exit", Box::new(|i| fmi3ExitInitializationMode(i))),
         ("terminate", Box::new(|i| fmi3Terminate(i))),
         ("get", Box::new(move |i| unsafe { fmi3GetFloat64(i, &output, 1, vec![0.0; blocks].as_mut_ptr(), blocks) })),
+        ("get_start", Box::new(move |i| unsafe { fmi3GetFloat64(i, &input, 1, vec![0.0].as_mut_ptr(), 1) })),
         ("set", Box::new(move |i| unsafe { fmi3SetFloat64(i, &input, 1, &zero, 1) })),
         ("parameter", Box::new(move |i| unsafe { fmi3SetFloat64(i, &parameter, 1, &start, 1) })),
         (
@@ -121,11 +122,11 @@ fn each_state_allows_its_calls_and_no_others() {
         instance
     };
     for (name, legal) in [
-        ("instantiated", &["enter", "get", "set", "parameter", "reset"][..]),
-        ("initialization", &["exit", "get", "set", "parameter", "reset"]),
-        ("step", &["get", "set", "step", "terminate", "reset"]),
-        ("terminated", &["get", "reset"]),
-        ("error", &["get", "reset"]),
+        ("instantiated", &["enter", "get_start", "set", "parameter", "reset"][..]),
+        ("initialization", &["exit", "get", "get_start", "set", "parameter", "reset"]),
+        ("step", &["get", "get_start", "set", "step", "terminate", "reset"]),
+        ("terminated", &["get", "get_start", "reset"]),
+        ("error", &["get", "get_start", "reset"]),
     ] {
         for (call, act) in calls(&fmu) {
             let instance = state(name);

@@ -33,7 +33,7 @@ impl Instance {
     pub fn get(&mut self, references: &[u32], kind: Type, values: &mut [f64]) -> Status {
         let legal = self.allow(Call::Get);
         let counted = legal.and_then(|()| self.check_count(references, kind, values.len()));
-        let outcome = counted.and_then(|()| if self.reads_state(references) { self.prepare() } else { Ok(()) });
+        let outcome = counted.and_then(|()| self.prepare(references));
         let outcome = outcome.and_then(|()| {
             let mut rest = values;
             for &reference in references {
@@ -86,7 +86,7 @@ impl Instance {
     /// Reads the snapshot, once for each reference; the bytes stay until the next call of this function.
     pub fn get_binary(&mut self, references: &[u32]) -> Result<&[u8], Status> {
         let legal = self.allow(Call::Get).and_then(|()| self.check_count(references, Type::Binary, references.len()));
-        let outcome = legal.and_then(|()| self.prepare()).and_then(|()| {
+        let outcome = legal.and_then(|()| self.prepare(references)).and_then(|()| {
             let bytes = self.model.serialize(&self.model.save());
             self.cache.snapshot = bytes.map_err(|error| format!("snapshot: {error}"))?;
             Ok(())
@@ -97,15 +97,18 @@ impl Instance {
         }
     }
 
-    fn reads_state(&self, references: &[u32]) -> bool {
-        references.iter().filter_map(|&r| self.table.get(r)).any(|v| v.causality == Causality::Output)
-    }
-
-    /// While parameters and inputs may change, outputs are those of the parameters that hold, and in initialization
-    /// mode of the equilibrium under the inputs that hold.
-    fn prepare(&mut self) -> Result<(), Failure> {
+    /// Outputs have no value before initialization mode, where they are those of the equilibrium under the parameters
+    /// and inputs that hold.
+    fn prepare(&mut self, references: &[u32]) -> Result<(), Failure> {
+        let variables = references.iter().filter_map(|&reference| self.table.get(reference));
+        let Some(output) = variables.into_iter().find(|v| v.causality == Causality::Output) else { return Ok(()) };
         match self.phase {
-            Phase::Instantiated => self.rebuild_if_changed(),
+            Phase::Instantiated => {
+                let name = &output.name;
+                Err(format!(
+                    "{name}: has no start value, and none before initialization mode; enter that, then read it"
+                ))
+            }
             Phase::Initialization => self.start_model(),
             _ => Ok(()),
         }
