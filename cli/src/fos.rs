@@ -28,10 +28,10 @@ pub struct Arguments {
     /// Width of the final bracket relative to F.
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
-    /// Pass over mechanisms of less rock (m²), such as single key blocks; they are told, cleared away, and the search
-    /// begins anew.
-    #[arg(long, value_name = "AREA", default_value_t = 0.0)]
-    least_area: f64,
+    /// Pass over mechanisms of less rock (m²), such as single key blocks: they are told, cleared away, and the search
+    /// begins anew; default: a hundredth of the square of the mesh size, so that no sliver decides.
+    #[arg(long, value_name = "AREA")]
+    least_area: Option<f64>,
     /// Mechanisms to find, each without the blocks of those before.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,
