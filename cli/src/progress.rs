@@ -9,6 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between plain lines.
 const LINES: Duration = Duration::from_secs(5);
+/// Time after which parts of a build are told.
+const BUILD: Duration = Duration::from_secs(1);
 /// Time between changes of the bar.
 const REDRAW: Duration = Duration::from_millis(100);
 /// Steps of the bar.
@@ -61,7 +63,7 @@ impl Observer for Screen {
                 bar.tick();
             }
             // A small model is built before anyone would read this.
-            None if !self.quiet && self.start.elapsed() >= LINES => drop(writeln!(std::io::stderr(), "{line}")),
+            None if !self.quiet && self.start.elapsed() >= BUILD => drop(writeln!(std::io::stderr(), "{line}")),
             None => {}
         }
     }

@@ -59,15 +59,44 @@ impl RegularMesh {
         (extent.x / size + 6.0) * (extent.y / (size * 0.75f64.sqrt()) + 6.0)
     }
 
-    fn reach(&mut self, low: Point, high: Point) {
+    /// Greatest lattice number of a lattice over a box, without its sign, and the number of cells of the parallelogram
+    /// that holds the box; the arguments are those of [`RegularMesh::new`].
+    pub fn numbers(size: f64, angle: f64, origin: Point, low: Point, high: Point) -> [f64; 2] {
+        let mesh = Self::new(size, angle, origin, low, high);
+        let ranges = [0, 1].map(|axis| mesh.range(axis, low, high));
+        let farthest = ranges.iter().flatten().fold(0.0f64, |most, number| most.max(number.abs()));
+        [farthest, ranges.iter().map(|[least, most]| most - least + 1.0).product()]
+    }
+
+    /// Least and greatest lattice number along an axis over a box.
+    fn range(&self, axis: usize, low: Point, high: Point) -> [f64; 2] {
         let corners = [low, high, Point::new(low.x, high.y), Point::new(high.x, low.y)];
+        let values = corners.map(|c| self.lattice(c)[axis]);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min).floor() - 2.0;
+        [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil() + 2.0]
+    }
+
+    fn reach(&mut self, low: Point, high: Point) {
         for axis in 0..2 {
-            let values = corners.map(|c| self.lattice(c)[axis]);
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min).floor() as i32 - 2;
-            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil() as i32 + 2;
+            let [least, most] = self.range(axis, low, high).map(|number| number as i32);
             self.first[axis] = least;
-            self.count[axis] = most - least + 1;
+            self.count[axis] = most.saturating_sub(least).saturating_add(1);
         }
+    }
+
+    /// Columns of a row whose nodes come near a box.
+    fn columns_near(&self, row: i32, low: Point, high: Point) -> std::ops::Range<i32> {
+        let (start, room) = (self.node([self.first[0], row]), Point::repeat(2.0 * self.size));
+        let (mut first, mut end) = (0.0f64, f64::from(self.count[0]));
+        for axis in 0..2 {
+            let [p, q] = [low - room, high + room].map(|side| side[axis] - start[axis]);
+            let step = self.a1[axis];
+            if step.abs() > 1e-9 * self.size {
+                first = first.max((p / step).min(q / step).floor());
+                end = end.min((p / step).max(q / step).ceil() + 1.0);
+            }
+        }
+        first as i32..end.max(first) as i32
     }
 
     /// Lattice coordinates of a point.
@@ -144,11 +173,15 @@ impl RegularMesh {
             least.x <= high.x && least.y <= high.y && most.x >= low.x && most.y >= low.y
         };
         let mut segments = Vec::new();
-        for edge in 0..(self.count[0] * self.count[1] * 3) as u32 {
-            if near(self.triangle_beside(edge, false)) || near(self.triangle_beside(edge, true)) {
-                let [a, b] = self.edge_stars(edge).map(|s| self.node(s));
-                let label = Label { outline: 0, trace: NONE, mesh: edge, mesh_reversed: false };
-                segments.push(Segment { a, b, label });
+        for row in 0..self.count[1] {
+            let start = row as u32 * self.count[0] as u32;
+            let columns = self.columns_near(self.first[1] + row, low, high);
+            for edge in columns.flat_map(|column| (0..3).map(move |side| 3 * (start + column as u32) + side)) {
+                if near(self.triangle_beside(edge, false)) || near(self.triangle_beside(edge, true)) {
+                    let [a, b] = self.edge_stars(edge).map(|s| self.node(s));
+                    let label = Label { outline: 0, trace: NONE, mesh: edge, mesh_reversed: false };
+                    segments.push(Segment { a, b, label });
+                }
             }
         }
         segments

@@ -9,6 +9,8 @@ use super::{GeometryError, Point, faces};
 
 /// The index that stands for nothing.
 pub const NONE: u32 = u32::MAX;
+/// Edges whose half-edges and faces can be told apart by 32 bits.
+const EDGES_MAX: usize = 1 << 30;
 
 /// Where an edge comes from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -196,7 +198,7 @@ impl Arrangement {
 
 impl Arrangement {
     /// Adds up what became of each trace and which traces coincide; `edges` are those before pruning.
-    fn report_traces(&mut self, points: &[Point], edges: &[Edge], kept: &[bool], members: &[Member]) {
+    fn report_traces(&mut self, points: &[Point], edges: &[Edge], kept: &[bool], members: &[Member], copies: &Copies) {
         let mut overlaps = Vec::new();
         let mut ranked = (0, 0u32); // edges looked at, and how many of them were kept
         for member in members {
@@ -209,15 +211,74 @@ impl Arrangement {
             report.noded += length;
             report.kept += if kept[edge] { length } else { 0.0 };
             report.in_rock += if in_rock { length } else { 0.0 };
-            let holder = edges[edge].label.trace;
-            if holder != member.trace {
-                overlaps.push([holder, member.trace]);
-            }
+            overlaps.push([edges[edge].label.trace, member.trace]);
         }
         overlaps.sort_unstable();
         overlaps.dedup();
+        copies.report(&mut self.report.traces, &mut overlaps);
+        overlaps.retain(|[holder, trace]| holder != trace);
         self.report.overlapping_traces = overlaps;
     }
+}
+
+/// Traces that run through the same points as an earlier one; only the first of each is cut.
+struct Copies {
+    /// The first trace like each.
+    first: Vec<u32>,
+}
+
+impl Copies {
+    /// Compares all traces; segments that are outline or mesh as well are never copies.
+    fn find(segments: &[Segment], traces: usize) -> Self {
+        let of_trace = |put: &mut dyn FnMut(usize, u32)| {
+            let labelled = (0u32..).zip(segments).filter(|(_, segment)| segment.label.trace != NONE);
+            labelled.for_each(|(k, segment)| put(segment.label.trace as usize, k));
+        };
+        let groups = Groups::build(traces, of_trace);
+        let compare = |s: u32, t: u32| {
+            let places = |t: u32| groups.get(t as usize).iter().map(|&k| place(&segments[k as usize]));
+            places(s).cmp(places(t))
+        };
+        let pure = |t: &u32| {
+            let own = groups.get(*t as usize);
+            own.iter().all(|&k| segments[k as usize].label == Label::trace(*t))
+        };
+        let mut order: Vec<u32> = (0..traces as u32).filter(pure).collect();
+        order.sort_unstable_by(|&s, &t| compare(s, t).then(s.cmp(&t)));
+        let mut first: Vec<u32> = (0..traces as u32).collect();
+        for alike in order.chunk_by(|&s, &t| compare(s, t).is_eq()) {
+            alike.iter().for_each(|&t| first[t as usize] = alike[0]);
+        }
+        Self { first }
+    }
+
+    /// Whether a segment is to be cut.
+    fn is_first(&self, segment: &Segment) -> bool {
+        let trace = segment.label.trace;
+        trace == NONE || self.first[trace as usize] == trace
+    }
+
+    /// Gives each copy what the first has: its lengths, and its overlaps, sorted as they were.
+    fn report(&self, lengths: &mut [TraceLength], overlaps: &mut Vec<[u32; 2]>) {
+        let copies = || (0u32..).zip(&self.first).filter(|(trace, first)| trace != *first);
+        if copies().next().is_none() {
+            return;
+        }
+        let mut of_first = overlaps.clone();
+        of_first.sort_unstable_by_key(|&[holder, trace]| [trace, holder]);
+        for (copy, &first) in copies() {
+            lengths[copy as usize] = lengths[first as usize];
+            let from = of_first.partition_point(|pair| pair[1] < first);
+            let own = of_first[from..].iter().take_while(|pair| pair[1] == first);
+            overlaps.extend(own.map(|&[holder, _]| [holder, copy]));
+        }
+        overlaps.sort_unstable();
+    }
+}
+
+/// Start and end of a segment as numbers that compare.
+fn place(segment: &Segment) -> [u64; 4] {
+    [segment.a.x, segment.a.y, segment.b.x, segment.b.y].map(f64::to_bits)
 }
 
 /// Cuts the plane along segments: merges what lies within `tolerance` (m), inserts crossings, trims dead ends, walks
@@ -231,17 +292,26 @@ impl Arrangement {
 /// A coordinate that is not finite, a tolerance within round-off, outlines that do not close, or a noder that does not
 /// settle within its passes.
 pub fn arrange(segments: &[Segment], tolerance: f64) -> Result<Arrangement, GeometryError> {
-    let mut noder = Noder::new(segments, tolerance)?;
+    arrange_within(segments, tolerance, EDGES_MAX)
+}
+
+/// As [`arrange`], stopping as soon as there are more than `edges_max` edges.
+///
+/// # Errors
+/// As [`arrange`], and too many edges.
+pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) -> Result<Arrangement, GeometryError> {
+    let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
+    let copies = Copies::find(segments, traces as usize);
+    let mut noder = Noder::new(segments, |s| copies.is_first(s), tolerance, edges_max.min(EDGES_MAX))?;
     let mut report = noder.run()?;
     let (points, work) = (noder.points, noder.edges);
-    let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
     report.traces = vec![TraceLength::default(); traces as usize];
     let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
     report.fused_outline_length = fused_length;
     let kept = prune(&points, &edges, &mut report);
     let (points_kept, edges_kept) = compact(&points, &edges, &kept);
     let mut arrangement = faces::build(points_kept, edges_kept, report)?;
-    arrangement.report_traces(&points, &edges, &kept, &members);
+    arrangement.report_traces(&points, &edges, &kept, &members, &copies);
     Ok(arrangement)
 }
 

@@ -45,6 +45,16 @@ pub enum GeometryError {
         /// Snap tolerance (m).
         tolerance: f64,
     },
+    /// The plane falls into more pieces than there is room for.
+    #[error("traces, outlines and mesh cut each other into more than {limit} pieces, many of them near ({x}, {y})")]
+    TooManyPieces {
+        /// Pieces allowed.
+        limit: usize,
+        /// Abscissa of one of them (m).
+        x: f64,
+        /// Ordinate of one of them (m).
+        y: f64,
+    },
     /// Outline edges do not close, so that inside and outside are undefined.
     #[error(
         "outline edges do not close at ({x}, {y}): {found} windings meet where {expected} belong: close the outline"

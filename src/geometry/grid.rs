@@ -10,7 +10,7 @@ const CELLS_MAX: f64 = 4.0e6;
 const EDGES_PER_CELL: f64 = 2.0;
 
 /// Square cells over a box.
-pub(super) struct CellGrid {
+pub(crate) struct CellGrid {
     low: Point,
     cell: f64,
     inverse: f64,
@@ -49,6 +49,11 @@ impl CellGrid {
         Self::new(low, high, by_length.min((area / count as f64).sqrt()).max(cell_min))
     }
 
+    /// Returns the area of a cell (m²).
+    pub fn area(&self) -> f64 {
+        self.cell * self.cell
+    }
+
     /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.columns * self.rows
@@ -81,6 +86,12 @@ impl CellGrid {
                 visit(self.cell(column, row));
             }
         }
+    }
+
+    /// Returns about the number of cells through which the edge from `a` to `b` passes.
+    pub fn cells_along(&self, a: Point, b: Point) -> usize {
+        let along = (b - a).abs() * self.inverse;
+        1 + along.x.min(self.columns as f64) as usize + along.y.min(self.rows as f64) as usize
     }
 
     /// Visits every cell that comes within `radius` (m, far above round-off) of the edge from `a` to `b`, once each.

@@ -6,14 +6,16 @@
 mod arrangement;
 mod error;
 mod faces;
-mod grid;
+pub(crate) mod grid;
 pub mod joint_set;
 pub mod loops;
 mod noder;
 pub mod polygon;
 pub mod segment;
 
-pub use arrangement::{Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange};
+pub use arrangement::{
+    Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange, arrange_within,
+};
 pub use error::GeometryError;
 
 /// A place in the plane (m).

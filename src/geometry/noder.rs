@@ -17,6 +17,10 @@ const BEND_RATIO: f64 = 1e-3;
 const MARGIN_RATIO: f64 = 1.0;
 /// The tolerance must exceed this many units of round-off of the largest coordinate.
 const ROUND_OFF_RATIO: f64 = 64.0;
+/// Hits of one pass over the edges allowed; many hits may fall on one vertex.
+const HITS_RATIO: usize = 4;
+/// Places in cells of the grid over the edges allowed.
+const PLACES_RATIO: usize = 100;
 
 /// An edge in the making.
 #[derive(Clone, Copy)]
@@ -53,21 +57,28 @@ pub(super) struct Noder {
     pub points: Vec<Point>,
     pub edges: Vec<WorkEdge>,
     tolerance: f64,
+    /// Edges allowed.
+    edges_max: usize,
     merged: usize,
     grid: CellGrid,
     chains: PointChains,
 }
 
 impl Noder {
-    /// Merges the ends of the segments; segments that shrink to a point vanish.
-    pub fn new(segments: &[Segment], tolerance: f64) -> Result<Self, GeometryError> {
+    /// Merges the ends of the segments that count; segments that shrink to a point vanish.
+    pub fn new(
+        segments: &[Segment],
+        counts: impl Fn(&Segment) -> bool,
+        tolerance: f64,
+        edges_max: usize,
+    ) -> Result<Self, GeometryError> {
         check(segments, tolerance)?;
         let reach = reach(segments);
         let cut = segments.iter().filter_map(|segment| clip(segment, &reach));
         let grid = CellGrid::for_edges(cut.clone().map(|s| (s.a, s.b)), 4.0 * tolerance);
         let chains = PointChains::new(grid.len());
-        let mut noder = Self { points: vec![], edges: vec![], tolerance, merged: 0, grid, chains };
-        for Segment { a, b, label } in cut {
+        let mut noder = Self { points: vec![], edges: vec![], tolerance, edges_max, merged: 0, grid, chains };
+        for Segment { a, b, label } in cut.filter(counts) {
             let (a, b) = (noder.vertex(a), noder.vertex(b));
             if a != b {
                 let lattice = label.mesh != NONE && label.trace == NONE && label.outline == 0;
@@ -80,12 +91,12 @@ impl Noder {
     /// Splits and crosses until nothing changes.
     pub fn run(&mut self) -> Result<NodingReport, GeometryError> {
         let mut passes = 1;
-        while let Some(hits) = self.hits() {
+        while let Some(hits) = self.hits()? {
             if passes == PASSES_MAX {
                 let (p, tolerance) = (self.points[hits[0].vertex as usize], self.tolerance);
                 return Err(GeometryError::Unsettled { passes, limit: PASSES_MAX, x: p.x, y: p.y, tolerance });
             }
-            self.split(hits);
+            self.split(hits)?;
             passes += 1;
         }
         let (tolerance, merged_vertices) = (self.tolerance, self.merged);
@@ -93,12 +104,34 @@ impl Noder {
     }
 
     /// Finds what splits edges: vertices near them, and crossings only when there are none of those.
-    fn hits(&mut self) -> Option<Vec<Hit>> {
-        let mut hits = self.near_vertices();
+    fn hits(&mut self) -> Result<Option<Vec<Hit>>, GeometryError> {
+        self.check_places()?;
+        let mut hits = self.near_vertices()?;
         if hits.is_empty() {
-            hits = self.crossings();
+            hits = self.crossings()?;
         }
-        (!hits.is_empty()).then_some(hits)
+        Ok((!hits.is_empty()).then_some(hits))
+    }
+
+    /// Refuses more than `limit` pieces; `edge` is one of the many.
+    fn check_count(&self, pieces: usize, limit: usize, edge: u32) -> Result<(), GeometryError> {
+        if pieces <= limit {
+            return Ok(());
+        }
+        let (a, b) = self.ends(&self.edges[edge as usize]);
+        let middle = (a + b) * 0.5;
+        Err(GeometryError::TooManyPieces { limit: self.edges_max, x: middle.x, y: middle.y })
+    }
+
+    /// Refuses edges that pass through too many cells of the grid, as dense ones across the whole plane do.
+    fn check_places(&self) -> Result<(), GeometryError> {
+        let mut places = 0;
+        for (id, edge) in (0u32..).zip(&self.edges) {
+            let (a, b) = self.ends(edge);
+            places += self.grid.cells_along(a, b);
+            self.check_count(places, PLACES_RATIO.saturating_mul(self.edges_max), id)?;
+        }
+        Ok(())
     }
 
     fn ends(&self, edge: &WorkEdge) -> (Point, Point) {
@@ -150,29 +183,30 @@ impl Noder {
     }
 
     /// Finds the vertices near the edges that have not been tested yet.
-    fn near_vertices(&mut self) -> Vec<Hit> {
+    fn near_vertices(&mut self) -> Result<Vec<Hit>, GeometryError> {
         let mut hits = Vec::new();
         for (id, edge) in (0u32..).zip(&self.edges).filter(|(_, edge)| edge.unsplit) {
             let (a, b) = self.ends(edge);
             self.grid.visit_edge(a, b, self.tolerance, |cell| {
                 hits.extend(self.chains.get(cell).filter_map(|vertex| self.near(id, vertex)));
             });
+            self.check_count(hits.len(), HITS_RATIO.saturating_mul(self.edges_max), id)?;
         }
         for edge in &mut self.edges {
             edge.unsplit = false;
         }
-        hits
+        Ok(hits)
     }
 
     /// Finds the crossings of edges that have not been tested yet, and the edges near the vertices made there.
-    fn crossings(&mut self) -> Vec<Hit> {
+    fn crossings(&mut self) -> Result<Vec<Hit>, GeometryError> {
         if self.edges.iter().all(|edge| !edge.uncrossed || edge.lattice) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let ends = self.edges.iter().map(|edge| self.ends(edge));
         let cells = Groups::of_edges(&self.grid, ends, self.tolerance);
         let first_new = self.points.len();
-        let crossings = self.cross_all(&cells);
+        let crossings = self.cross_all(&cells)?;
         let mut hits = Vec::with_capacity(2 * crossings.len());
         for crossing in &crossings {
             for edge in crossing.edges {
@@ -189,11 +223,11 @@ impl Noder {
         for edge in &mut self.edges {
             edge.uncrossed = false;
         }
-        hits
+        Ok(hits)
     }
 
     /// Makes a vertex at each proper crossing of an untested edge with any other.
-    fn cross_all(&mut self, cells: &Groups) -> Vec<Crossing> {
+    fn cross_all(&mut self, cells: &Groups) -> Result<Vec<Crossing>, GeometryError> {
         let mut crossings = Vec::new();
         let mut seen = vec![NONE; self.edges.len()];
         let mut near = Vec::new();
@@ -218,8 +252,9 @@ impl Noder {
                     crossings.push(Crossing { vertex: self.vertex(place), edges: [e, f] });
                 }
             }
+            self.check_count(crossings.len(), HITS_RATIO.saturating_mul(self.edges_max), e)?;
         }
-        crossings
+        Ok(crossings)
     }
 
     /// Returns the point where two edges cross inside both, decided by exact signs.
@@ -238,10 +273,12 @@ impl Noder {
     }
 
     /// Replaces each edge that is hit by the chain through its vertices.
-    fn split(&mut self, mut hits: Vec<Hit>) {
+    fn split(&mut self, mut hits: Vec<Hit>) -> Result<(), GeometryError> {
         hits.sort_unstable_by(|p, q| (p.edge.cmp(&q.edge)).then(p.at.total_cmp(&q.at)).then(p.vertex.cmp(&q.vertex)));
         hits.dedup_by_key(|hit| (hit.edge, hit.vertex));
-        let mut edges = Vec::with_capacity(self.edges.len() + hits.len());
+        let pieces = self.edges.len() + hits.len();
+        self.check_count(pieces, self.edges_max, hits[hits.len() / 2].edge)?;
+        let mut edges = Vec::with_capacity(pieces);
         let mut rest = hits.as_slice();
         for (k, edge) in self.edges.iter().enumerate() {
             let count = rest.iter().take_while(|hit| hit.edge == k as u32).count();
@@ -250,6 +287,7 @@ impl Noder {
             push_chain(edge, own, &mut edges);
         }
         self.edges = edges;
+        Ok(())
     }
 }
 

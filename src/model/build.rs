@@ -3,6 +3,7 @@
 mod bolts;
 mod geometry;
 mod implicit;
+mod memory;
 mod place;
 mod ports;
 mod quiet;

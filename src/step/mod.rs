@@ -19,6 +19,7 @@ pub use applied::{acceleration, push_forces};
 pub use guard::{Failure, StepError};
 pub use prepare::{begin_stage, prepare};
 pub use report::{StepReport, block_motion, energies, momentum};
+pub(crate) use touch::CUTOFF;
 
 use crate::contact::{SweepReport, VertexEdge};
 use crate::mechanics::Damping;

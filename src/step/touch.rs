@@ -14,7 +14,7 @@ use super::{Regime, Step};
 /// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
 const SKIN: f64 = 0.1;
 /// Distance, relative to the mesh size, within which pairs are kept.
-pub(super) const CUTOFF: f64 = 0.25;
+pub(crate) const CUTOFF: f64 = 0.25;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
 pub(super) const REACH: f64 = 0.005;
 

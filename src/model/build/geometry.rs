@@ -3,13 +3,11 @@
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
-use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange, polygon};
+use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange_within, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
+use super::memory::Demand;
 use super::{BuildStage, index_of};
-
-/// Bytes that one lattice cell with its share of elements, covers and contacts needs at the peak of a build.
-const BYTES_PER_CELL: f64 = 4000.0;
 
 /// The arranged plane of a case.
 pub(super) struct Plane {
@@ -40,11 +38,15 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     tell(BuildStage::Joints);
     let loops = Loops::read(case)?;
     let (low, high) = loops.bounds();
-    check_memory(case, low, high)?;
+    let demand = Demand { case, low, high };
+    demand.check_mesh()?;
+    demand.check_sets()?;
     let default_law = case.default_joint_law().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(0);
     let mut traces = traces(case, low, high, default_law)?;
+    demand.check_traces(&traces)?;
     let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
+    demand.check_dense(&traces, tolerance)?;
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));
@@ -55,7 +57,9 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     }
     segments.extend(mesh.segments(low, high));
     tell(BuildStage::Arrangement);
-    let mut arrangement = arrange(&segments, tolerance).map_err(invalid("domain"))?;
+    let arranged = arrange_within(&segments, tolerance, demand.edges_max());
+    let mut arrangement = arranged.map_err(|error| demand.explain(&error))?;
+    demand.check_edges(&arrangement)?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| (t as usize) < user_traces));
@@ -99,25 +103,6 @@ impl Loops {
         segments.extend(directed(&self.holes, -1));
         segments
     }
-}
-
-fn check_memory(case: &Case, low: Point, high: Point) -> Result<(), Invalid> {
-    let bytes = RegularMesh::cell_estimate(case.mesh.size, low, high) * BYTES_PER_CELL;
-    let limit = case.solver.memory_limit as f64;
-    if bytes <= limit {
-        return Ok(());
-    }
-    let size = case.mesh.size * (bytes / limit).sqrt();
-    Err(Invalid {
-        key: "mesh.size".into(),
-        message: format!(
-            "{} m makes a model of about {:.1} GB, above the limit of {:.1} GB: use a size above {size:.3} m or raise \
-             solver.memory_limit",
-            case.mesh.size,
-            bytes / 1e9,
-            limit / 1e9
-        ),
-    })
 }
 
 /// Joint traces of the case, then those of its sets, with their laws.
