@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use enmm::io::bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
 /// What to time.
 #[derive(clap::Args)]
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     };
     let mut begin = |name: &str| {
         if !arguments.json {
-            eprintln!("{name} …");
+            tell_line(&format!("{name} …"));
         }
     };
     let report = match bench(&options, &mut begin) {

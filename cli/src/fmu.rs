@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use enmm_fmi::pack::{PackError, Packed, pack};
 use enmm_fmi::{library, table};
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
 /// Arguments of `enmm fmu`.
 #[derive(Args)]
@@ -61,7 +61,7 @@ fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed,
         return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
     }
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        tell_line(&format!("warning: {warning}"));
     }
     let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
     let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;

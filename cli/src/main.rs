@@ -6,6 +6,7 @@ mod bound;
 mod check;
 mod fmu;
 mod fos;
+mod output;
 mod progress;
 mod run;
 mod verify;
@@ -14,6 +15,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use output::{fail, print_line, tell_line};
 
 /// Bad input; nothing was written.
 const BAD_INPUT: u8 = 2;
@@ -63,7 +66,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match Arguments::parse().command {
+    match Arguments::try_parse() {
+        Ok(arguments) => output::finish(execute(arguments.command)),
+        Err(told) => output::tell(&told),
+    }
+}
+
+fn execute(command: Command) -> ExitCode {
+    match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
@@ -78,17 +88,4 @@ fn main() -> ExitCode {
 fn schema() -> ExitCode {
     print_line(&format!("{:#}", enmm::io::schema()));
     ExitCode::SUCCESS
-}
-
-/// Prints a line; a reader that has gone away ends the output quietly.
-fn print_line(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
-}
-
-/// Prints an error as one line and returns its exit status.
-fn fail(message: &impl std::fmt::Display, status: u8) -> ExitCode {
-    let line = message.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    eprintln!("error: {line}");
-    ExitCode::from(status)
 }

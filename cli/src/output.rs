@@ -1,0 +1,52 @@
+//! Standard output and standard error. What cannot be written to standard output is an error of the command, unless its
+//! reader has gone away.
+
+use std::io::{self, ErrorKind, Write};
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+use crate::FAILED;
+
+/// The first line that could not be written.
+static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Prints a line; a reader that has gone away ends the output quietly, any other failure is told by [`finish`].
+pub fn print_line(text: &str) {
+    note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
+}
+
+fn note(written: io::Result<()>) {
+    let Err(error) = written else { return };
+    if error.kind() != ErrorKind::BrokenPipe {
+        FAILURE.lock().unwrap_or_else(|poison| poison.into_inner()).get_or_insert(error);
+    }
+}
+
+/// Prints what the parser of the arguments has to tell, help or error, and returns its exit status.
+pub fn tell(told: &clap::Error) -> ExitCode {
+    let written = told.print();
+    if !told.use_stderr() {
+        note(written);
+    }
+    finish(ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(FAILED)))
+}
+
+/// The exit status of a command, or that of a failure when it could not print what it had to tell.
+pub fn finish(status: ExitCode) -> ExitCode {
+    let failure = FAILURE.lock().unwrap_or_else(|poison| poison.into_inner()).take();
+    let Some(error) = failure else { return status };
+    let failed = fail(&format!("cannot write to standard output ({error}): send it elsewhere"), FAILED);
+    if status == ExitCode::SUCCESS { failed } else { status }
+}
+
+/// Prints a line to standard error; there is nobody left to tell when that fails.
+pub fn tell_line(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Prints an error as one line and returns its exit status.
+pub fn fail(message: &impl std::fmt::Display, status: u8) -> ExitCode {
+    let line = message.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    tell_line(&format!("error: {line}"));
+    ExitCode::from(status)
+}
