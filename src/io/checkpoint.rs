@@ -3,8 +3,9 @@
 //! Layout, little-endian: magic `ENMMCKPT`; format version u32; engine version and case hash, each as u32 length and
 //! text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
 
-use std::fs;
-use std::io;
+use std::cmp::Ordering;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::Path;
 
 use serde::Serialize;
@@ -17,6 +18,8 @@ const FORMAT: u32 = 6;
 const TEXT_MAX: usize = 256;
 /// Bytes of length and checksum.
 const SUMMARY: usize = 12;
+/// Most bytes before the payload.
+const HEAD_MAX: usize = MAGIC.len() + 4 + 2 * (4 + TEXT_MAX) + SUMMARY;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +27,9 @@ pub enum CheckpointError {
     /// The file cannot be read.
     #[error("cannot read the checkpoint ({0}); check its path and permissions")]
     Unreadable(io::Error),
+    /// It is a directory, a pipe or a device.
+    #[error("this is no regular file: give a checkpoint.enmm that a run has written")]
+    NoFile,
     /// It is something else.
     #[error("this is no checkpoint of enmm: give a checkpoint.enmm that a run has written")]
     Foreign,
@@ -82,6 +88,31 @@ pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> io::Result<Vec<u8>>
 /// # Errors
 /// When the bytes are no whole checkpoint of this engine and case.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, CheckpointError> {
+    let Head { size, length, checksum } = head(bytes, case_hash)?;
+    check_size(size, length, bytes.len() as u64)?;
+    let payload = &bytes[size..];
+    if crc32fast::hash(payload) != checksum {
+        return Err(CheckpointError::Damaged("its checksum does not match".to_owned()));
+    }
+    match postcard::take_from_bytes(payload) {
+        Ok((value, [])) => Ok(value),
+        Ok(_) => Err(CheckpointError::Damaged("it holds something else".to_owned())),
+        Err(error) => Err(CheckpointError::Damaged(error.to_string())),
+    }
+}
+
+/// What stands before a payload.
+struct Head {
+    /// Bytes of the head itself.
+    size: usize,
+    /// Bytes of the payload.
+    length: u64,
+    /// CRC-32 of the payload.
+    checksum: u32,
+}
+
+/// Reads the head at the beginning of some bytes, and refuses what is no checkpoint of this engine and case.
+fn head(bytes: &[u8], case_hash: &str) -> Result<Head, CheckpointError> {
     let mut reader = Reader { bytes, at: 0 };
     if reader.take(MAGIC.len()).map_err(|_| CheckpointError::Foreign)? != MAGIC {
         return Err(CheckpointError::Foreign);
@@ -100,17 +131,15 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, C
     }
     let length = u64::from_le_bytes(reader.array()?);
     let checksum = reader.number()?;
-    let payload = reader.take(usize::try_from(length).unwrap_or(usize::MAX))?;
-    if reader.at != bytes.len() {
-        return Err(CheckpointError::Damaged("bytes follow its end".to_owned()));
-    }
-    if crc32fast::hash(payload) != checksum {
-        return Err(CheckpointError::Damaged("its checksum does not match".to_owned()));
-    }
-    match postcard::take_from_bytes(payload) {
-        Ok((value, [])) => Ok(value),
-        Ok(_) => Err(CheckpointError::Damaged("it holds something else".to_owned())),
-        Err(error) => Err(CheckpointError::Damaged(error.to_string())),
+    Ok(Head { size: reader.at, length, checksum })
+}
+
+/// Refuses a checkpoint of `found` bytes that is not head and payload, neither more nor less.
+fn check_size(head: usize, payload: u64, found: u64) -> Result<(), CheckpointError> {
+    match found.cmp(&payload.saturating_add(head as u64)) {
+        Ordering::Less => Err(CheckpointError::Truncated(found as usize)),
+        Ordering::Equal => Ok(()),
+        Ordering::Greater => Err(CheckpointError::Damaged("bytes follow its end".to_owned())),
     }
 }
 
@@ -122,12 +151,26 @@ pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Resu
     write_atomic(path, &encode(payload, case_hash)?)
 }
 
-/// Reads a checkpoint.
+/// Reads a checkpoint; what is no regular file, or has the wrong head or size, is refused before it is read.
 ///
 /// # Errors
 /// See [`decode`].
 pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, CheckpointError> {
-    decode(&fs::read(path).map_err(CheckpointError::Unreadable)?, case_hash)
+    // Opening a pipe would wait for its writer.
+    let metadata = fs::metadata(path).map_err(CheckpointError::Unreadable)?;
+    if !metadata.is_file() {
+        return Err(CheckpointError::NoFile);
+    }
+    let mut file = File::open(path).map_err(CheckpointError::Unreadable)?;
+    let mut bytes = Vec::new();
+    file.by_ref().take(HEAD_MAX as u64).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
+    let Head { size, length, .. } = head(&bytes, case_hash)?;
+    check_size(size, length, metadata.len())?;
+    bytes
+        .try_reserve_exact((metadata.len() as usize).saturating_sub(bytes.len()))
+        .map_err(|error| CheckpointError::Unreadable(io::Error::new(io::ErrorKind::OutOfMemory, error.to_string())))?;
+    file.take(metadata.len()).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
+    decode(&bytes, case_hash)
 }
 
 fn version(found: String, own: String) -> CheckpointError {

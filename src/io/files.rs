@@ -51,6 +51,37 @@ fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
     Ok(directory.join(hidden))
 }
 
+/// Kinds of files that runs and searches leave.
+const KINDS: [&str; 6] = ["csv", "enmm", "json", "png", "pvd", "vtu"];
+
+/// Removes temporary files that killed programs left in a directory; a missing directory has none.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn sweep_temporaries(directory: &Path) -> io::Result<()> {
+    let entries = match fs::read_dir(directory) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        read => read.map_err(at_path(directory))?,
+    };
+    for entry in entries {
+        let path = entry.map_err(at_path(directory))?.path();
+        let writer = path.file_name().and_then(|name| name.to_str()).and_then(writer_of_temporary);
+        // Where the system tells which processes there are, one that still writes is left alone.
+        if writer.is_some_and(|process| !Path::new("/proc").join(process.to_string()).exists()) {
+            fs::remove_file(&path).map_err(at_path(&path))?;
+        }
+    }
+    Ok(())
+}
+
+/// The process that made a temporary file of this name, when it is one of ours.
+fn writer_of_temporary(name: &str) -> Option<u32> {
+    let (name, tail) = name.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?;
+    let (process, count) = tail.split_once('-')?;
+    let ours = count.parse::<u64>().is_ok() && name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
+    process.parse().ok().filter(|_| ours)
+}
+
 fn fill(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut file = BufWriter::with_capacity(BUFFER, File::create(path)?);
     write(&mut file)?;

@@ -1,6 +1,6 @@
 //! The loop over stages and steps, with outputs at their times.
 
-use std::fs;
+use std::io;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -20,6 +20,7 @@ use crate::model::fit::{self, Unfit};
 use crate::state::{Ledger, Seconds, State};
 use crate::step::{StepError, StepReport};
 
+use super::results::Past;
 use super::rows::{self, Plan};
 use super::{Observer, RunError, RunOptions, RunProgress, results};
 
@@ -132,32 +133,24 @@ impl<'a> Driver<'a> {
         clock: Instant,
     ) -> Result<Self, RunError> {
         let directory = &options.directory;
-        fs::create_dir_all(directory).map_err(RunError::Directory)?;
-        let output = simulation.case().output.clone();
-        if output.pictures {
+        let used = results::enter(directory).map_err(RunError::Directory)?;
+        let past = options.resume.as_deref().map(|checkpoint| results::bring_past(checkpoint, directory));
+        let past = past.transpose().map_err(RunError::Directory)?;
+        if used && past != Some(Past::Here) {
+            observer.warn(&format!("the results of an earlier run in {} are overwritten", directory.display()));
+        }
+        if simulation.case().output.pictures {
             results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
         }
-        let columns = rows::columns(simulation.case());
-        let history_path = directory.join("history.csv");
         let resumed = saved.is_some();
-        let (history, frames, good) = match saved {
-            None => {
-                results::clear(directory).map_err(RunError::Directory)?;
-                let history = HistoryWriter::new(&history_path, &columns).map_err(RunError::Directory)?;
-                let frames = output.frames.then(|| PvdWriter::new(directory)).transpose();
-                let good = Saved { state: simulation.state().clone(), progress: Progress::default() };
-                (history, frames.map_err(RunError::Directory)?, good)
-            }
-            Some(good) => {
-                simulation.return_to(&good.state);
-                let until = kept_until(&simulation);
-                let history = HistoryWriter::open_for_append(&history_path, &columns, until);
-                let frames = output.frames.then(|| PvdWriter::open_for_append(directory, until)).transpose();
-                (history.map_err(RunError::Directory)?, frames.map_err(RunError::Directory)?, good)
-            }
-        };
-        let warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
+        let good = saved.unwrap_or_else(|| Saved { state: simulation.state().clone(), progress: Progress::default() });
+        if resumed {
+            simulation.return_to(&good.state);
+        }
+        let mut warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
+        warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
         warnings.iter().for_each(|warning| observer.warn(warning));
+        let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let progress = good.progress.clone();
         let stage_clock = Instant::now();
         let mut driver = Self {
@@ -407,6 +400,33 @@ impl<'a> Driver<'a> {
         summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;
         Ok(summary)
     }
+}
+
+/// Begins histories and frames, or continues those of the past of a restored state.
+fn writers(simulation: &Simulation, directory: &Path, resumed: bool) -> io::Result<(HistoryWriter, Option<PvdWriter>)> {
+    let (path, columns) = (directory.join("history.csv"), rows::columns(simulation.case()));
+    let frames = simulation.case().output.frames;
+    if !resumed {
+        results::clear(directory)?;
+        let history = HistoryWriter::new(&path, &columns)?;
+        return Ok((history, frames.then(|| PvdWriter::new(directory)).transpose()?));
+    }
+    let until = kept_until(simulation);
+    let history = HistoryWriter::open_for_append(&path, &columns, until)?;
+    Ok((history, frames.then(|| PvdWriter::open_for_append(directory, until)).transpose()?))
+}
+
+/// What a user should know whose histories begin at a checkpoint.
+fn lost_past(past: Past, simulation: &Simulation, directory: &Path) -> Option<String> {
+    let lost = past == Past::Lost && simulation.time() > 0.0;
+    lost.then(|| {
+        format!(
+            "history.csv and frames in {} begin at t = {:.6} s: neither there nor beside the checkpoint is a \
+             history.csv with the rows before; continue from the checkpoint in the directory of its run to have them",
+            directory.display(),
+            simulation.time()
+        )
+    })
 }
 
 /// Time (s) up to which rows and frames belong to the past of a restored state; it writes those of its own time

@@ -2,28 +2,78 @@
 
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::geometry::Point;
 use crate::io::decor::model_decor;
+use crate::io::files::{at_path, sweep_temporaries};
 use crate::io::picture::{displacement_picture, history_picture, model_picture};
 use crate::model::snapshot::Polygons;
 use crate::model::{Case, Simulation};
 
 use super::rows;
 
-/// Makes the directory and removes the frames of an earlier run in it.
+/// What tells that a run has written into a directory.
+const TRACES: [&str; 2] = ["history.csv", "summary.json"];
+
+/// Makes the directory, removes what a killed run left half written, and tells whether a run has been here before.
+pub fn enter(directory: &Path) -> io::Result<bool> {
+    fs::create_dir_all(directory)?;
+    sweep_temporaries(directory)?;
+    sweep_temporaries(&directory.join("frames"))?;
+    Ok(TRACES.iter().any(|name| directory.join(name).exists()))
+}
+
+/// Removes the frames of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
-    let frames = directory.join("frames");
-    fs::create_dir_all(&frames)?;
-    for entry in fs::read_dir(&frames)? {
+    fs::create_dir_all(directory.join("frames"))?;
+    frames(directory)?.iter().try_for_each(fs::remove_file)
+}
+
+/// Files of frames in a directory.
+fn frames(directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory.join("frames"))? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if name.ends_with(".vtu") && (name.starts_with("elements_") || name.starts_with("joints_")) {
-            fs::remove_file(path)?;
+            found.push(path);
         }
     }
-    Ok(())
+    Ok(found)
+}
+
+/// Where the rows and frames before a checkpoint are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Past {
+    /// In the directory of the results, as its own.
+    Here,
+    /// Copied to it from the directory of the checkpoint.
+    Copied,
+    /// Nowhere.
+    Lost,
+}
+
+/// Copies histories and frames that lie beside a checkpoint into another directory of results.
+pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
+    let beside = checkpoint.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let apart = beside.canonicalize()? != directory.canonicalize()?;
+    if !apart || !beside.join("history.csv").is_file() {
+        let here = directory.join("history.csv").is_file();
+        return Ok(if here { Past::Here } else { Past::Lost });
+    }
+    clear(directory)?;
+    let copy = |path: &Path| -> io::Result<()> {
+        let to = directory.join(path.strip_prefix(beside).unwrap_or(path));
+        fs::copy(path, &to).map(drop).map_err(at_path(&to))
+    };
+    copy(&beside.join("history.csv"))?;
+    let collection = beside.join("run.pvd");
+    if collection.is_file() && beside.join("frames").is_dir() {
+        frames(beside)?.iter().try_for_each(|frame| copy(frame))?;
+        copy(&collection)?;
+    }
+    Ok(Past::Copied)
 }
 
 /// Draws the model before it moves.
