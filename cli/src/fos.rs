@@ -5,11 +5,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm::io::fos::{Found, remedy};
-use enmm::io::{FosError, FosOptions};
+use enmm::io::{FosError, FosOptions, LoadedCase};
+use enmm::model::Simulation;
 use enmm::model::strength_reduction::{End, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict};
 
 use crate::run::{INTERRUPT, directory_of, interrupt};
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
@@ -80,10 +81,21 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     };
     match enmm::io::fos(&loaded, &options, &mut hear) {
         Ok(found) => report(arguments, &found, &options.directory),
-        Err(error @ (FosError::NoRest(_) | FosError::Output(_))) => refuse(arguments, &error, FAILED),
+        Err(error @ FosError::NoRest(_)) => {
+            warn(&loaded);
+            refuse(arguments, &error, FAILED)
+        }
+        Err(error @ FosError::Output(_)) => refuse(arguments, &error, FAILED),
         Err(error @ FosError::Interrupted) => refuse(arguments, &error, INTERRUPTED),
         Err(error) => refuse(arguments, &error, BAD_INPUT),
     }
+}
+
+/// Tells what may be the cause of a slope that does not come to rest.
+fn warn(loaded: &LoadedCase) {
+    let built = Simulation::new(loaded.case.clone()).map(|simulation| simulation.built().warnings.clone());
+    let warnings = loaded.warnings.iter().cloned().chain(built.unwrap_or_default());
+    warnings.for_each(|warning| tell_line(&format!("warning: {warning}")));
 }
 
 fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -> ExitCode {

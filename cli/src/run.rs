@@ -81,7 +81,7 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
         print_line(&table(summary, directory));
     }
     match (summary.status, &summary.failure) {
-        (RunStatus::Finished, _) => ExitCode::SUCCESS,
+        (RunStatus::Finished, _) => summary.doubt.as_ref().map_or(ExitCode::SUCCESS, |doubt| fail(doubt, FAILED)),
         (RunStatus::Interrupted, _) => {
             let place = checkpoint.display();
             fail(&format!("interrupted at t = {:.6} s; continue with --resume {place}", summary.time), INTERRUPTED)

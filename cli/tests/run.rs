@@ -140,6 +140,17 @@ fn a_killed_run_continues_from_its_last_checkpoint() {
 }
 
 #[test]
+fn energy_from_nowhere_makes_a_run_fail() {
+    // Rock of 50 Pa instead of 50 GPa: the stage has two steps of 2.5 s.
+    let soft = case(5.0).replace("young = 1e9", "young = 50").replace("duration = 0.2", "duration = 5");
+    let place = Place::with(soft.split("[[stage]]\nname = \"slide\"").next().expect("a stage"));
+    let answer = place.enmm(&["run", "case.toml"]);
+    assert_eq!(answer.status, Some(3), "{answer:?}");
+    assert!(answer.stderr.contains("warning: rock.granite.young: is 50 Pa"), "{answer:?}");
+    assert!(answer.stderr.contains("error: the energy residual is 1.0"), "{answer:?}");
+}
+
+#[test]
 fn the_schema_is_printed_as_json() {
     let place = Place::with("");
     let answer = place.enmm(&["schema"]);

@@ -144,11 +144,12 @@ pub fn fos(
             pool.map_err(|_| FosError::Threads(threads))?.install(find)
         }
     };
-    let searches = found.map_err(|error| match error {
+    let mut searches = found.map_err(|error| match error {
         ReductionError::Case(invalid) => FosError::Case(loaded.source.locate(&invalid.key, &invalid.message)),
         ReductionError::Interrupted => FosError::Interrupted,
         other => FosError::NoRest(other),
     })?;
+    searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
     let found = Found { searches, which };
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
     write(&options.directory, &record, found.main()).map_err(FosError::Output)?;

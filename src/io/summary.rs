@@ -68,6 +68,9 @@ pub struct Summary {
     pub threads: usize,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Why the results of a run that has ended are worthless; it is among the warnings too.
+    #[serde(skip)]
+    pub doubt: Option<String>,
 }
 
 /// Where, when and why a run failed.
@@ -357,6 +360,26 @@ pub(super) struct RunRecord<'a> {
     pub ledger: &'a Ledger,
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
+    pub doubt: Option<String>,
+}
+
+/// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
+const RESIDUAL_MAX: f64 = 0.9;
+/// Displacement over the mesh size below which nothing has moved, and the ledger holds round-off.
+const MOVED_MIN: f64 = 1e-9;
+
+/// Why a run is worthless in which energy has come from nowhere.
+pub(super) fn doubt(simulation: &Simulation, ledger: &Ledger) -> Option<String> {
+    let residual = EnergyRecord::from(ledger).residual_relative;
+    let moved = MOVED_MIN * simulation.slope().covers.mesh.size;
+    let has_moved = simulation.state().displacement.iter().any(|u| u.norm() > moved);
+    (has_moved && residual.abs() >= RESIDUAL_MAX).then(|| {
+        format!(
+            "the energy residual is {residual:.2} of the largest term, at most {RESIDUAL_MAX} can be borne: the motion \
+             is an artefact of too few or too large steps; check units of rock and loads, lower solver.dt_safety, or \
+             refine mesh.size"
+        )
+    })
 }
 
 impl Summary {
@@ -399,6 +422,7 @@ impl Summary {
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             warnings: record.warnings,
+            doubt: record.doubt,
         }
     }
 

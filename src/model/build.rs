@@ -9,6 +9,7 @@ mod ports;
 mod quiet;
 mod rock;
 mod stage;
+mod warnings;
 
 use std::collections::BTreeMap;
 
@@ -24,6 +25,7 @@ use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
 use place::Places;
 
 pub use stage::BuildStage;
+pub use warnings::ignored_traces;
 
 /// A model as built: what is fixed, the state at its start, and what the build has to tell.
 #[derive(Debug, Clone)]
@@ -53,7 +55,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     implicit::know(case)?;
     let geometry::Plane { mesh, mut arrangement, joints } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
-    let mut warnings = warnings(&noding);
+    let mut warnings = warnings::of_geometry(&noding, case, &joints.traces);
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
@@ -61,12 +63,14 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
     tell(BuildStage::Start);
     quiet::check_columns(&slope)?;
+    warnings::check_stages(case, &slope)?;
     let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &slope, &places)?;
     warnings.extend(rock::overstressed(case, &slope));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
+    warnings.extend(warnings::of_values(case, &slope, &places));
     Ok(Built {
         slope,
         state,
@@ -397,34 +401,6 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         ledger: Default::default(),
         counters: Default::default(),
     })
-}
-
-fn warnings(noding: &NodingReport) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if noding.merged_vertices > 0 {
-        warnings.push(format!(
-            "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",
-            noding.merged_vertices, noding.tolerance
-        ));
-    }
-    let ignored = ignored_traces(noding).len();
-    if ignored > 0 {
-        warnings.push(format!(
-            "{ignored} joint traces cut no rock (outside the outline, or dead ends within one triangle)"
-        ));
-    }
-    if !noding.overlapping_traces.is_empty() {
-        warnings.push(format!(
-            "{} pairs of joint traces coincide along an edge; the first of each pair gives its law",
-            noding.overlapping_traces.len()
-        ));
-    }
-    warnings
-}
-
-/// Traces of which nothing cuts rock.
-pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
-    (0..noding.traces.len()).filter(|&t| noding.traces[t].in_rock == 0.0).collect()
 }
 
 /// Index of each name in the order of a case's table.

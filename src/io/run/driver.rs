@@ -12,7 +12,7 @@ use crate::io::blocks::write_blocks;
 use crate::io::case_file::LoadedCase;
 use crate::io::checkpoint::{self, CheckpointError};
 use crate::io::history::HistoryWriter;
-use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
+use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds, doubt};
 use crate::io::vtu::PvdWriter;
 use crate::model::Simulation;
 use crate::model::case::{Invalid, StageKind};
@@ -386,6 +386,9 @@ impl<'a> Driver<'a> {
         if stages.len() <= self.simulation.state().stage as usize {
             stages.push(self.stage_record(None));
         }
+        let ended = status == RunStatus::Finished;
+        let doubt = doubt(&self.simulation, &self.progress.ledger).filter(|_| ended);
+        self.warnings.extend(doubt.clone());
         let record = RunRecord {
             case_file: self.loaded.source.file(),
             case_hash: &self.loaded.hash,
@@ -395,6 +398,7 @@ impl<'a> Driver<'a> {
             ledger: &self.progress.ledger,
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
+            doubt,
         };
         let summary = Summary::new(&self.simulation, record);
         summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;

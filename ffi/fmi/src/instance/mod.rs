@@ -242,6 +242,9 @@ impl Instance {
             return Ok(());
         }
         self.rebuild_if_changed()?;
+        for warning in self.loaded.warnings.iter().chain(self.model.warnings()).cloned().collect::<Vec<_>>() {
+            self.log(Status::Warning, Category::Warning, warning);
+        }
         self.use_threads(self.values.threads(&self.table))?;
         let linear = self.values.interpolates(&self.table);
         self.model.set_interpolation(if linear { Interpolation::Linear } else { Interpolation::Hold });

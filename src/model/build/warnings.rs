@@ -1,0 +1,191 @@
+//! What the user should know of a model that can be built: what its geometry became, and values beyond the usual ranges
+//! of rock and soil, which are mostly slips in a unit or a sign.
+
+use crate::geometry::{NodingReport, Point};
+use crate::model::case::key::Key;
+use crate::model::case::{Case, Invalid};
+use crate::state::Slope;
+
+use super::place::Places;
+
+/// Young's modulus of soft soil and of the hardest rock (Pa).
+const YOUNG: [f64; 2] = [1e5, 5e11];
+/// Density of light fills and of ores (kg/m³).
+const DENSITY: [f64; 2] = [500.0, 10_000.0];
+/// Longest side of the box of a slope (m).
+const LONGEST: f64 = 2e4;
+/// Length of a fixed edge over that of the boundary on it.
+const EDGE_RATIO: f64 = 2.0;
+/// Share of the greatest in-situ stress that a tension may have, as at a rough surface.
+const TENSION_SHARE: f64 = 0.01;
+/// Ignored traces that are named.
+const NAMED: usize = 5;
+
+/// What the noder did; `traces` are the joints, those of the case first.
+pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Point>, u32)]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if noding.merged_vertices > 0 {
+        warnings.push(format!(
+            "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",
+            noding.merged_vertices, noding.tolerance
+        ));
+    }
+    let ignored = ignored_traces(noding);
+    if !ignored.is_empty() {
+        let name = |&t: &usize| name_of_trace(t, case, &traces[t].0);
+        let names: Vec<String> = ignored.iter().take(NAMED).map(name).collect();
+        let more = ignored.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        warnings.push(format!(
+            "{} joint traces cut no rock (outside the outline, or dead ends within one triangle): {}{more}",
+            ignored.len(),
+            names.join(", ")
+        ));
+    }
+    if !noding.overlapping_traces.is_empty() {
+        warnings.push(format!(
+            "{} pairs of joint traces coincide along an edge; the first of each pair gives its law",
+            noding.overlapping_traces.len()
+        ));
+    }
+    warnings
+}
+
+fn name_of_trace(trace: usize, case: &Case, points: &[Point]) -> String {
+    let name = if trace < case.joints.len() { format!("joint[{trace}]") } else { "one of a joint set".to_owned() };
+    let place = |p: Option<&Point>| p.map_or_else(String::new, |p| format!("({:.6}, {:.6})", p.x, p.y));
+    format!("{name} from {} to {} m", place(points.first()), place(points.last()))
+}
+
+/// Traces of which nothing cuts rock.
+pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
+    (0..noding.traces.len()).filter(|&t| noding.traces[t].in_rock == 0.0).collect()
+}
+
+/// What is unusual about values of the case.
+pub(super) fn of_values(case: &Case, slope: &Slope, places: &Places) -> Vec<String> {
+    let mut warnings = rocks(case);
+    warnings.extend(extent(case, slope));
+    warnings.extend(gravity(case));
+    warnings.extend(unheld(case));
+    warnings.extend(long_edges(case, places));
+    warnings.extend(tension(slope));
+    warnings
+}
+
+fn rocks(case: &Case) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (name, rock) in &case.rocks {
+        let key = Key::root().field("rock").field(name);
+        let (young, density) = (rock.young, rock.density);
+        if !(YOUNG[0]..=YOUNG[1]).contains(&young) {
+            warnings.push(format!(
+                "{key}.young: is {young} Pa, rock and soil have {:e} to {:e} Pa; 50 GPa are 50e9",
+                YOUNG[0], YOUNG[1]
+            ));
+        }
+        if !(DENSITY[0]..=DENSITY[1]).contains(&density) {
+            warnings.push(format!(
+                "{key}.density: is {density} kg/m³, rock and soil have {} to {} kg/m³; a unit weight of 26.5 kN/m³ is \
+                 2700 kg/m³",
+                DENSITY[0], DENSITY[1]
+            ));
+        }
+    }
+    warnings
+}
+
+/// A model that is larger than slopes are, or smaller than its mesh.
+fn extent(case: &Case, slope: &Slope) -> Option<String> {
+    let points = &slope.covers.polygon_points;
+    let low = points.iter().fold(Point::repeat(f64::INFINITY), |low, p| low.inf(p));
+    let high = points.iter().fold(Point::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+    let span = high - low;
+    if span.max() > LONGEST {
+        let area: f64 = slope.covers.element_area.iter().sum();
+        return Some(format!(
+            "domain.outline: the rock is {:.6} m by {:.6} m, {area:.3e} m²; slopes are up to {LONGEST} m: coordinates \
+             are in metres, so divide those in millimetres by 1000",
+            span.x, span.y
+        ));
+    }
+    let size = case.mesh.size;
+    (size > span.max()).then(|| {
+        format!(
+            "mesh.size: is {size} m, more than the whole model, {:.6} m by {:.6} m; about a fifth of the smallest \
+             block is usual",
+            span.x, span.y
+        )
+    })
+}
+
+fn gravity(case: &Case) -> Option<String> {
+    let y = case.gravity.y;
+    (y > 0.0).then(|| format!("gravity.y: is {y} m/s², which pulls upwards; down is negative, -9.81 is the standard"))
+}
+
+/// Rock with weight that nothing holds.
+fn unheld(case: &Case) -> Option<String> {
+    let held = !case.fixes.is_empty() || !case.quiets.is_empty() || !case.free_fields.is_empty();
+    let heavy = [case.gravity.x, case.gravity.y] != [0.0; 2];
+    (heavy && !held).then(|| {
+        "fix: there is none, so nothing holds the rock and all of it falls; slopes have a `[[fix]]` with the `edge` of \
+         their base"
+            .into()
+    })
+}
+
+/// Fixed edges that lie off the rock for the most part.
+fn long_edges(case: &Case, places: &Places) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (k, fix) in case.fixes.iter().enumerate() {
+        let Some([a, b]) = fix.edge else { continue };
+        let key = format!("fix[{k}].edge");
+        // An edge without rock was refused when the fixities were made.
+        let held: f64 = places.boundary(&key, [a, b]).iter().flatten().map(|piece| piece.length()).sum();
+        let length = (Point::from(b) - Point::from(a)).norm();
+        if length > EDGE_RATIO * held {
+            warnings.push(format!(
+                "{key}: is {length:.6} m long, but only {held:.6} m of the rock's boundary lie on it; its ends are \
+                 those of a side of the outline"
+            ));
+        }
+    }
+    warnings
+}
+
+/// In-situ stress that pulls.
+fn tension(slope: &Slope) -> Option<String> {
+    let field = slope.in_situ.as_ref()?;
+    let stresses = slope.covers.element_centroid.iter().map(|p| (field.at(*p), *p));
+    let pull = |s: &[f64; 3]| s[0].max(s[1]);
+    let greatest = stresses.clone().map(|(s, _)| s[0].abs().max(s[1].abs())).fold(0.0, f64::max);
+    let pulled = stresses.clone().filter(|(s, _)| pull(s) > TENSION_SHARE * greatest).count();
+    let (most, place) = stresses.max_by(|(s, _), (t, _)| pull(s).total_cmp(&pull(t)))?;
+    (pulled > 0).then(|| {
+        format!(
+            "in_situ: pulls at the rock in {pulled} of {} elements, most at ({:.6}, {:.6}) m, by {:.3e} Pa; tension is \
+             positive, and rock under ground is compressed: write sxx and syy negative",
+            slope.covers.element_count(),
+            place.x,
+            place.y,
+            pull(&most)
+        )
+    })
+}
+
+/// Refuses stages that are shorter than a step.
+pub(super) fn check_stages(case: &Case, slope: &Slope) -> Result<(), Invalid> {
+    let dt = slope.dt;
+    match case.stages.iter().position(|stage| stage.duration < dt * (1.0 - 1e-6)) {
+        None => Ok(()),
+        Some(k) => Err(Invalid {
+            key: format!("stage[{k}].duration"),
+            message: format!(
+                "is {} s, less than one internal step of {dt:.3e} s, which follows from mesh.size, young and density: \
+                 correct these, give a longer stage, or set solver.dt_max",
+                case.stages[k].duration
+            ),
+        }),
+    }
+}

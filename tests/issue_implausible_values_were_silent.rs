@@ -1,0 +1,75 @@
+//! Values that are mostly slips in a unit or a sign are told with the usual range, traces without effect with their
+//! place; a stage shorter than a step is refused. All of them once passed in silence.
+
+use std::path::Path;
+
+use enmm::io::{LoadedCase, load_case, parse_case};
+use enmm::model::Simulation;
+
+/// A block of 10 m by 6 m on its base, with nothing unusual.
+const CASE: &str = "title = \"t\"\n[domain]\noutline = [[0, 0], [10, 0], [10, 6], [0, 6]]\n[mesh]\nsize = 1.5\n\
+                    [rock.granite]\ndensity = 2650\nyoung = 50e9\npoisson = 0.25\n[joint_law.j]\nfriction_deg = 30\n\
+                    [[fix]]\nedge = [[0, 0], [10, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 0.5\n";
+
+fn loaded(text: &str) -> LoadedCase {
+    parse_case(text, "case.toml", Path::new("")).expect("reads")
+}
+
+fn warnings(text: &str) -> Vec<String> {
+    Simulation::new(loaded(text).case).expect("builds").built().warnings.clone()
+}
+
+#[test]
+fn each_slip_is_told_with_its_key_value_and_range() {
+    assert_eq!(warnings(CASE), [""; 0]);
+    let outline = "outline = [[0, 0], [10, 0], [10, 6], [0, 6]]";
+    let millimetres = CASE.replace(outline, "outline = [[0, 0], [30000, 0], [30000, 15000], [0, 15000]]");
+    let millimetres = millimetres.replace("size = 1.5", "size = 3000").replace("[10, 0]]", "[30000, 0]]");
+    for (text, parts) in [
+        (CASE.replace("50e9", "9e4"), ["rock.granite.young: is 90000 Pa", "1e5 to 5e11 Pa"]),
+        (CASE.replace("2650", "26.5"), ["rock.granite.density: is 26.5 kg/m³", "500 to 10000 kg/m³"]),
+        (CASE.replace("[[fix]]", "[gravity]\ny = 9.81\n[[fix]]"), ["gravity.y: is 9.81 m/s²", "upwards"]),
+        (CASE.replace("[[fix]]\nedge = [[0, 0], [10, 0]]\n", ""), ["fix: there is none", "falls"]),
+        (CASE.replace("size = 1.5", "size = 11"), ["mesh.size: is 11 m", "the whole model"]),
+        (CASE.replace("[[fix]]", "[in_situ]\nsxx = 1e6\nsyy = -1e6\n[[fix]]"), ["in_situ: pulls", "by 1.000e6 Pa"]),
+        (CASE.replace("edge = [[0, 0], [10, 0]]", "edge = [[-45, 0], [55, 0]]"), ["fix[0].edge: is 100", "only 10"]),
+        (millimetres, ["domain.outline: the rock is 30000", "4.500e8 m²"]),
+    ] {
+        let told = warnings(&text);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(parts.iter().all(|part| told[0].contains(part)), "{parts:?}: {told:?}");
+    }
+}
+
+#[test]
+fn ignored_traces_are_named_with_their_places() {
+    let away: String = (20..27).map(|x| format!("[[joint]]\npoints = [[{x}, 1], [{x}, 2.5]]\n")).collect();
+    let told = warnings(&CASE.replace("[[fix]]", &format!("[[joint]]\npoints = [[-1, 3], [11, 3]]\n{away}[[fix]]")));
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("7 joint traces cut no rock"), "{told:?}");
+    assert!(told[0].contains("joint[1] from (20.000000, 1.000000) to (20.000000, 2.500000) m"), "{told:?}");
+    assert!(told[0].contains("joint[5]") && !told[0].contains("joint[6]"), "{told:?}");
+    assert!(told[0].ends_with("and 2 more"), "{told:?}");
+}
+
+#[test]
+fn a_stage_shorter_than_a_step_is_refused() {
+    // With 50 Pa instead of 50 GPa waves take seconds through an element, and one step was longer than the stage.
+    let error = Simulation::new(loaded(&CASE.replace("50e9", "50")).case).expect_err("no step fits").to_string();
+    assert!(error.starts_with("stage[0].duration: is 0.5 s, less than one internal step of "), "{error}");
+}
+
+#[test]
+fn the_examples_have_nothing_unusual() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases");
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let loaded = load_case(&path).expect("reads");
+            let simulation = Simulation::new(loaded.case).expect("builds");
+            let told = &simulation.built().warnings;
+            let known = |warning: &String| warning.contains("merged") || warning.contains("cut no rock");
+            assert!(told.iter().all(known), "{told:?}");
+        }
+    }
+}
