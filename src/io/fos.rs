@@ -13,7 +13,7 @@ use super::bound::bound_record;
 use super::case_error::CaseError;
 use super::case_file::LoadedCase;
 use super::checkpoint::engine_version;
-use super::files::{at_path, write_atomic};
+use super::files::{at_path, sweep_temporaries, write_atomic};
 use super::picture::{failure_picture, trials_picture};
 use crate::model::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
@@ -157,6 +157,7 @@ pub fn fos(
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
+    sweep_temporaries(directory)?;
     let path = directory.join("fos.json");
     let text = serde_json::to_vec_pretty(record).map_err(io::Error::from).map_err(at_path(&path))?;
     write_table(&directory.join("fos.csv"), &reduction.trials)?;
