@@ -268,6 +268,7 @@ fn trial_record(trial: &Trial) -> Value {
         "reason": trial.reason.name(),
         "time": trial.time,
         "displacement": trial.displacement,
+        "slip": trial.slip,
         "speed": trial.speed,
         "kinetic_energy": trial.kinetic,
         "released_energy": trial.released,
@@ -280,12 +281,13 @@ fn trial_record(trial: &Trial) -> Value {
     })
 }
 
-const HEADER: [&str; 13] = [
+const HEADER: [&str; 14] = [
     "factor",
     "verdict",
     "reason",
     "time [s]",
     "displacement [m]",
+    "slip [m]",
     "speed [m/s]",
     "kinetic_energy [J/m]",
     "released_energy [J/m]",
@@ -301,7 +303,7 @@ fn write_table(path: &Path, trials: &[Trial]) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     csv.write_record(HEADER).map_err(io::Error::from).map_err(at_path(path))?;
     for t in trials {
-        let numbers = [t.time, t.displacement, t.speed, t.kinetic, t.released, t.acceleration];
+        let numbers = [t.time, t.displacement, t.slip, t.speed, t.kinetic, t.released, t.acceleration];
         let mut row = vec![t.factor.to_string(), t.verdict.name().to_owned(), t.reason.name().to_owned()];
         row.extend(numbers.map(|number| number.to_string()));
         row.extend([t.failing.len().to_string(), t.failing_area().to_string()]);

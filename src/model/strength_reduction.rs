@@ -57,6 +57,8 @@ pub struct Trial {
     pub time: f64,
     /// Largest displacement of a block's covers since the trial began (m).
     pub displacement: f64,
+    /// Largest slip of a contact since the trial began (m).
+    pub slip: f64,
     /// Speed of the fastest block in the mean of the last window (m/s).
     pub speed: f64,
     /// Kinetic energy at the end (J/m).

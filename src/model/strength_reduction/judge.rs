@@ -5,7 +5,7 @@
 pub enum Verdict {
     /// Motion has died, and elasticity explains how far it went.
     Stable,
-    /// Motion has died or is dying, but blocks slid or turned farther than that: they are caught, not held.
+    /// Motion has died or is dying, but joints slipped farther than that: blocks are caught, not held.
     Caught,
     /// It fails.
     Unstable,
@@ -54,6 +54,8 @@ pub struct Sample {
     pub time: f64,
     /// Largest displacement since then (m).
     pub displacement: f64,
+    /// Largest slip of a contact since then (m).
+    pub slip: f64,
     /// Speed of the fastest block in the mean of the window (m/s): what swings about its place goes nowhere.
     pub speed: f64,
     /// Kinetic energy (J/m).
@@ -95,7 +97,8 @@ const ENDLESS: f64 = 0.7;
 /// Judges a trial by its samples so far (Eqs. 62–65); none while it is open.
 pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
     let (last, before) = (samples.last()?, samples.iter().rev().nth(1)?);
-    let held = if last.displacement > scales.elastic { Verdict::Caught } else { Verdict::Stable };
+    let is_caught = last.slip > scales.elastic || last.displacement > scales.limit;
+    let held = if is_caught { Verdict::Caught } else { Verdict::Stable };
     if last.displacement > scales.limit && last.kinetic > before.kinetic {
         return Some((Verdict::Unstable, Reason::Runaway));
     }
@@ -108,7 +111,7 @@ pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
         return Some((Verdict::Unstable, Reason::Acceleration));
     }
     (last.time >= scales.time_max).then(|| {
-        let holds = held == Verdict::Stable || ends(after, scales);
+        let holds = last.displacement <= scales.elastic || ends(after, scales);
         (if holds { held } else { Verdict::Unstable }, Reason::Trend)
     })
 }
@@ -176,7 +179,8 @@ mod tests {
         loop {
             let time = 0.1 * (samples.len() + 1) as f64;
             let (displacement, speed) = motion(time);
-            samples.push(Sample { time, displacement, speed, kinetic: 500.0 * speed * speed, released: displacement });
+            let (slip, kinetic, released) = (displacement, 500.0 * speed * speed, displacement);
+            samples.push(Sample { time, displacement, slip, speed, kinetic, released });
             if let Some((verdict, reason)) = judge(&samples, &SCALES) {
                 return (verdict, reason, time);
             }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
 use super::{FailingBlock, Trial};
+use crate::contact::ContactHistory;
 use crate::geometry::{Vector, polygon};
 use crate::model::Simulation;
 use crate::state::Ledger;
@@ -105,6 +106,7 @@ impl Base {
             reason,
             time: end.time,
             displacement: end.displacement,
+            slip: end.slip,
             speed: end.speed,
             kinetic: end.kinetic,
             released: end.released,
@@ -124,10 +126,23 @@ impl Base {
         Sample {
             time: simulation.time() - self.simulation.time(),
             displacement: motions.iter().map(|m| m.displacement).fold(0.0, f64::max),
+            slip: self.slip(simulation),
             speed: way / self.scales.window,
             kinetic: report.ledger.kinetic,
             released: energy(first) - energy(&report.ledger),
         }
+    }
+
+    /// Largest slip (m) of a contact since the trial began.
+    fn slip(&self, simulation: &Simulation) -> f64 {
+        let key = |contact: &ContactHistory| (contact.node, contact.side);
+        let mut before = self.simulation.state().contacts.iter().peekable();
+        let slipped = simulation.state().contacts.iter().map(|contact| {
+            while before.next_if(|b| key(b) < key(contact)).is_some() {}
+            let known = before.peek().filter(|b| key(b) == key(contact));
+            contact.slip - known.map_or(0.0, |b| b.slip)
+        });
+        slipped.fold(0.0, f64::max)
     }
 
     /// Motion of all free blocks since the trial began.
@@ -162,7 +177,7 @@ impl Base {
         let (far, fast) = (most(|m| m.displacement), most(|m| m.speed));
         match verdict {
             Verdict::Stable => motions.clear(),
-            Verdict::Caught => motions.retain(|m| m.displacement > self.scales.elastic.max(TAKES_PART * far)),
+            Verdict::Caught => motions.retain(|m| m.displacement >= TAKES_PART * far),
             Verdict::Unstable => {
                 motions.retain(|m| m.displacement >= TAKES_PART * far && m.speed >= TAKES_PART * fast);
             }
