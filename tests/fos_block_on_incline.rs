@@ -6,13 +6,21 @@ mod common;
 use std::path::Path;
 
 use common::claims::{rock, turn};
-use enmm::model::strength_reduction::{End, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety};
+use enmm::model::strength_reduction::{
+    End, MechanismOptions, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety, mechanisms,
+};
 
 /// A block of 3 m × 2 m on a plane at 30°, and stages after its rest. Its resultant leaves the middle third of the
 /// base, so that the heel would open and lose its cohesion if it had no tensile strength.
 fn case(friction: f64, cohesion: f64, more: &str) -> enmm::model::Case {
-    let ground = [[-2.0, -1.5], [8.0, -1.5], [8.0, 0.0]];
-    let corners = [&ground[..], &[[3.0, 0.0], [3.0, 2.0], [0.0, 2.0], [0.0, 0.0], [-2.0, 0.0]]].concat();
+    case_below(&[[8.0, 0.0]], friction, cohesion, more)
+}
+
+/// The same, over a ground that goes on below the block as given.
+fn case_below(below: &[[f64; 2]], friction: f64, cohesion: f64, more: &str) -> enmm::model::Case {
+    let ground = [[-2.0, -1.5], [8.0, -1.5]];
+    let block = [[3.0, 0.0], [3.0, 2.0], [0.0, 2.0], [0.0, 0.0], [-2.0, 0.0]];
+    let corners = [&ground[..], below, &block].concat();
     let text = format!(
         "title = \"reduction\"\n[domain]\noutline = {:?}\n[mesh]\nsize = 0.9\norigin = [0.031, 0.017]\n[[joint]]\n\
          points = {:?}\n[joint_law.joint]\nfriction_deg = {friction:?}\ncohesion = {cohesion:e}\n\
@@ -52,6 +60,55 @@ fn the_factor_is_that_of_limit_equilibrium() {
         assert!(reduction.trials.iter().all(|t| t.ledger_residual.abs() < 1e-3));
         assert_eq!(friction == 0.0, reduction.warnings.iter().any(|w| w.contains("no joint has friction")));
     }
+}
+
+/// The friction of the first test, with a wall 20 mm below the block: it slides and is caught, which is no strength.
+#[test]
+fn a_block_that_a_wall_catches_is_not_stable() {
+    let wall = [[8.0, 0.5], [3.02, 0.5], [3.02, 0.0]];
+    let reduction = reduce(&case_below(&wall, 40.0, 0.0, ""), 1);
+    let exact = 40f64.to_radians().tan() / 30f64.to_radians().tan();
+    let factor = reduction.factor().expect("a factor");
+    assert!((factor / exact - 1.0).abs() < 5e-3, "{factor} of {exact}");
+    let caught = reduction.trials.iter().filter(|t| t.verdict == Verdict::Caught);
+    assert!(caught.clone().all(|t| (0.015..0.03).contains(&t.slip) && t.failing.len() == 1) && caught.count() > 0);
+    assert!(reduction.trials.iter().all(|t| (t.verdict == Verdict::Stable) == (t.factor < exact)), "monotone");
+    assert!(reduction.warnings.iter().any(|w| w.contains("caught")), "{:?}", reduction.warnings);
+    let bound = reduction.bound.as_ref().expect("a bound").level_tops.factor.value();
+    assert!((bound / exact - 1.0).abs() < 3e-4, "{bound}: limit analysis knows no way to go");
+}
+
+/// Of two blocks the larger has less cohesion for its weight: it fails first, the smaller when it has gone. Where both
+/// are too small to count nothing is left that fails.
+#[test]
+fn one_mechanism_follows_the_other() {
+    let (friction, cohesion) = (20.0, 10e3);
+    let small = [[7.0, 0.0], [7.0, 1.0], [5.5, 1.0], [5.5, 0.0]];
+    let joint = format!("[[joint]]\npoints = {:?}\n", turn(&[[5.5, 0.0], [7.0, 0.0]], -30.0));
+    let case = case_below(&[&[[8.0, 0.0]], &small[..]].concat(), friction, cohesion, &joint);
+    let exact = [[3.0, 2.0], [1.5, 1.0]].map(|[length, height]: [f64; 2]| {
+        let (s, c) = 30f64.to_radians().sin_cos();
+        let weight = 2500.0 * 9.81 * length * height;
+        (cohesion * length + weight * c * f64::to_radians(friction).tan()) / (weight * s)
+    });
+    let find = |which: MechanismOptions| {
+        let found = mechanisms(&case, which, &ReductionOptions::default(), &mut |_, _| {});
+        found.unwrap_or_else(|e| panic!("{e}"))
+    };
+    let found = find(MechanismOptions { count: 2, ..Default::default() });
+    assert_eq!(found.len(), 2);
+    for (reduction, exact, area) in [(&found[0], exact[0], 6.0), (&found[1], exact[1], 1.5)] {
+        let factor = reduction.factor().expect("a factor");
+        assert!((factor / exact - 1.0).abs() < 5e-3, "{factor} of {exact}");
+        let trial = reduction.first_unstable().expect("a failure");
+        assert!((trial.failing_area() / area - 1.0).abs() < 1e-9, "{trial:?}");
+        assert!((trial.failing_mass() / (2500.0 * area) - 1.0).abs() < 1e-9, "{trial:?}");
+    }
+    assert!((found[0].free_area - 7.5).abs() < 1e-9, "{}", found[0].free_area);
+    let passed = find(MechanismOptions { least_area: Some(7.0), count: 1 });
+    let ends: Vec<&End> = passed.iter().map(|reduction| &reduction.end).collect();
+    assert_eq!(ends, [&End::Found, &End::Found, &End::StableThroughout]);
+    assert_eq!(passed[2].at_least(), Some(20.0));
 }
 
 #[test]

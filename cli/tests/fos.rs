@@ -21,6 +21,10 @@ fn a_block_on_an_incline_has_the_factor_of_its_tangents() {
     let factor = found["factor_of_safety"].as_f64().expect("a factor");
     assert!((factor / 1.3 - 1.0).abs() < 0.01, "{factor}");
     assert_eq!(found["status"], "found");
+    let bound = found["bound"]["level_tops"]["factor"].as_f64().expect("a bound");
+    assert!((bound / 1.3 - 1.0).abs() < 3e-4 && answer.stdout.contains("limit analysis"), "{bound}");
+    assert!(answer.stdout.contains("1 of ~") && answer.stdout.contains("100.0 % of the free rock"), "{answer:?}");
+    assert_eq!((&found["failing"]["blocks"], &found["failing"]["share"]), (&1.into(), &1.0.into()));
     let failing = found["failing_blocks"].as_array().expect("blocks");
     assert_eq!(failing.len(), 1, "{failing:?}");
     assert!(failing[0]["place"][0].as_f64().is_some_and(|x| (2.4..4.0).contains(&x)), "{failing:?}");
@@ -64,6 +68,7 @@ fn bad_input_exits_with_2_and_writes_nothing() {
     place.enmm(&["fos", "case.toml"]).assert_bad_input(&["case.toml:", "stage", "static"]);
     place.enmm(&["fos", "none.toml"]).assert_bad_input(&["none.toml"]);
     place.enmm(&["fos", "case.toml", "--tolerance", "0"]).assert_bad_input(&["--tolerance", "0.5"]);
+    place.enmm(&["fos", "case.toml", "--least-area=-1"]).assert_bad_input(&["--least-area", "0 m²"]);
     place.enmm(&["fos", "case.toml", "--low", "2", "--high", "1"]).assert_bad_input(&["--low", "--high"]);
     assert_eq!(place.names(), ["case.toml"]);
 }

@@ -50,13 +50,10 @@ pub fn mechanisms(
 ) -> Result<Vec<Reduction>, ReductionError> {
     let mut found = vec![factor_of_safety(case, options, hear)?];
     let mut case = case.clone();
-    while let Some(last) = found.last().filter(|last| last.end == End::Found) {
-        let Some(trial) = last.first_unstable() else { break };
-        if found.iter().filter(|reduction| which.counts(reduction)).count() >= which.count {
-            break;
-        }
+    while let Some(last) = found.last().filter(|last| goes_on(&found, last, which)) {
+        let failing = last.first_unstable().map_or(&[][..], |trial| &trial.failing);
         let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
-        let cleared = without(&case.stages[..statics], &last.simulation, &trial.failing);
+        let cleared = without(&case.stages[..statics], &last.simulation, failing);
         case.stages.insert(statics, cleared);
         match factor_of_safety(&case, options, hear) {
             Ok(reduction) => found.push(reduction),
@@ -69,6 +66,18 @@ pub fn mechanisms(
         }
     }
     Ok(found)
+}
+
+/// Whether another search follows the last: it found blocks to clear away, and fewer ways to fail count than wanted.
+fn goes_on(found: &[Reduction], last: &Reduction, which: MechanismOptions) -> bool {
+    let counted = found.iter().filter(|reduction| which.counts(reduction)).count();
+    let fails = last.first_unstable().is_some_and(|trial| !trial.failing.is_empty());
+    fails
+        && match last.end {
+            End::Found => counted < which.count,
+            End::UnstableThroughout => !which.counts(last),
+            _ => false,
+        }
 }
 
 /// A static stage after those that there are, in which blocks are cleared away.
