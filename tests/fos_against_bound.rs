@@ -120,8 +120,8 @@ impl Slope {
         let dilation = dilation_deg.map_or(String::new(), |angle| format!("dilation_deg = {angle:?}\n"));
         let young = if dilation_deg.is_some() { 5e10 } else { 5e9 };
         let text = format!(
-            "title = \"slope\"\n[domain]\noutline = [[0.0, 0.0], [48.0, 0.0], [48.0, 20.0], [{:.3}, 20.0], [14.0, 5.0], \
-             [0.0, 5.0]]\n[mesh]\nsize = 2.0\nangle_deg = 7.0\n{}[joint_law.joint]\nfriction_deg = {friction_deg:?}\n\
+            "title = \"slope\"\n[domain]\noutline = [[0.0, 0.0], [48.0, 0.0], [48.0, 20.0], [{:.3}, 20.0], \
+             [14.0, 5.0], [0.0, 5.0]]\n[mesh]\nsize = 2.0\nangle_deg = 7.0\n{}[joint_law.joint]\nfriction_deg = {friction_deg:?}\n\
              {dilation}[[fix]]\nedge = [[0.0, 0.0], [48.0, 0.0]]\n{}\
              [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 10.0\n",
             self.crest(),

@@ -19,8 +19,8 @@ pub struct Overlap {
 }
 
 impl Overlap {
-    /// How much (m) of it no spring explains: what is more than 1.2 times the closure of the most deeply pressed contact
-    /// between the two blocks, which is force over stiffness, and what that contact was first seen with.
+    /// How much (m) of it no spring explains: what is more than 1.2 times the closure of the most deeply pressed
+    /// contact between the two blocks, which is force over stiffness, and what that contact was first seen with.
     pub fn unheld(&self, simulation: &Simulation) -> f64 {
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());

@@ -70,8 +70,7 @@ fn above_the_bound(reduction: &Reduction) -> Option<String> {
     (stable > 1.02 * limit).then(|| {
         format!(
             "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
-             something other than strength holds a block; look at the failure picture of `enmm bound`'s blocks, and try \
-             a finer mesh",
+             something other than strength holds a block; look at those that `enmm bound` names, and try a finer mesh",
             100.0 * (stable / limit - 1.0)
         )
     })

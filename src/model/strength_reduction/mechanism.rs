@@ -11,8 +11,8 @@ const SLIVER: f64 = 0.01;
 /// Which ways to fail to look for.
 #[derive(Debug, Clone, Copy)]
 pub struct MechanismOptions {
-    /// Area (m²) of failing blocks below which a way to fail is passed over; none: a hundredth of the square of the mesh
-    /// size, below which a block is a sliver that cutting left over.
+    /// Area (m²) of failing blocks below which a way to fail is passed over; none: a hundredth of the square of the
+    /// mesh size, below which a block is a sliver that cutting left over.
     pub least_area: Option<f64>,
     /// How many of the others to find.
     pub count: usize,
