@@ -30,9 +30,9 @@ pub struct Arguments {
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
     /// Pass over mechanisms of less rock (m²), such as single key blocks: they are told, cleared away, and the search
-    /// begins anew; default: a hundredth of the square of the mesh size, so that no sliver decides.
-    #[arg(long, value_name = "AREA")]
-    least_area: Option<f64>,
+    /// begins anew.
+    #[arg(long, value_name = "AREA", default_value_t = 0.0)]
+    least_area: f64,
     /// Mechanisms to find, each without the blocks of those before.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,

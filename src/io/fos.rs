@@ -73,7 +73,7 @@ impl FosOptions<'_> {
         if !(1e-4..=0.5).contains(&self.tolerance) {
             return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", self.tolerance));
         }
-        let area = self.mechanisms.least_area.unwrap_or_default();
+        let area = self.mechanisms.least_area;
         if !(area >= 0.0 && area.is_finite()) {
             return Err(format!(
                 "--least-area: is {area}, must be 0 m² or more; the area of a block that does not count"
@@ -207,7 +207,7 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "case_file": loaded.source.file(),
         "case_hash": loaded.hash,
         "tolerance": options.tolerance,
-        "least_area": found.which.least_area(&found.main().simulation),
+        "least_area": found.which.least_area,
         "wall_seconds": wall,
         "mechanisms": found.searches.iter().map(|search| {
             let mut mechanism = search_record(search);

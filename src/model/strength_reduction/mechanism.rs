@@ -5,35 +5,25 @@ use crate::model::case::{Case, Stage, StageKind};
 
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 
-/// Area of a sliver, relative to the square of the mesh size.
-const SLIVER: f64 = 0.01;
-
 /// Which ways to fail to look for.
 #[derive(Debug, Clone, Copy)]
 pub struct MechanismOptions {
-    /// Area (m²) of failing blocks below which a way to fail is passed over; none: a hundredth of the square of the
-    /// mesh size, below which a block is a sliver that cutting left over.
-    pub least_area: Option<f64>,
+    /// Area (m²) of failing blocks below which a way to fail is passed over.
+    pub least_area: f64,
     /// How many of the others to find.
     pub count: usize,
 }
 
 impl Default for MechanismOptions {
     fn default() -> Self {
-        Self { least_area: None, count: 1 }
+        Self { least_area: 0.0, count: 1 }
     }
 }
 
 impl MechanismOptions {
-    /// Area (m²) below which a way to fail of a model is passed over.
-    pub fn least_area(&self, simulation: &Simulation) -> f64 {
-        self.least_area.unwrap_or(SLIVER * simulation.slope().covers.mesh.size.powi(2))
-    }
-
     /// Whether a way to fail counts: blocks of at least the least area, or no blocks at all.
     pub fn counts(&self, reduction: &Reduction) -> bool {
-        let least = self.least_area(&reduction.simulation);
-        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= least)
+        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= self.least_area)
     }
 }
 

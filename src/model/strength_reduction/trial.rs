@@ -36,18 +36,25 @@ pub enum Stop {
     Failed(StepError),
 }
 
+/// Area of a sliver, relative to the square of the mesh size or, where that is less, to the area of the largest block:
+/// what cutting left over may pop out and fall, and says nothing of the slope.
+const SLIVER: f64 = 0.01;
+
 /// What all trials begin with.
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,
     scales: Scales,
+    /// Whether each block counts: it can move, and is no sliver.
+    counts: Vec<bool>,
 }
 
 impl Base {
     /// Takes a slope at rest at the start of its dynamic stage.
     pub fn new(simulation: Simulation, tolerance: f64) -> Self {
         let scales = scales(&simulation, tolerance);
-        Self { simulation, scales }
+        let counts = counts(&simulation);
+        Self { simulation, scales, counts }
     }
 
     /// Area (m²) of all blocks without a support.
@@ -55,19 +62,22 @@ impl Base {
         let slope = self.simulation.slope();
         let mut held = vec![false; slope.covers.block_count()];
         slope.supports.iter().for_each(|support| held[support.block as usize] = true);
-        let motions = self.motions(&self.simulation);
-        motions.iter().filter(|block| !held[block.block as usize]).map(|block| block.area).sum()
+        self.counted().filter(|&b| !held[b]).map(|b| slope.covers.block_area(b)).sum()
     }
 
-    /// Displacements (m) of all blocks: along x, along y, and by turning at their own radius.
+    /// Blocks that count.
+    fn counted(&self) -> impl Iterator<Item = usize> {
+        self.counts.iter().enumerate().filter(|(_, counts)| **counts).map(|(b, _)| b)
+    }
+
+    /// Displacements (m) of the blocks that count: along x, along y, and by turning at their own radius.
     fn places(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
         let place = |b: usize| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
             Vector3::new(motion.displacement.x, motion.displacement.y, turn)
         };
-        let free = |b: &usize| !simulation.scratch().metric.fixed[*b] && !simulation.state().removed[*b];
-        (0..simulation.slope().covers.block_count()).filter(free).map(place).collect()
+        self.counted().map(place).collect()
     }
 
     /// Makes one trial; returns the model at its end as well.
@@ -128,7 +138,7 @@ impl Base {
             displacement: motions.iter().map(|m| m.displacement).fold(0.0, f64::max),
             slip: self.slip(simulation),
             speed: way / self.scales.window,
-            kinetic: report.ledger.kinetic,
+            kinetic: self.counted().map(|b| simulation.motion_of(b).kinetic_energy).sum(),
             released: energy(first) - energy(&report.ledger),
         }
     }
@@ -137,7 +147,13 @@ impl Base {
     fn slip(&self, simulation: &Simulation) -> f64 {
         let key = |contact: &ContactHistory| (contact.node, contact.side);
         let mut before = self.simulation.state().contacts.iter().peekable();
-        let slipped = simulation.state().contacts.iter().map(|contact| {
+        let boundary = &simulation.slope().boundary;
+        let block = |point: u32| boundary.block[point as usize] as usize;
+        let fixed = &simulation.scratch().metric.fixed;
+        let is_rock = |b: usize| self.counts[b] || fixed[b];
+        let counts =
+            |c: &&ContactHistory| is_rock(block(c.edge)) && is_rock(block(boundary.node_point[c.node as usize]));
+        let slipped = simulation.state().contacts.iter().filter(counts).map(|contact| {
             while before.next_if(|b| key(b) < key(contact)).is_some() {}
             let known = before.peek().filter(|b| key(b) == key(contact));
             contact.slip - known.map_or(0.0, |b| b.slip)
@@ -145,14 +161,12 @@ impl Base {
         slipped.fold(0.0, f64::max)
     }
 
-    /// Motion of all free blocks since the trial began.
+    /// Motion of the blocks that count since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
         let (slope, state) = (simulation.slope(), simulation.state());
         let metric = &simulation.scratch().metric;
         let begin = &self.simulation.state().displacement;
-        let free = |b: &usize| !metric.fixed[*b] && !state.removed[*b];
-        (0..slope.covers.block_count())
-            .filter(free)
+        self.counted()
             .map(|b| {
                 let (_, velocity, spin, _) = block_motion(slope, state, metric, b);
                 let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
@@ -185,6 +199,16 @@ impl Base {
         motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
         motions
     }
+}
+
+/// Which blocks can move and are no slivers.
+fn counts(simulation: &Simulation) -> Vec<bool> {
+    let (covers, removed) = (&simulation.slope().covers, &simulation.state().removed);
+    let is_free = |b: usize| !simulation.scratch().metric.fixed[b] && !removed[b];
+    let free = (0..covers.block_count()).filter(|&b| is_free(b));
+    let largest = free.map(|b| covers.block_area(b)).fold(0.0, f64::max);
+    let least = SLIVER * largest.min(covers.mesh.size.powi(2));
+    (0..covers.block_count()).map(|b| is_free(b) && covers.block_area(b) >= least).collect()
 }
 
 /// Advances a window; the report of its last step, or the numerical failure.
