@@ -18,6 +18,7 @@ mod c1;
 mod c10;
 mod c11;
 mod c12;
+mod c13;
 mod c2;
 mod c3;
 mod c4;
@@ -83,6 +84,7 @@ pub const ALL: &[Problem] = &[
     c10::PROBLEM,
     c11::PROBLEM,
     c12::PROBLEM,
+    c13::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,
     d3::PROBLEM,
