@@ -142,3 +142,24 @@ fn overstressed_rock_is_told_at_the_start() {
     // Without szz it is ν(sxx + syy) = −1 MPa: the same.
     assert_eq!(simulation(&case(-4e6, "")).built().warnings, warnings);
 }
+
+/// Triangles lock where rock flows (problem C13): a slope that yields on less than 20 elements over its height is told,
+/// with the mesh size that would do. Rock that cannot yield, and rock without weight, has no such factor.
+#[test]
+fn coarse_meshes_of_rock_that_yields_are_told() {
+    let warnings = |size: f64, strength: &str, gravity: f64| {
+        let text = format!(
+            "title = \"slope\"\n[domain]\noutline = [[0, 0], [32, 0], [12, 10], [0, 10]]\n[mesh]\nsize = {size:e}\n\
+             [gravity]\ny = {gravity:e}\n[rock.soil]\ndensity = 2000\nyoung = 1e8\npoisson = 0.3\n{strength}\n[[fix]]\n\
+             edge = [[0, 0], [32, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n"
+        );
+        simulation(&text).built().warnings.clone()
+    };
+    let told = warnings(1.0, "cohesion = 1e4", -9.81);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(["mesh of 1.000000 m", "1/20", "(10.000000 m)", "0.500000 m or less"].iter().all(|s| told[0].contains(s)));
+    for silent in [("cohesion = 1e4", 0.5, -9.81), ("", 1.0, -9.81), ("cohesion = 1e4", 1.0, 0.0)] {
+        let (strength, size, gravity) = silent;
+        assert_eq!(warnings(size, strength, gravity), [""; 0], "{silent:?}");
+    }
+}

@@ -68,6 +68,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &slope, &places)?;
     warnings.extend(rock::overstressed(case, &slope));
+    warnings.extend(rock::coarse(case));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
     warnings.extend(warnings::of_values(case, &slope, &places));
