@@ -19,6 +19,7 @@ mod c10;
 mod c11;
 mod c12;
 mod c13;
+mod c14;
 mod c2;
 mod c3;
 mod c4;
@@ -85,6 +86,7 @@ pub const ALL: &[Problem] = &[
     c11::PROBLEM,
     c12::PROBLEM,
     c13::PROBLEM,
+    c14::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,
     d3::PROBLEM,
