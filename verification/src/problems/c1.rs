@@ -9,7 +9,9 @@ use enmm::step::{StepReport, block_motion};
 pub const PROBLEM: Problem = Problem {
     id: "C1",
     title: "Block on an incline",
-    source: "s = ½·g·(sin a − cos a·tan φ)·t²; catches wrong friction, creep and numerical damping of rigid motion",
+    source: "s = ½·g·(sin a − cos a·tan φ)·t² for blocks so low that they slide upright: one that is b long and h high \
+             tips over its lower edge where tan φ > b/h; catches wrong friction, creep and numerical damping of rigid \
+             motion",
     parameters: &[
         Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 42.0], doc: "dip of the plane" },
         Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "friction of the block" },
@@ -27,7 +29,13 @@ pub const PROBLEM: Problem = Problem {
         Parameter {
             name: "a_brake_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip where a block stops"
         },
-        Parameter { name: "phi_brake_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "friction there" },
+        Parameter {
+            name: "phi_brake_deg",
+            unit: "°",
+            default: 30.0,
+            range: [5.0, 40.0],
+            doc: "friction there; a block as high as long tips over from 45° on",
+        },
         Parameter { name: "v0", unit: "m/s", default: 2.0, range: [0.2, 5.0], doc: "speed at the start there" },
         Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus" },
         Parameter { name: "young_rest", unit: "Pa", default: 2e8, range: [1e7, 1e11], doc: "Young's modulus at rest" },

@@ -11,7 +11,13 @@ pub const PROBLEM: Problem = Problem {
     parameters: &[
         Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "dip of the plane" },
         Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length along the plane" },
-        Parameter { name: "height", unit: "m", default: 2.0, range: [0.2, 20.0], doc: "height above the plane" },
+        Parameter {
+            name: "height",
+            unit: "m",
+            default: 2.0,
+            range: [0.2, 20.0],
+            doc: "height above the plane, below length/tan a: no toppling",
+        },
         Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
         Parameter {
             name: "phi_deg", unit: "°", default: 40.0, range: [1.0, 70.0], doc: "friction of the first block"
@@ -64,6 +70,9 @@ fn text(setup: &Setup, phi_deg: f64, cohesion: f64) -> String {
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let [a, long, high] = ["a_deg", "length", "height"].map(|name| setup.get(name));
     let weight = setup.get("gamma") * long * high;
+    if a.to_radians().tan() > long / high {
+        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
+    }
     let variants = [
         ("friction alone", setup.get("phi_deg"), 0.0),
         ("friction and cohesion", setup.get("phi_c_deg"), setup.get("cohesion")),
