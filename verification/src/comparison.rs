@@ -9,11 +9,12 @@ use std::time::Instant;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::model::case::Integrator;
+use enmm::state::Counters;
 
 use crate::{Plot, Setup, Trouble, Values};
 
-pub use models::slope_text;
-pub(crate) use models::{block_displacements, difference};
+pub use models::{Totals, slope_text};
+pub(crate) use models::{block_displacements, difference, fail};
 
 /// One run of one model by one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,11 +47,25 @@ pub struct Entry {
     pub at_rest: bool,
 }
 
+/// Time (s) for which slopes fail.
+pub const FAILING: f64 = 1.0;
+
+/// A slope that fails, by one method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// Cost of the failure, without that of coming to rest.
+    pub entry: Entry,
+    /// What it has done after [`FAILING`] seconds.
+    pub totals: Totals,
+}
+
 /// All runs of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// Pairs of runs over sizes: explicit, then implicit.
     pub entries: Vec<Entry>,
+    /// Slopes that fail over sizes: explicit, then implicit.
+    pub failures: Vec<Failure>,
     /// Sizes of the implicit step on one model, after the explicit run.
     pub sweep: Vec<Entry>,
     /// Plots of error and cost.
@@ -78,12 +93,19 @@ pub fn compare(quick: bool) -> Result<Comparison, Trouble> {
         let mut places = Vec::new();
         entries.extend(pair(|integrator| models::slope(integrator, spacing, &mut places))?);
     }
+    let mut failures = Vec::new();
+    // A slope of 3.2 m takes the implicit method minutes for a second of failure.
+    let failing: &[f64] = if quick { &[24.0, 16.0, 12.0] } else { &[24.0, 12.0, 6.4] };
+    for &spacing in failing {
+        let mut totals = None;
+        failures.extend(pair(|integrator| models::failure(integrator, spacing, &mut totals))?);
+    }
     let sweep = sweep(quick)?;
-    let plots = report::plots(&entries, &sweep);
-    Ok(Comparison { entries, sweep, plots, quick })
+    let plots = report::plots(&entries, &failures, &sweep);
+    Ok(Comparison { entries, failures, sweep, plots, quick })
 }
 
-fn pair(mut run: impl FnMut(Integrator) -> Result<Entry, Trouble>) -> Result<[Entry; 2], Trouble> {
+fn pair<T>(mut run: impl FnMut(Integrator) -> Result<T, Trouble>) -> Result<[T; 2], Trouble> {
     Ok([run(Integrator::Explicit)?, run(Integrator::Implicit)?])
 }
 
@@ -106,6 +128,8 @@ struct Run {
     integrator: Integrator,
     wall: Instant,
     cpu: f64,
+    /// Steps and counters before the clock was set.
+    before: (u64, Counters),
 }
 
 impl Run {
@@ -113,11 +137,19 @@ impl Run {
         let values = Values::none();
         let mut setup = Setup { values, integrator, quick: false, cases: Vec::new() };
         let simulation = setup.simulation("comparison", text)?;
-        Ok(Self { simulation, integrator, wall: Instant::now(), cpu: cpu_seconds() })
+        let before = (0, Counters::default());
+        Ok(Self { simulation, integrator, wall: Instant::now(), cpu: cpu_seconds(), before })
+    }
+
+    /// Sets clock and counts to zero.
+    fn restart(&mut self) {
+        (self.wall, self.cpu) = (Instant::now(), cpu_seconds());
+        self.before = (self.simulation.state().step, self.simulation.state().counters);
     }
 
     fn entry(&self, model: &'static str, variant: String, error: f64, at_rest: bool) -> Entry {
         let (simulation, counters) = (&self.simulation, &self.simulation.state().counters);
+        let (steps, before) = (simulation.state().step - self.before.0, &self.before.1);
         let covers = &simulation.slope().covers;
         Entry {
             model,
@@ -128,9 +160,9 @@ impl Run {
             error,
             wall: self.wall.elapsed().as_secs_f64(),
             cpu: cpu_seconds() - self.cpu,
-            steps: [simulation.state().step, counters.substeps],
-            iterations: counters.sweeps,
-            factorisations: counters.factorisations,
+            steps: [steps, counters.substeps - before.substeps],
+            iterations: counters.sweeps - before.sweeps,
+            factorisations: counters.factorisations - before.factorisations,
             bytes: bytes(simulation),
             at_rest,
         }

@@ -24,7 +24,9 @@ fn beams_columns_and_walls_pass_with_either() {
 fn long_a_quick_comparison_writes_its_document() {
     let comparison = enmm_verification::comparison::compare(true).unwrap_or_else(|e| panic!("{}", e.0));
     let text = comparison.markdown(&[]);
-    assert!(["Beam", "Sliding block", "Fractured slope"].iter().all(|name| text.contains(name)));
+    assert!(["Beam", "Sliding block", "Fractured slope", "Slope that fails"].iter().all(|name| text.contains(name)));
     assert!(comparison.entries.iter().all(|e| e.error.is_finite() && e.at_rest), "{text}");
-    assert_eq!(comparison.plots.len(), 4);
+    let failures = &comparison.failures;
+    assert!(failures.iter().all(|f| f.entry.error.abs() < 0.05 && f.entry.at_rest && f.entry.steps[1] > 0), "{text}");
+    assert_eq!(comparison.plots.len(), 5);
 }

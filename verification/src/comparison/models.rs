@@ -1,9 +1,11 @@
 //! The models of the comparison: a beam, a block on an incline, a fractured slope.
 
 use enmm::geometry::Vector;
+use enmm::model::Simulation;
 use enmm::model::case::Integrator;
+use enmm::step::energies;
 
-use super::{Entry, Run};
+use super::{Entry, FAILING, Failure, Run};
 use crate::problems::{Beam, Plane};
 use crate::{Trouble, run_stage};
 
@@ -102,8 +104,87 @@ pub(super) fn slope(integrator: Integrator, spacing: f64, places: &mut Vec<Vecto
     Ok(run.entry("fractured slope", format!("spacing {spacing} m"), error, at_rest))
 }
 
+/// What a slope has done since it began to fail. Single blocks go their own ways; these sums hardly know them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Totals {
+    /// Potential energy set free (J/m).
+    pub released: f64,
+    /// Kinetic energy (J/m).
+    pub kinetic: f64,
+    /// Heat of slip (J/m).
+    pub friction: f64,
+    /// Mean displacement of all rock (m).
+    pub displacement: f64,
+}
+
+impl Totals {
+    /// Names with units, in the order of [`Totals::values`].
+    pub const NAMES: [(&str, &str); 4] = [
+        ("potential energy released", "J/m"),
+        ("kinetic energy", "J/m"),
+        ("heat of slip", "J/m"),
+        ("mean displacement of all rock", "m"),
+    ];
+
+    /// The totals in the order of their names.
+    pub fn values(&self) -> [f64; 4] {
+        [self.released, self.kinetic, self.friction, self.displacement]
+    }
+
+    fn now(simulation: &Simulation, places: &[Vector]) -> Self {
+        let ledger = energies(simulation.slope(), simulation.state(), &simulation.scratch().metric);
+        let moved = block_displacements(simulation);
+        let mass = &simulation.slope().metric.total;
+        let way: f64 = moved.iter().zip(places).zip(mass).map(|((now, then), mass)| mass * (now - then).norm()).sum();
+        Self {
+            released: -ledger.potential,
+            kinetic: ledger.kinetic,
+            friction: ledger.friction,
+            displacement: way / mass.iter().sum::<f64>(),
+        }
+    }
+
+    /// These beside those of the start, and `share` of the way to `next`.
+    fn since(&self, start: &Self, next: &Self, share: f64) -> Self {
+        let between = |of: fn(&Self) -> f64| of(self) + share * (of(next) - of(self)) - of(start);
+        Self {
+            released: between(|t| t.released),
+            kinetic: between(|t| t.kinetic),
+            friction: between(|t| t.friction),
+            displacement: between(|t| t.displacement),
+        }
+    }
+}
+
+/// Begins the failure of a slope at rest; its totals after exactly so many seconds, between the two steps about them.
+pub(crate) fn fail(simulation: &mut Simulation, seconds: f64) -> Result<Totals, Trouble> {
+    let places = block_displacements(simulation);
+    let first = Totals::now(simulation, &places);
+    simulation.next_stage()?;
+    let steps = seconds / simulation.slope().dt;
+    for _ in 0..steps as u64 {
+        simulation.advance(false)?;
+    }
+    let before = Totals::now(simulation, &places);
+    simulation.advance(false)?;
+    Ok(before.since(&first, &Totals::now(simulation, &places), steps.fract()))
+}
+
+/// The slope that fails: the cost of so many seconds alone, and its totals; its error is the difference of the mean
+/// displacement from that of the explicit method, which comes first.
+pub(super) fn failure(integrator: Integrator, spacing: f64, known: &mut Option<Totals>) -> Result<Failure, Trouble> {
+    let mut run = Run::start(integrator, slope_text(spacing, 2.0 * FAILING))?;
+    let report = run_stage(&mut run.simulation)?;
+    let at_rest = run.simulation.at_rest(&report);
+    run.restart();
+    let totals = fail(&mut run.simulation, FAILING)?;
+    let error = totals.displacement / known.get_or_insert(totals).displacement - 1.0;
+    let entry = run.entry("slope that fails", format!("spacing {spacing} m"), error, at_rest);
+    Ok(Failure { entry, totals })
+}
+
 /// Mean displacement of every block (m).
-pub(crate) fn block_displacements(simulation: &enmm::model::Simulation) -> Vec<Vector> {
+pub(crate) fn block_displacements(simulation: &Simulation) -> Vec<Vector> {
     let slope = simulation.slope();
     let of = |b: usize| {
         let covers = slope.covers.covers_of(b);

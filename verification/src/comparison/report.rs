@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use enmm::model::case::Integrator;
 
-use super::{Comparison, Entry};
+use super::{Comparison, Entry, FAILING, Failure, Totals};
 use crate::{Plot, Series};
 
 impl Comparison {
@@ -20,6 +20,7 @@ impl Comparison {
             mine.iter().for_each(|e| text += &line(e));
             text += &verdict(model, &mine);
         }
+        text += &failures(&self.failures);
         let _ = write!(text, "\n## Size of the implicit step: sliding block\n\n{TABLE}");
         self.sweep.iter().for_each(|e| text += &line(e));
         text += &sweep_verdict(&self.sweep);
@@ -109,6 +110,28 @@ fn verdict(model: &str, entries: &[&Entry]) -> String {
     text
 }
 
+/// Slopes that fail: their cost, and how far their totals are from those of the explicit method.
+fn failures(failures: &[Failure]) -> String {
+    let mut text = format!(
+        "\n## Slope that fails\n\nSlopes of that kind fail under a friction of 28°. Times and counts are \
+         those of {FAILING} s of failure alone, which both methods cover. Single blocks go their own ways, so that \
+         totals are compared; the error is that of the mean displacement of all rock against the explicit method.\n\n{TABLE}"
+    );
+    failures.iter().for_each(|failure| text += &line(&failure.entry));
+    let entries: Vec<&Entry> = failures.iter().map(|failure| &failure.entry).collect();
+    text += &verdict("slope that fails", &entries);
+    let names = Totals::NAMES.map(|(name, unit)| format!("{name} [{unit}]")).join(" | ");
+    let _ = write!(text, "\n| variant | method | {names} |\n|---|---|---:|---:|---:|---:|\n");
+    for pair in failures.chunks_exact(2) {
+        let [explicit, implicit] = [pair[0].totals.values(), pair[1].totals.values()];
+        let known = explicit.map(|value| format!("{value:.4e}")).join(" | ");
+        let other = |k: usize| format!("{:.4e} ({:+.1} %)", implicit[k], 100.0 * (implicit[k] / explicit[k] - 1.0));
+        let _ = writeln!(text, "| {} | explicit | {known} |", pair[0].entry.variant);
+        let _ = writeln!(text, "| {} | implicit | {} |", pair[1].entry.variant, [0, 1, 2, 3].map(other).join(" | "));
+    }
+    text
+}
+
 /// The largest implicit step that is as accurate as the explicit method.
 fn sweep_verdict(sweep: &[Entry]) -> String {
     let Some((explicit, implicit)) = sweep.split_first() else { return String::new() };
@@ -131,8 +154,26 @@ fn sweep_verdict(sweep: &[Entry]) -> String {
 }
 
 /// Cost over size for every model, and error over the implicit step.
-pub(super) fn plots(entries: &[Entry], sweep: &[Entry]) -> Vec<Plot> {
-    let mut plots: Vec<Plot> = models(entries)
+pub(super) fn plots(entries: &[Entry], failures: &[Failure], sweep: &[Entry]) -> Vec<Plot> {
+    let entries: Vec<Entry> = entries.iter().chain(failures.iter().map(|failure| &failure.entry)).cloned().collect();
+    let mut plots: Vec<Plot> = costs(&entries);
+    let line = |which: Integrator, name: &str| Series {
+        name: name.into(),
+        points: sweep.iter().filter(|e| e.integrator == which).map(|e| [e.dt, e.error.abs().max(1e-12)]).collect(),
+        marks: true,
+    };
+    plots.push(Plot {
+        title: "E1: error of the slip over the step".into(),
+        axes: ["step dt [s]".into(), "relative error [-]".into()],
+        logarithmic: [true; 2],
+        series: vec![line(Integrator::Explicit, "explicit"), line(Integrator::Implicit, "implicit")],
+    });
+    plots
+}
+
+/// Cost over size for every model.
+fn costs(entries: &[Entry]) -> Vec<Plot> {
+    models(entries)
         .into_iter()
         .map(|model| {
             let line = |which: Integrator, name: &str| Series {
@@ -151,17 +192,5 @@ pub(super) fn plots(entries: &[Entry], sweep: &[Entry]) -> Vec<Plot> {
                 series: vec![line(Integrator::Explicit, "explicit"), line(Integrator::Implicit, "implicit")],
             }
         })
-        .collect();
-    let line = |which: Integrator, name: &str| Series {
-        name: name.into(),
-        points: sweep.iter().filter(|e| e.integrator == which).map(|e| [e.dt, e.error.abs().max(1e-12)]).collect(),
-        marks: true,
-    };
-    plots.push(Plot {
-        title: "E1: error of the slip over the step".into(),
-        axes: ["step dt [s]".into(), "relative error [-]".into()],
-        logarithmic: [true; 2],
-        series: vec![line(Integrator::Explicit, "explicit"), line(Integrator::Implicit, "implicit")],
-    });
-    plots
+        .collect()
 }
