@@ -115,7 +115,8 @@ fn failures(failures: &[Failure]) -> String {
     let mut text = format!(
         "\n## Slope that fails\n\nSlopes of that kind fail under a friction of 28°. Times and counts are \
          those of {FAILING} s of failure alone, which both methods cover. Single blocks go their own ways, so that \
-         totals are compared; the error is that of the mean displacement of all rock against the explicit method.\n\n{TABLE}"
+         totals are compared; the error is that of the mean displacement of all rock against that of the explicit \
+         method.\n\n{TABLE}"
     );
     failures.iter().for_each(|failure| text += &line(&failure.entry));
     let entries: Vec<&Entry> = failures.iter().map(|failure| &failure.entry).collect();
