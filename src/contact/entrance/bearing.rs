@@ -62,7 +62,9 @@ impl Bearings {
 
     fn find(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {
         let Self { first, bearings, segment, .. } = self;
-        (first.clear(), bearings.clear(), segment.clear());
+        first.clear();
+        bearings.clear();
+        segment.clear();
         for contact in history {
             let (node, edge) = (contact.node as usize, &frames.edges[contact.edge as usize]);
             let gap = (frames.nodes[node].place - edge.start).dot(&edge.normal());
