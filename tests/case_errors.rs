@@ -160,12 +160,12 @@ fn strength_out_of_range_says_value_and_limit() {
         (
             "young = 5e10",
             "young = 0",
-            "rock.granite.young: is 0 Pa, must be greater than 0 and at most 1e15; rock has 1e8 to 1e11",
+            "rock.granite.young: is 0 Pa, must be at least 1 and at most 1e15; rock has 1e8 to 1e11",
         ),
         (
             "density = 2650",
             "density = -2650",
-            "rock.granite.density: is -2650 kg/m³, must be greater than 0 and at most 1e6; rock has 1500 to 3500",
+            "rock.granite.density: is -2650 kg/m³, must be at least 0.001 and at most 1e6; rock has 1500 to 3500",
         ),
         (
             "spacing = 2.0",

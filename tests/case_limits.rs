@@ -7,7 +7,7 @@ use std::path::Path;
 
 use case_support::{CASE, with_geometry};
 use enmm::io::{load_case, parse_case, schema};
-use enmm::model::Case;
+use enmm::model::{Case, Simulation};
 use proptest::prelude::*;
 use serde_json::Value;
 
@@ -133,6 +133,25 @@ fn fingerprint_changes_with_any_value() {
     let hash = |text: &str| parse_case(text, "slope.toml", Path::new("")).unwrap().hash;
     assert_ne!(hash(CASE), hash(&CASE.replacen("density = 2650", "density = 2651", 1)));
     assert_ne!(hash(CASE), hash(&CASE.replacen("clean", "Clean", 100)));
+}
+
+/// Found by `cargo xtask fuzz --part cases --seed 7 --from 5850`: the kinetic energy of the first step was no number.
+#[test]
+fn rock_too_light_for_numbers_is_refused_and_the_lightest_and_softest_moves() {
+    let loaded = load_case(Path::new("examples/cases/block_on_incline.toml")).unwrap();
+    let with = |density: f64, young: f64| {
+        let mut case = loaded.case.clone();
+        case.rocks.values_mut().for_each(|rock| (rock.density, rock.young) = (density, young));
+        Simulation::new(case)
+    };
+    for (density, young, place) in [(1e-300, 1e10, "density"), (2650.0, 1e-300, "young")] {
+        assert!(with(density, young).expect_err("refused").key.ends_with(place));
+    }
+    for (density, young) in [(1e-3, 1.0), (1e-3, 1e15), (1e6, 1.0), (1e6, 1e15)] {
+        let mut model = with(density, young).unwrap();
+        let Ok(report) = model.advance(true) else { continue };
+        assert!(report.ledger.kinetic.is_finite(), "{density} kg/m3, {young} Pa");
+    }
 }
 
 #[test]

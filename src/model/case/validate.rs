@@ -204,8 +204,8 @@ fn joint_set(key: &Key, set: &super::JointSet) -> Check {
 }
 
 fn rock(key: &Key, rock: &Rock) -> Check {
-    number(key, "density", rock.density, Range::above(0.0).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
-    number(key, "young", rock.young, Range::above(0.0).to(1e15), "Pa", "rock has 1e8 to 1e11")?;
+    number(key, "density", rock.density, Range::from(1e-3).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
+    number(key, "young", rock.young, Range::from(1.0).to(1e15), "Pa", "rock has 1e8 to 1e11")?;
     let poisson = match rock.plane {
         Plane::Strain => Range::above(-1.0).below(0.5),
         Plane::Stress => Range::above(-1.0).to(0.5),
