@@ -67,7 +67,8 @@ fn a_checkpoint_of_another_case_or_none_is_refused_before_anything_is_written() 
 #[test]
 fn a_directory_that_cannot_be_made_is_bad_input() {
     let place = Place::with(&case(0.02));
-    place.enmm(&["run", "case.toml", "-o", "case.toml/results"]).assert_bad_input(&["cannot write results", "-o"]);
+    place.enmm(&["run", "case.toml", "-o", "case.toml/results"]).assert_bad_input(&["case.toml/results: ", "-o"]);
+    place.enmm(&["run", "case.toml", "-o", "case.toml"]).assert_bad_input(&["cannot write results (case.toml: ", "-o"]);
 }
 
 #[test]

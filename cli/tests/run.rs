@@ -139,6 +139,25 @@ fn a_killed_run_continues_from_its_last_checkpoint() {
     assert_same(&place);
 }
 
+/// It ended with status 0 and without its history, whose rows had gone to a file without a name.
+#[cfg(unix)]
+#[test]
+fn a_run_whose_folder_vanishes_says_so() {
+    let place = Place::with(&format!("{}\n[output]\npictures = false\n", long_rest()));
+    let child = place.start(&["run", "case.toml", "-o", "parts"]);
+    let begin = Instant::now();
+    while fs::read_to_string(place.path("parts/history.csv")).map_or(0, |text| text.lines().count()) < 9 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no rows");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    fs::rename(place.path("parts"), place.path("away")).expect("moved");
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+    let answer = Answer::of(child.wait_with_output().expect("an end"));
+    assert_eq!(answer.status, Some(3), "{answer:?}");
+    assert!(answer.stderr.contains("cannot write results (parts/"), "{answer:?}");
+}
+
 #[test]
 fn energy_from_nowhere_makes_a_run_fail() {
     // Rock of 50 Pa instead of 50 GPa: the stage has two steps of 2.5 s.

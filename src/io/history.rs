@@ -61,6 +61,14 @@ impl HistoryWriter {
         written.and_then(|()| self.csv.flush()).map_err(at_path(&self.path))
     }
 
+    /// Fails when the file is no longer in its place: rows then went where nobody finds them.
+    ///
+    /// # Errors
+    /// Whatever the file system tells of it, with the path in the message.
+    pub fn check_place(&self) -> io::Result<()> {
+        fs::metadata(&self.path).map(|_| ()).map_err(at_path(&self.path))
+    }
+
     fn at_end(path: &Path, columns: usize) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).open(path).map_err(at_path(path))?;
         Ok(Self { path: path.to_owned(), columns, csv: csv::Writer::from_writer(file) })

@@ -11,6 +11,7 @@ use crate::geometry::Vector;
 use crate::io::blocks::write_blocks;
 use crate::io::case_file::LoadedCase;
 use crate::io::checkpoint::{self, CheckpointError};
+use crate::io::files::at_path;
 use crate::io::history::HistoryWriter;
 use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds, doubt};
 use crate::io::vtu::PvdWriter;
@@ -377,6 +378,7 @@ impl<'a> Driver<'a> {
     fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
         self.simulation.drop_buffers();
         self.save()?;
+        self.history.check_place().map_err(RunError::Output)?;
         let directory = &self.options.directory;
         write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
         if self.simulation.case().output.pictures && status != RunStatus::Interrupted {

@@ -18,7 +18,7 @@ const TRACES: [&str; 2] = ["history.csv", "summary.json"];
 
 /// Makes the directory, removes what a killed run left half written, and tells whether a run has been here before.
 pub fn enter(directory: &Path) -> io::Result<bool> {
-    fs::create_dir_all(directory)?;
+    fs::create_dir_all(directory).map_err(at_path(directory))?;
     sweep_temporaries(directory)?;
     sweep_temporaries(&directory.join("frames"))?;
     Ok(TRACES.iter().any(|name| directory.join(name).exists()))
@@ -26,14 +26,16 @@ pub fn enter(directory: &Path) -> io::Result<bool> {
 
 /// Removes the frames of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
-    fs::create_dir_all(directory.join("frames"))?;
-    frames(directory)?.iter().try_for_each(fs::remove_file)
+    let frames_directory = directory.join("frames");
+    fs::create_dir_all(&frames_directory).map_err(at_path(&frames_directory))?;
+    frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
 }
 
 /// Files of frames in a directory.
 fn frames(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
-    for entry in fs::read_dir(directory.join("frames"))? {
+    let frames = directory.join("frames");
+    for entry in fs::read_dir(&frames).map_err(at_path(&frames))? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if name.ends_with(".vtu") && (name.starts_with("elements_") || name.starts_with("joints_")) {
