@@ -3,6 +3,7 @@
 
 mod ab;
 mod counts;
+mod faults;
 mod house;
 mod install;
 mod python;
@@ -17,6 +18,11 @@ usage: cargo xtask TASK
                    --quick leaves out the last three
   python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
+  fuzz [--minutes N] [--seed S] [--part NAME]
+                   throws wrong cases, joint networks, calls and states at every entrance; without
+                   --minutes the share that test takes
+  faults [--rounds N]
+                   kills, interrupts and starves runs of the program, and compares what they leave
   verify           solves the full set of verification problems and writes docs/verification.md
                    with its plots; fails when a value is missed that the report did not state
   compare          runs the comparison of the explicit with the implicit integrator
@@ -40,6 +46,8 @@ fn main() -> ExitCode {
         ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
         ["python"] => Ok(tasks::python(&house)),
         ["long"] => Ok(tasks::long(&house)),
+        ["fuzz", ref words @ ..] => tasks::fuzz(&house, words).map(|()| ExitCode::SUCCESS),
+        ["faults", ref words @ ..] => faults::run(&house, words).map(|()| ExitCode::SUCCESS),
         ["verify"] => tasks::verification(&house, "report").map(|()| ExitCode::SUCCESS),
         ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
         ["overhead"] => tasks::overhead(&house).map(|()| ExitCode::SUCCESS),

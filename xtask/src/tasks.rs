@@ -5,6 +5,7 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use crate::counts::{self, Counts};
+use crate::faults;
 use crate::house::{self, House};
 use crate::python;
 
@@ -51,8 +52,24 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
         });
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
         steps.take("python", || python::test(house));
+        steps.take("fuzz", || throw(house, &[]).map(|()| Counts::default()));
+        steps.take("faults", || faults::rounds_of(house, 1));
     }
     steps.close()
+}
+
+/// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
+///
+/// # Errors
+/// When the program does not build, or finds something.
+pub fn fuzz(house: &House, words: &[&str]) -> Result<(), String> {
+    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
+    throw(house, words)
+}
+
+fn throw(house: &House, words: &[&str]) -> Result<(), String> {
+    let mut fuzz = house.command(house.enmm().with_file_name(format!("enmm-fuzz{}", std::env::consts::EXE_SUFFIX)));
+    house::run(fuzz.arg("--finds").arg(house.target.join("fuzz")).args(words))
 }
 
 /// Builds and runs the Python tests alone.

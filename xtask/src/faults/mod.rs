@@ -1,0 +1,83 @@
+//! Runs of the program that something goes wrong with from outside: killed, interrupted, without room, without a
+//! folder, without a reader. Each says what was tried; results are compared with those of an undisturbed run, to the
+//! bit.
+
+mod harm;
+mod place;
+
+use std::time::Instant;
+
+use crate::counts::Counts;
+use crate::house::House;
+use place::Place;
+
+/// Rounds when no number is given.
+const ROUNDS: u64 = 5;
+
+/// What came of a fault that was tried.
+pub enum Verdict {
+    /// What was promised holds; what was seen.
+    Held(String),
+    /// It cannot be tried here, and why.
+    Skipped(String),
+}
+
+/// A fault: name and what tries it, with a number that differs from round to round.
+type Fault = (&'static str, fn(&Place, u64) -> Result<Verdict, String>);
+
+/// All faults; a round of them runs in `cargo xtask test`.
+const FAULTS: [Fault; 9] = [
+    ("killed at random moments, then resumed", harm::killed),
+    ("interrupted by SIGINT or SIGTERM, then resumed", harm::interrupted),
+    ("nobody reads what it prints", harm::closed_pipe),
+    ("it prints to a full device", harm::full_device),
+    ("its folder cannot be written to", harm::read_only),
+    ("its disk is full", harm::full_disk),
+    ("its folder vanishes", harm::vanished),
+    ("its folder is a file", harm::no_folder),
+    ("two runs of a case in one folder", harm::together),
+];
+
+/// Reads `[--rounds N]` and tries all faults so often; fails when one did harm.
+///
+/// # Errors
+/// When the arguments are wrong, or the undisturbed run fails.
+pub fn run(house: &House, words: &[&str]) -> Result<(), String> {
+    let rounds = match words {
+        [] => ROUNDS,
+        ["--rounds", number] => number.parse().map_err(|_| format!("{number} is no number"))?,
+        _ => return Err("usage: cargo xtask faults [--rounds N]".to_owned()),
+    };
+    crate::house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
+    let counts = rounds_of(house, rounds)?;
+    println!("{} held, {} did harm", counts.passed, counts.failed);
+    if counts.failed == 0 { Ok(()) } else { Err(format!("{} faults did harm: see above", counts.failed)) }
+}
+
+/// Tries all faults in each round.
+///
+/// # Errors
+/// When the undisturbed run fails.
+pub fn rounds_of(house: &House, rounds: u64) -> Result<Counts, String> {
+    let place = Place::new(house)?;
+    let mut counts = Counts::default();
+    for round in 0..rounds {
+        for (name, act) in FAULTS {
+            let start = Instant::now();
+            let verdict = act(&place, round);
+            let seconds = start.elapsed().as_secs_f64();
+            match verdict {
+                Ok(Verdict::Held(seen)) => {
+                    counts.passed += 1;
+                    println!("held     {seconds:>5.1} s  {name}: {seen}");
+                }
+                Ok(Verdict::Skipped(why)) => println!("left out {seconds:>5.1} s  {name}: {why}"),
+                Err(harm) => {
+                    counts.failed += 1;
+                    println!("HARM     {seconds:>5.1} s  {name} (round {round}): {harm}");
+                }
+            }
+        }
+    }
+    Ok(counts)
+}
