@@ -11,7 +11,6 @@ use crate::geometry::Vector;
 use crate::io::blocks::write_blocks;
 use crate::io::case_file::LoadedCase;
 use crate::io::checkpoint::{self, CheckpointError};
-use crate::io::files::at_path;
 use crate::io::history::HistoryWriter;
 use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds, doubt};
 use crate::io::vtu::PvdWriter;

@@ -136,7 +136,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let [a, phi, size] = ["a_deg", "phi_deg", "mesh"].map(|name| setup.get(name));
     let acceleration = G * (a.to_radians().sin() - a.to_radians().cos() * phi.to_radians().tan());
     let far = 0.5 * acceleration * setup.get("t").powi(2);
-    if far < 2.0 * AWAY || far > 2.5 {
+    if !(2.0 * AWAY..=2.5).contains(&far) {
         return Err(Trouble(format!("the blocks slide {far:.3} m: choose phi_deg and t for 0.1 to 2.5 m")));
     }
     let mut outcome = Outcome::default();
