@@ -185,7 +185,8 @@ fn compare(seed: u64) -> (String, Option<String>) {
     let mut line = format!("{seed:>3} {kind:<13} {:>3} blocks, φ {friction_deg:.1}°: bound {level}", bound.blocks[1]);
     let (Some(factor), Factor::Found(limit)) = (own.factor(), level) else {
         let agrees = own.end == End::StableThroughout && own.at_least().is_some_and(|f| f <= 1.02 * level.value());
-        return (format!("{line}, own {:?} {:?}", own.end, own.at_least()), (!agrees).then(|| line));
+        write!(line, ", own {:?} {:?}", own.end, own.at_least()).expect("text");
+        return (line.clone(), (!agrees).then_some(line));
     };
     write!(line, ", own {factor:.4} ({:+.1} %)", 100.0 * (factor / limit - 1.0)).expect("text");
     let mut wrong = own.trials.windows(2).any(|t| {
