@@ -57,12 +57,16 @@ impl Base {
         Self { simulation, scales, counts }
     }
 
-    /// Area (m²) of all blocks without a support.
+    /// Area (m²) of all blocks without a support; where each has one, of all that can move.
     pub fn free_area(&self) -> f64 {
         let slope = self.simulation.slope();
         let mut held = vec![false; slope.covers.block_count()];
         slope.supports.iter().for_each(|support| held[support.block as usize] = true);
-        self.counted().filter(|&b| !held[b]).map(|b| slope.covers.block_area(b)).sum()
+        let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
+            self.counted().filter(|&b| is_in(b)).map(|b| slope.covers.block_area(b)).sum()
+        };
+        let free = area(&|b| !held[b]);
+        if free > 0.0 { free } else { area(&|_| true) }
     }
 
     /// Blocks that count.
@@ -143,17 +147,21 @@ impl Base {
         }
     }
 
-    /// Largest slip (m) of a contact since the trial began.
+    /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks: it bears only when they move.
     fn slip(&self, simulation: &Simulation) -> f64 {
         let key = |contact: &ContactHistory| (contact.node, contact.side);
+        let (slope, state) = (simulation.slope(), simulation.state());
+        let (boundary, fixed) = (&slope.boundary, &simulation.scratch().metric.fixed);
+        let bolts = slope.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
+        let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
         let mut before = self.simulation.state().contacts.iter().peekable();
-        let boundary = &simulation.slope().boundary;
-        let block = |point: u32| boundary.block[point as usize] as usize;
-        let fixed = &simulation.scratch().metric.fixed;
-        let is_rock = |b: usize| self.counts[b] || fixed[b];
-        let counts =
-            |c: &&ContactHistory| is_rock(block(c.edge)) && is_rock(block(boundary.node_point[c.node as usize]));
-        let slipped = simulation.state().contacts.iter().filter(counts).map(|contact| {
+        let counts = |contact: &&ContactHistory| {
+            let points = [boundary.node_point[contact.node as usize], contact.edge];
+            let blocks = points.map(|point| boundary.block[point as usize]);
+            let is_rock = blocks.iter().all(|&b| self.counts[b as usize] || fixed[b as usize]);
+            is_rock && !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
+        };
+        let slipped = state.contacts.iter().filter(counts).map(|contact| {
             while before.next_if(|b| key(b) < key(contact)).is_some() {}
             let known = before.peek().filter(|b| key(b) == key(contact));
             contact.slip - known.map_or(0.0, |b| b.slip)
