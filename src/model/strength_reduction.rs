@@ -57,7 +57,7 @@ pub struct Trial {
     pub time: f64,
     /// Largest displacement of a block's covers since the trial began (m).
     pub displacement: f64,
-    /// Largest slip of a contact since the trial began (m).
+    /// Largest slip of a contact since the trial began (m); where rock yields, the largest displacement.
     pub slip: f64,
     /// Speed of the fastest block in the mean of the last window (m/s).
     pub speed: f64,

@@ -57,8 +57,8 @@ fn caught(trials: &[Trial]) -> Option<String> {
         format!("F = {:.4} to {:.4}", first.factor, last.factor)
     };
     Some(format!(
-        "at {range} joints slipped farther than elasticity explains, blocks moved by up to {far:.3} m and were caught: \
-         that does not count as stable"
+        "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and were \
+         caught: that does not count as stable"
     ))
 }
 

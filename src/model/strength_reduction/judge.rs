@@ -5,7 +5,7 @@
 pub enum Verdict {
     /// Motion has died, and elasticity explains how far it went.
     Stable,
-    /// Motion has died or is dying, but joints slipped farther than that: blocks are caught, not held.
+    /// Motion has died or is dying, but joints slipped or rock flowed farther than that: it is caught, not held.
     Caught,
     /// It fails.
     Unstable,
@@ -54,7 +54,7 @@ pub struct Sample {
     pub time: f64,
     /// Largest displacement since then (m).
     pub displacement: f64,
-    /// Largest slip of a contact since then (m).
+    /// Largest slip of a contact since then (m); where rock yields, the largest displacement.
     pub slip: f64,
     /// Speed of the fastest block in the mean of the window (m/s): what swings about its place goes nowhere.
     pub speed: f64,

@@ -92,7 +92,7 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
     if case.loads.iter().any(|load| load.table.is_some()) {
         warnings.push("loads with time tables go on changing during the trials".into());
     }
-    let yields = case.rocks.values().any(|rock| rock.friction_deg.is_some() || rock.cohesion.is_some());
+    let yields = case.rocks.values().any(|rock| rock.yields());
     case.stages.push(trial_stage(&case.stages, if yields { DAMPING_YIELDING } else { DAMPING }));
     Ok((case, warnings))
 }

@@ -47,6 +47,8 @@ pub struct Base {
     scales: Scales,
     /// Whether each block counts: it can move, and is no sliver.
     counts: Vec<bool>,
+    /// Whether rock yields: what it flows is no slip of joints.
+    yields: bool,
 }
 
 impl Base {
@@ -54,7 +56,8 @@ impl Base {
     pub fn new(simulation: Simulation, tolerance: f64) -> Self {
         let scales = scales(&simulation, tolerance);
         let counts = counts(&simulation);
-        Self { simulation, scales, counts }
+        let yields = simulation.case().rocks.values().any(|rock| rock.yields());
+        Self { simulation, scales, counts, yields }
     }
 
     /// Area (m²) of all blocks without a support; where each has one, of all that can move.
@@ -135,19 +138,19 @@ impl Base {
 
     /// The motion at the end of a window in which the fastest block has gone a way (m).
     fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, way: f64) -> Sample {
-        let motions = self.motions(simulation);
+        let far = self.motions(simulation).iter().map(|m| m.displacement).fold(0.0, f64::max);
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
             time: simulation.time() - self.simulation.time(),
-            displacement: motions.iter().map(|m| m.displacement).fold(0.0, f64::max),
-            slip: self.slip(simulation),
+            displacement: far,
+            slip: if self.yields { far } else { self.slip(simulation) },
             speed: way / self.scales.window,
             kinetic: self.counted().map(|b| simulation.motion_of(b).kinetic_energy).sum(),
             released: energy(first) - energy(&report.ledger),
         }
     }
 
-    /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks: it bears only when they move.
+    /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks, which bears when they move.
     fn slip(&self, simulation: &Simulation) -> f64 {
         let key = |contact: &ContactHistory| (contact.node, contact.side);
         let (slope, state) = (simulation.slope(), simulation.state());
