@@ -176,6 +176,11 @@ fn reduce(case: &Case) -> Reduction {
     factor_of_safety(case, &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{}: {e}", case.title))
 }
 
+/// Whether no stable trial stands above one that is not.
+fn is_monotone(reduction: &Reduction) -> bool {
+    reduction.trials.windows(2).all(|t| t[0].verdict == Verdict::Stable || t[1].verdict != Verdict::Stable)
+}
+
 /// Compares one slope; returns its line of the table and what is wrong with it.
 fn compare(seed: u64) -> (String, Option<String>) {
     let (kind, slope, friction_deg) = slope(seed);
@@ -189,10 +194,7 @@ fn compare(seed: u64) -> (String, Option<String>) {
         return (line.clone(), (!agrees).then_some(line));
     };
     write!(line, ", own {factor:.4} ({:+.1} %)", 100.0 * (factor / limit - 1.0)).expect("text");
-    let mut wrong = own.trials.windows(2).any(|t| {
-        let [first, second] = [&t[0], &t[1]].map(|t| t.verdict == Verdict::Stable);
-        !first && second
-    });
+    let mut wrong = !is_monotone(&own);
     wrong |= own.low.is_some_and(|low| low > 1.02 * limit);
     if factor < 0.95 * limit {
         // The friction at which the associated slope fails, and dilation as large.
@@ -213,6 +215,20 @@ fn compare_all(seeds: std::ops::Range<u64>) {
         wrong.extend(fault);
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Two sets at 40° and 130°. A grain of 4 cm² creeps on the crest at any strength: it once was judged failing at half
+/// the factor of the slope, between trials that stood.
+#[test]
+fn a_grain_that_creeps_makes_no_verdict_alternate() {
+    let mut slope = Slope { dice: Dice(1), face_deg: 60.0, joints: String::new() };
+    slope.set(40.0, 2.0, 100);
+    slope.set(130.0, 2.2, 200);
+    let reduction = reduce(&slope.case(40.0, None));
+    let bound = reduction.bound.as_ref().expect("a bound").level_tops.factor.value();
+    let factor = reduction.factor().expect("a factor");
+    assert!(is_monotone(&reduction), "{:?}", reduction.trials);
+    assert!((0.95..1.02).contains(&(factor / bound)), "{factor} of {bound}");
 }
 
 #[test]
