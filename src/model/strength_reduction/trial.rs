@@ -36,17 +36,13 @@ pub enum Stop {
     Failed(StepError),
 }
 
-/// Area of a sliver, relative to the square of the mesh size or, where that is less, to the area of the largest block:
-/// what cutting left over may pop out and fall, and says nothing of the slope.
-const SLIVER: f64 = 0.01;
-
 /// What all trials begin with.
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,
     scales: Scales,
-    /// Whether each block counts: it can move, and is no sliver.
-    counts: Vec<bool>,
+    /// Whether each block can move.
+    free: Vec<bool>,
     /// Whether rock yields: what it flows is no slip of joints.
     yields: bool,
 }
@@ -55,9 +51,9 @@ impl Base {
     /// Takes a slope at rest at the start of its dynamic stage.
     pub fn new(simulation: Simulation, tolerance: f64) -> Self {
         let scales = scales(&simulation, tolerance);
-        let counts = counts(&simulation);
+        let free = free(&simulation);
         let yields = simulation.case().rocks.values().any(|rock| rock.yields());
-        Self { simulation, scales, counts, yields }
+        Self { simulation, scales, free, yields }
     }
 
     /// Area (m²) of all blocks without a support; where each has one, of all that can move.
@@ -66,25 +62,25 @@ impl Base {
         let mut held = vec![false; slope.covers.block_count()];
         slope.supports.iter().for_each(|support| held[support.block as usize] = true);
         let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
-            self.counted().filter(|&b| is_in(b)).map(|b| slope.covers.block_area(b)).sum()
+            self.moving().filter(|&b| is_in(b)).map(|b| slope.covers.block_area(b)).sum()
         };
         let free = area(&|b| !held[b]);
         if free > 0.0 { free } else { area(&|_| true) }
     }
 
-    /// Blocks that count.
-    fn counted(&self) -> impl Iterator<Item = usize> {
-        self.counts.iter().enumerate().filter(|(_, counts)| **counts).map(|(b, _)| b)
+    /// Blocks that can move.
+    fn moving(&self) -> impl Iterator<Item = usize> {
+        self.free.iter().enumerate().filter(|(_, free)| **free).map(|(b, _)| b)
     }
 
-    /// Displacements (m) of the blocks that count: along x, along y, and by turning at their own radius.
+    /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
     fn places(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
         let place = |b: usize| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
             Vector3::new(motion.displacement.x, motion.displacement.y, turn)
         };
-        self.counted().map(place).collect()
+        self.moving().map(place).collect()
     }
 
     /// Makes one trial; returns the model at its end as well.
@@ -145,7 +141,7 @@ impl Base {
             displacement: far,
             slip: if self.yields { far } else { self.slip(simulation) },
             speed: way / self.scales.window,
-            kinetic: self.counted().map(|b| simulation.motion_of(b).kinetic_energy).sum(),
+            kinetic: report.ledger.kinetic,
             released: energy(first) - energy(&report.ledger),
         }
     }
@@ -154,15 +150,14 @@ impl Base {
     fn slip(&self, simulation: &Simulation) -> f64 {
         let key = |contact: &ContactHistory| (contact.node, contact.side);
         let (slope, state) = (simulation.slope(), simulation.state());
-        let (boundary, fixed) = (&slope.boundary, &simulation.scratch().metric.fixed);
+        let boundary = &slope.boundary;
         let bolts = slope.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
         let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
         let mut before = self.simulation.state().contacts.iter().peekable();
         let counts = |contact: &&ContactHistory| {
             let points = [boundary.node_point[contact.node as usize], contact.edge];
             let blocks = points.map(|point| boundary.block[point as usize]);
-            let is_rock = blocks.iter().all(|&b| self.counts[b as usize] || fixed[b as usize]);
-            is_rock && !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
+            !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
         };
         let slipped = state.contacts.iter().filter(counts).map(|contact| {
             while before.next_if(|b| key(b) < key(contact)).is_some() {}
@@ -172,12 +167,12 @@ impl Base {
         slipped.fold(0.0, f64::max)
     }
 
-    /// Motion of the blocks that count since the trial began.
+    /// Motion of all free blocks since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
         let (slope, state) = (simulation.slope(), simulation.state());
         let metric = &simulation.scratch().metric;
         let begin = &self.simulation.state().displacement;
-        self.counted()
+        self.moving()
             .map(|b| {
                 let (_, velocity, spin, _) = block_motion(slope, state, metric, b);
                 let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
@@ -212,14 +207,10 @@ impl Base {
     }
 }
 
-/// Which blocks can move and are no slivers.
-fn counts(simulation: &Simulation) -> Vec<bool> {
-    let (covers, removed) = (&simulation.slope().covers, &simulation.state().removed);
-    let is_free = |b: usize| !simulation.scratch().metric.fixed[b] && !removed[b];
-    let free = (0..covers.block_count()).filter(|&b| is_free(b));
-    let largest = free.map(|b| covers.block_area(b)).fold(0.0, f64::max);
-    let least = SLIVER * largest.min(covers.mesh.size.powi(2));
-    (0..covers.block_count()).map(|b| is_free(b) && covers.block_area(b) >= least).collect()
+/// Which blocks can move.
+fn free(simulation: &Simulation) -> Vec<bool> {
+    let (fixed, removed) = (&simulation.scratch().metric.fixed, &simulation.state().removed);
+    fixed.iter().zip(removed).map(|(fixed, removed)| !fixed && !removed).collect()
 }
 
 /// Advances a window; the report of its last step, or the numerical failure.
