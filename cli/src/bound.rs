@@ -6,10 +6,7 @@ use std::process::ExitCode;
 use enmm::io::{BoundFailure, bound_record};
 use enmm::model::limit_analysis::{Bound, Collapse};
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
-
-/// Blocks of a mechanism that are named.
-const NAMED: usize = 8;
+use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Finds the bounds of a case and prints them.
 pub fn bound(path: &Path, json: bool) -> ExitCode {
@@ -61,12 +58,10 @@ fn mechanism(bound: &Bound) -> String {
     if moving.is_empty() {
         return "none".to_owned();
     }
-    let named = moving.iter().take(NAMED).map(|b| {
+    let names = listed(moving.iter().map(|b| {
         format!("{} at ({:.2}, {:.2}) m by ({:.2}, {:.2})", b.block, b.place.x, b.place.y, b.velocity.x, b.velocity.y)
-    });
-    let names = named.collect::<Vec<_>>().join(", ");
-    let more = if moving.len() > NAMED { format!(" and {} more", moving.len() - NAMED) } else { String::new() };
+    }));
     let mass: f64 = moving.iter().map(|b| b.mass).sum();
     let blocks = if moving.len() == 1 { "block" } else { "blocks" };
-    format!("{} {blocks}, {mass:.4e} kg/m: {names}{more}", moving.len())
+    format!("{} {blocks}, {mass:.4e} kg/m: {names}", moving.len())
 }

@@ -7,10 +7,12 @@ use clap::Args;
 use enmm::io::fos::{Found, remedy};
 use enmm::io::{FosError, FosOptions, LoadedCase};
 use enmm::model::Simulation;
-use enmm::model::strength_reduction::{End, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict};
+use enmm::model::strength_reduction::{
+    End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
+};
 
 use crate::run::{INTERRUPT, directory_of, interrupt};
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line, tell_line};
+use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
@@ -44,8 +46,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Failing blocks that are named.
-const NAMED: usize = 8;
 /// Heads the columns of [`row`].
 const HEAD: &str = "trial           F  verdict   by            time (s)  displacement (m)  speed (m/s)  kinetic (J/m)  \
                     failing    steps  wall (s)";
@@ -166,7 +166,8 @@ fn result(reduction: &Reduction, found: &Found) -> String {
     }
     if let Some(trial) = reduction.first_unstable() {
         tell("mechanism", mechanism(trial, reduction, found));
-        tell("failing blocks", names(trial));
+        let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.place.x, b.place.y);
+        tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
     lines.extend(reduction.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"
@@ -184,12 +185,4 @@ fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
         trial.failing_mass(),
         100.0 * trial.failing_area() / reduction.free_area
     )
-}
-
-fn names(trial: &Trial) -> String {
-    let blocks = trial.failing.iter().take(NAMED);
-    let names: Vec<String> = blocks.map(|b| format!("{} at ({:.2}, {:.2}) m", b.block, b.place.x, b.place.y)).collect();
-    let more = trial.failing.len().saturating_sub(NAMED);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    format!("{}{more}", names.join(", "))
 }

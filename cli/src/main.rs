@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use output::{fail, print_line, tell_line};
+use output::{fail, listed, print_line, tell_line};
 
 /// Bad input; nothing was written.
 const BAD_INPUT: u8 = 2;

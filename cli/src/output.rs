@@ -22,6 +22,16 @@ fn note(written: io::Result<()>) {
     }
 }
 
+/// Things of a list that are named.
+const NAMED: usize = 8;
+
+/// The first names of a list, and how many more there are.
+pub fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(NAMED);
+    let first = names.take(NAMED).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{first} and {more} more") } else { first }
+}
+
 /// Prints what the parser of the arguments has to tell, help or error, and returns its exit status.
 pub fn tell(told: &clap::Error) -> ExitCode {
     let written = told.print();

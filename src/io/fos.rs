@@ -118,8 +118,12 @@ pub struct Found {
 impl Found {
     /// The first search that counts, else the last.
     pub fn main(&self) -> &Reduction {
-        let counts = self.searches.iter().find(|search| self.which.counts(search));
-        counts.unwrap_or(&self.searches[self.searches.len() - 1])
+        &self.searches[self.place_of_main()]
+    }
+
+    fn place_of_main(&self) -> usize {
+        let counts = self.searches.iter().position(|search| self.which.counts(search));
+        counts.unwrap_or(self.searches.len() - 1)
     }
 }
 
@@ -201,6 +205,11 @@ pub fn remedy(reduction: &Reduction) -> Option<String> {
 }
 
 fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -> Value {
+    let mut mechanisms: Vec<Value> = found.searches.iter().map(search_record).collect();
+    let main = mechanisms[found.place_of_main()].clone();
+    for (mechanism, search) in mechanisms.iter_mut().zip(&found.searches) {
+        mechanism["counts"] = json!(found.which.counts(search));
+    }
     let mut record = json!({
         "title": loaded.case.title,
         "version": engine_version(),
@@ -209,13 +218,9 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "tolerance": options.tolerance,
         "least_area": found.which.least_area,
         "wall_seconds": wall,
-        "mechanisms": found.searches.iter().map(|search| {
-            let mut mechanism = search_record(search);
-            mechanism["counts"] = json!(found.which.counts(search));
-            mechanism
-        }).collect::<Vec<_>>(),
+        "mechanisms": mechanisms,
     });
-    if let (Value::Object(record), Value::Object(main)) = (&mut record, search_record(found.main())) {
+    if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
         record.extend(main);
     }
     record

@@ -218,6 +218,13 @@ pub struct Rock {
     pub blocks: PointList,
 }
 
+impl Case {
+    /// Whether any rock has a strength that can be exceeded.
+    pub fn yields(&self) -> bool {
+        self.rocks.values().any(Rock::yields)
+    }
+}
+
 impl Rock {
     /// Whether the rock has a strength that can be exceeded.
     pub fn yields(&self) -> bool {
@@ -564,6 +571,31 @@ pub struct Stage {
     /// Fixities by name that let go.
     #[serde(default)]
     pub free: Vec<String>,
+}
+
+impl Stage {
+    /// A stage that changes nothing, to be put after `others`: its name is `name`, with a prime for each that has it.
+    pub(crate) fn plain(others: &[Self], name: &str, kind: StageKind, duration: f64) -> Self {
+        let mut name = name.to_owned();
+        while others.iter().any(|stage| stage.name == name) {
+            name.push('\'');
+        }
+        Self {
+            name,
+            kind,
+            duration,
+            convergence: None,
+            ramp: None,
+            damping: None,
+            excavate: Vec::new(),
+            excavate_region: None,
+            law_changes: Vec::new(),
+            law_switches: Vec::new(),
+            install: Vec::new(),
+            fix: Vec::new(),
+            free: Vec::new(),
+        }
+    }
 }
 
 impl Stage {

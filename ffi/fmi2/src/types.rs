@@ -38,6 +38,17 @@ pub struct CallbackFunctions {
     pub component_environment: *mut c_void,
 }
 
+impl CallbackFunctions {
+    /// No function at all.
+    pub const NONE: Self = Self {
+        logger: None,
+        allocate_memory: None,
+        free_memory: None,
+        step_finished: None,
+        component_environment: std::ptr::null_mut(),
+    };
+}
+
 /// `fmi2EventInfo`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]

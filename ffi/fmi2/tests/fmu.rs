@@ -87,13 +87,7 @@ fn resources_are_found_by_every_spelling_of_their_uri() {
     unsafe {
         let name = c"a".as_ptr();
         assert!(fmi2Instantiate(name, 1, name, null(), null(), 0, 0).is_null());
-        let functions = CallbackFunctions {
-            logger: None,
-            allocate_memory: None,
-            free_memory: None,
-            step_finished: None,
-            component_environment: null_mut(),
-        };
+        let functions = CallbackFunctions::NONE;
         assert!(fmi2Instantiate(name, 1, name, null(), &functions, 0, 0).is_null());
         assert!(fmi2Instantiate(null(), 1, null(), null(), &functions, 0, 0).is_null());
     }

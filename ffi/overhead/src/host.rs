@@ -165,13 +165,7 @@ impl Fmu {
 
 fn instance2(token: &CString, resources: &Path) -> *mut c_void {
     let uri = CString::new(format!("file://{}", resources.display())).expect("a text");
-    let functions = fmi2::CallbackFunctions {
-        logger: None,
-        allocate_memory: None,
-        free_memory: None,
-        step_finished: None,
-        component_environment: null_mut(),
-    };
+    let functions = fmi2::CallbackFunctions::NONE;
     let name = c"bench".as_ptr();
     // SAFETY: texts and functions are there.
     let instance = unsafe { fmi2::fmi2Instantiate(name, 1, token.as_ptr(), uri.as_ptr(), &raw const functions, 0, 0) };

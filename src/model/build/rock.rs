@@ -42,7 +42,7 @@ pub(super) fn plastic(slope: &Slope) -> Vec<PlasticStrain> {
 
 /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
 pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16]) -> Vec<f64> {
-    let Some(field) = case.in_situ.as_ref().filter(|_| case.rocks.values().any(Rock::yields)) else {
+    let Some(field) = case.in_situ.as_ref().filter(|_| case.yields()) else {
         return Vec::new();
     };
     let rocks: Vec<&Rock> = case.rocks.values().collect();
@@ -90,7 +90,7 @@ pub(super) fn coarse(case: &Case) -> Option<String> {
     let (low, high) = polygon::bounds(&points(&case.domain.outline));
     let (size, height) = (case.mesh.size, (high - low).y);
     let is_slope = case.gravity.x != 0.0 || case.gravity.y != 0.0;
-    let is_told = is_slope && case.rocks.values().any(Rock::yields) && FINE * size > height;
+    let is_told = is_slope && case.yields() && FINE * size > height;
     is_told.then(|| {
         format!(
             "rock yields on a mesh of {size:.6} m, coarser than 1/{FINE} of the height of the model ({height:.6} m): \

@@ -1,7 +1,7 @@
 //! What the user should know of a model that can be built: what its geometry became, and values beyond the usual ranges
 //! of rock and soil, which are mostly slips in a unit or a sign.
 
-use crate::geometry::{NodingReport, Point};
+use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
 use crate::model::case::{Case, Invalid};
 use crate::state::Slope;
@@ -97,9 +97,7 @@ fn rocks(case: &Case) -> Vec<String> {
 
 /// A model that is larger than slopes are, or smaller than its mesh.
 fn extent(case: &Case, slope: &Slope) -> Option<String> {
-    let points = &slope.covers.polygon_points;
-    let low = points.iter().fold(Point::repeat(f64::INFINITY), |low, p| low.inf(p));
-    let high = points.iter().fold(Point::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+    let (low, high) = polygon::bounds(&slope.covers.polygon_points);
     let span = high - low;
     if span.max() > LONGEST {
         let area: f64 = slope.covers.element_area.iter().sum();

@@ -2,10 +2,11 @@
 
 use super::{Reason, Reduction, Trial, Verdict};
 use crate::model::case::Case;
-use crate::model::limit_analysis::Factor;
 
 /// Part of the largest term of the ledger that may stay unexplained.
 const RESIDUAL: f64 = 1e-3;
+/// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
+const ABOVE: f64 = 1.02;
 
 /// What speaks against taking the result as it is.
 pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
@@ -66,8 +67,7 @@ fn caught(trials: &[Trial]) -> Option<String> {
 fn above_the_bound(reduction: &Reduction) -> Option<String> {
     let bound = reduction.bound.as_ref().ok()?;
     let (stable, limit) = (reduction.low?, bound.level_tops.factor.value());
-    let limit = if let Factor::AtLeast(_) = bound.level_tops.factor { return None } else { limit };
-    (stable > 1.02 * limit).then(|| {
+    (stable > ABOVE * limit).then(|| {
         format!(
             "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
              something other than strength holds a block; look at those that `enmm bound` names, and try a finer mesh",

@@ -28,7 +28,7 @@ impl MechanismOptions {
 }
 
 /// Finds the factors of safety of one mechanism after the other; each search begins without the blocks that failed in
-/// those before, as if they had fallen and been cleared away. The last one of the list counts, unless the search ended.
+/// those before, as if they had fallen and been cleared away.
 ///
 /// # Errors
 /// A case that cannot be built, has no static stage or does not come to rest; not for the later ones, whose list ends.
@@ -70,24 +70,13 @@ fn goes_on(found: &[Reduction], last: &Reduction, which: MechanismOptions) -> bo
         }
 }
 
-/// A static stage after those that there are, in which blocks are cleared away.
+/// A static stage after those that there are, as long as the last, in which blocks are cleared away.
 fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) -> Stage {
-    let mut name = "cleared".to_owned();
-    while stages.iter().any(|stage| stage.name == name) {
-        name.push('\'');
-    }
+    let last = &stages[stages.len() - 1];
     let inside = |block: &FailingBlock| simulation.slope().covers.point_inside(block.block as usize);
     Stage {
-        name,
-        kind: StageKind::Static,
-        ramp: None,
+        convergence: last.convergence,
         excavate: failing.iter().map(|block| inside(block).into()).collect(),
-        excavate_region: None,
-        law_changes: Vec::new(),
-        law_switches: Vec::new(),
-        install: Vec::new(),
-        fix: Vec::new(),
-        free: Vec::new(),
-        ..stages[stages.len() - 1].clone()
+        ..Stage::plain(stages, "cleared", StageKind::Static, last.duration)
     }
 }

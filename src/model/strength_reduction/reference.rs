@@ -92,31 +92,9 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
     if case.loads.iter().any(|load| load.table.is_some()) {
         warnings.push("loads with time tables go on changing during the trials".into());
     }
-    let yields = case.rocks.values().any(|rock| rock.yields());
-    case.stages.push(trial_stage(&case.stages, if yields { DAMPING_YIELDING } else { DAMPING }));
+    let damping = Some(if case.yields() { DAMPING_YIELDING } else { DAMPING });
+    case.stages.push(Stage { damping, ..Stage::plain(&case.stages, TRIAL, StageKind::Dynamic, 1e9) });
     Ok((case, warnings))
-}
-
-fn trial_stage(others: &[Stage], damping: f64) -> Stage {
-    let mut name = TRIAL.to_owned();
-    while others.iter().any(|stage| stage.name == name) {
-        name.push('\'');
-    }
-    Stage {
-        name,
-        kind: StageKind::Dynamic,
-        duration: 1e9,
-        convergence: None,
-        ramp: None,
-        damping: Some(damping),
-        excavate: Vec::new(),
-        excavate_region: None,
-        law_changes: Vec::new(),
-        law_switches: Vec::new(),
-        install: Vec::new(),
-        fix: Vec::new(),
-        free: Vec::new(),
-    }
 }
 
 /// Runs all static stages with a factor on the strength.

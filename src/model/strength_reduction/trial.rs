@@ -52,7 +52,7 @@ impl Base {
     pub fn new(simulation: Simulation, tolerance: f64) -> Self {
         let scales = scales(&simulation, tolerance);
         let free = free(&simulation);
-        let yields = simulation.case().rocks.values().any(|rock| rock.yields());
+        let yields = simulation.case().yields();
         Self { simulation, scales, free, yields }
     }
 
@@ -134,7 +134,7 @@ impl Base {
 
     /// The motion at the end of a window in which the fastest block has gone a way (m).
     fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, way: f64) -> Sample {
-        let far = self.motions(simulation).iter().map(|m| m.displacement).fold(0.0, f64::max);
+        let far = self.moving().map(|b| self.moved(simulation, b)).fold(0.0, f64::max);
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
             time: simulation.time() - self.simulation.time(),
@@ -144,6 +144,12 @@ impl Base {
             kinetic: report.ledger.kinetic,
             released: energy(first) - energy(&report.ledger),
         }
+    }
+
+    /// Largest displacement (m) of a block's covers since the trial began.
+    fn moved(&self, simulation: &Simulation, block: usize) -> f64 {
+        let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
+        simulation.slope().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
     }
 
     /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks, which bears when they move.
@@ -171,18 +177,16 @@ impl Base {
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
         let (slope, state) = (simulation.slope(), simulation.state());
         let metric = &simulation.scratch().metric;
-        let begin = &self.simulation.state().displacement;
         self.moving()
             .map(|b| {
                 let (_, velocity, spin, _) = block_motion(slope, state, metric, b);
                 let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
-                let moved = slope.covers.covers_of(b).map(|i| (state.displacement[i] - begin[i]).norm());
                 FailingBlock {
                     block: b as u32,
                     place: slope.covers.block_centroid(b),
                     area: slope.covers.block_area(b),
                     mass: slope.metric.total[b],
-                    displacement: moved.fold(0.0, f64::max),
+                    displacement: self.moved(simulation, b),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
                     speed: velocity.norm().hypot(spin * radius),
                 }

@@ -68,10 +68,8 @@ impl Fmu {
         let (token, uri) = (CString::new(token).unwrap(), CString::new(uri).unwrap());
         let functions = CallbackFunctions {
             logger: Some(logger()),
-            allocate_memory: None,
-            free_memory: None,
-            step_finished: None,
             component_environment: (&raw const *log).cast_mut().cast(),
+            ..CallbackFunctions::NONE
         };
         let name = c"box".as_ptr();
         let component =

@@ -69,13 +69,7 @@ impl Fmu {
 
 fn instance2(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
     let uri = CString::new(format!("file://{}/resources", folder.display())).map_err(|error| error.to_string())?;
-    let functions = fmi2::CallbackFunctions {
-        logger: None,
-        allocate_memory: None,
-        free_memory: None,
-        step_finished: None,
-        component_environment: null_mut(),
-    };
+    let functions = fmi2::CallbackFunctions::NONE;
     let (name, kind) = (c"fuzz".as_ptr(), fmi2::CO_SIMULATION);
     // SAFETY: texts and functions are there.
     Ok(unsafe { fmi2::fmi2Instantiate(name, kind, token.as_ptr(), uri.as_ptr(), &raw const functions, 0, 0) })
