@@ -20,6 +20,7 @@ mod c11;
 mod c12;
 mod c13;
 mod c14;
+mod c15;
 mod c2;
 mod c3;
 mod c4;
@@ -87,6 +88,7 @@ pub const ALL: &[Problem] = &[
     c12::PROBLEM,
     c13::PROBLEM,
     c14::PROBLEM,
+    c15::PROBLEM,
     d1::PROBLEM,
     d2::PROBLEM,
     d3::PROBLEM,
