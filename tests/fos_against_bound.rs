@@ -16,8 +16,10 @@ use enmm::model::strength_reduction::{
 
 /// Width of the brackets.
 const TOLERANCE: f64 = 5e-3;
-/// Area (m²) of a grain: a hundredth of the square of the mesh size.
-const GRAIN: f64 = 0.04;
+/// Area of a grain over the square of the mesh size.
+const GRAIN: f64 = 0.01;
+/// Spacings of joints and mesh sizes, over those of the coarsest slopes; a row of six slopes has one of them.
+const SCALES: [f64; 3] = [1.0, 0.7, 0.5];
 
 /// Numbers between 0 and 1 that a seed gives.
 struct Dice(u64);
@@ -43,6 +45,8 @@ fn on(from: [f64; 2], angle_deg: f64, length: f64) -> [f64; 2] {
 struct Slope {
     dice: Dice,
     face_deg: f64,
+    /// Spacings and mesh size over those of the coarsest slopes.
+    scale: f64,
     joints: String,
 }
 
@@ -51,7 +55,16 @@ impl Slope {
         let mut dice = Dice(977 * seed + 13);
         (0..8).for_each(|_| _ = dice.roll());
         let face_deg = dice.between(50.0, 70.0);
-        Self { dice, face_deg, joints: String::new() }
+        let scale = SCALES[(seed / 6) as usize % SCALES.len()];
+        Self { dice, face_deg, scale, joints: String::new() }
+    }
+
+    fn mesh_size(&self) -> f64 {
+        2.0 * self.scale
+    }
+
+    fn grain(&self) -> f64 {
+        GRAIN * self.mesh_size().powi(2)
     }
 
     fn crest(&self) -> f64 {
@@ -63,7 +76,7 @@ impl Slope {
     }
 
     fn set(&mut self, dip_deg: f64, spacing: f64, seed: u64) {
-        let top = self.crest();
+        let (top, spacing) = (self.crest(), spacing * self.scale);
         write!(
             self.joints,
             "[[joint_set]]\ndip_deg = {dip_deg:.2}\ndip_sd_deg = 1.0\nspacing = {spacing:.3}\nspacing_sd = {:.3}\n\
@@ -89,7 +102,7 @@ impl Slope {
         let mut base = vec![on(p, 180.0 + pieces[0].0, 1.0), p];
         let mut bends = Vec::new();
         for &(dip_deg, length) in pieces.iter().cycle() {
-            p = on(p, dip_deg, length);
+            p = on(p, dip_deg, length * self.scale);
             base.push(p);
             if p[1] > 20.5 {
                 break;
@@ -105,12 +118,13 @@ impl Slope {
 
     /// Bricks over a base that dips out of the slope, each course half a brick farther.
     fn masonry(&mut self) {
-        let (dip, height, width) = (self.dice.between(22.0, 34.0), self.dice.between(1.6, 2.4), 3.0);
+        let dip = self.dice.between(22.0, 34.0);
+        let (height, width) = (self.dice.between(1.6, 2.4) * self.scale, 3.0 * self.scale);
         let foot = [14.0 + 1.5 / self.face_deg.to_radians().tan(), 6.5];
-        for course in 0..7 {
+        for course in 0..(7.0 / self.scale) as i32 {
             let start = on(foot, dip + 90.0, height * f64::from(course));
             self.joint(&[on(start, dip, -12.0), on(start, dip, 40.0)]);
-            for brick in -3..9 {
+            for brick in -3..(9.0 / self.scale) as i32 {
                 let along = width * (f64::from(brick) + 0.5 * f64::from(course % 2) + 0.13);
                 let bottom = on(start, dip, along);
                 self.joint(&[bottom, on(bottom, dip + 90.0, height)]);
@@ -125,10 +139,11 @@ impl Slope {
         let young = if dilation_deg.is_some() { 5e10 } else { 5e9 };
         let text = format!(
             "title = \"slope\"\n[domain]\noutline = [[0.0, 0.0], [48.0, 0.0], [48.0, 20.0], [{:.3}, 20.0], \
-             [14.0, 5.0], [0.0, 5.0]]\n[mesh]\nsize = 2.0\nangle_deg = 7.0\n{}[joint_law.joint]\n\
+             [14.0, 5.0], [0.0, 5.0]]\n[mesh]\nsize = {:?}\nangle_deg = 7.0\n{}[joint_law.joint]\n\
              friction_deg = {friction_deg:?}\n{dilation}[[fix]]\nedge = [[0.0, 0.0], [48.0, 0.0]]\n{}\
              [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 10.0\n",
             self.crest(),
+            self.mesh_size(),
             self.joints,
             rock(young, 2650.0)
         );
@@ -181,9 +196,9 @@ fn reduce(case: &Case) -> Reduction {
 }
 
 /// The same without the mechanisms that are grains, which squeezed joints pop out.
-fn reduce_rock(case: &Case) -> Reduction {
+fn reduce_rock(case: &Case, grain: f64) -> Reduction {
     let options = ReductionOptions { tolerance: TOLERANCE, ..Default::default() };
-    let found = mechanisms(case, MechanismOptions { least_area: GRAIN, count: 1 }, &options, &mut |_, _| {});
+    let found = mechanisms(case, MechanismOptions { least_area: grain, count: 1 }, &options, &mut |_, _| {});
     found.unwrap_or_else(|e| panic!("{}: {e}", case.title)).pop().expect("a search")
 }
 
@@ -195,10 +210,11 @@ fn is_monotone(reduction: &Reduction) -> bool {
 /// Compares one slope; returns its line of the table and what is wrong with it.
 fn compare(seed: u64) -> (String, Option<String>) {
     let (kind, slope, friction_deg) = slope(seed);
+    let grain = slope.grain();
     let mut own = reduce(&slope.case(friction_deg, None));
-    if own.end == End::UnstableThroughout && own.first_unstable().is_some_and(|t| t.failing_area() < GRAIN) {
+    if own.end == End::UnstableThroughout && own.first_unstable().is_some_and(|t| t.failing_area() < grain) {
         // A grain that joints squeeze pops out at any strength.
-        own = reduce_rock(&slope.case(friction_deg, None));
+        own = reduce_rock(&slope.case(friction_deg, None), grain);
     }
     let bound = own.bound.as_ref().unwrap_or_else(|e| panic!("slope {seed}, {kind}: {e}"));
     let (level, associated) = (bound.level_tops.factor, bound.associated.factor);
@@ -211,13 +227,13 @@ fn compare(seed: u64) -> (String, Option<String>) {
     write!(line, ", own {factor:.4} ({:+.1} %)", 100.0 * (factor / limit - 1.0)).expect("text");
     let mut wrong = !is_monotone(&own);
     wrong |= own.low.is_some_and(|low| low > 1.02 * limit);
-    let rock = own.first_unstable().is_some_and(|trial| trial.failing_area() >= GRAIN);
+    let rock = own.first_unstable().is_some_and(|trial| trial.failing_area() >= grain);
     if factor < 0.95 * limit && !rock {
         line.push_str(", a grain");
     } else if factor < 0.95 * limit {
         // The friction at which the associated slope fails, and dilation as large.
         let angle = (friction_deg.to_radians().tan() / associated.value()).atan().to_degrees();
-        let dilating = reduce_rock(&slope.case(angle, Some(angle)));
+        let dilating = reduce_rock(&slope.case(angle, Some(angle)), grain);
         let ratio = dilating.factor().unwrap_or(f64::NAN);
         write!(line, ", dilating {:+.1} %", 100.0 * (ratio - 1.0)).expect("text");
         wrong |= ratio.is_nan() || (ratio - 1.0).abs() > 0.02;
@@ -239,7 +255,7 @@ fn compare_all(seeds: std::ops::Range<u64>) {
 /// the factor of the slope, between trials that stood.
 #[test]
 fn a_grain_that_creeps_makes_no_verdict_alternate() {
-    let mut slope = Slope { dice: Dice(1), face_deg: 60.0, joints: String::new() };
+    let mut slope = Slope { dice: Dice(1), face_deg: 60.0, scale: 1.0, joints: String::new() };
     slope.set(40.0, 2.0, 100);
     slope.set(130.0, 2.2, 200);
     let reduction = reduce(&slope.case(40.0, None));
