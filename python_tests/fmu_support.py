@@ -64,7 +64,7 @@ def bits(values) -> bytes:
     return struct.pack(f"{len(values)}d", *values)
 
 
-@dataclass
+@dataclass(eq=False)
 class Fmu:
     """An unpacked FMU."""
 

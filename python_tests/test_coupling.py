@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy
 import pytest
+from conftest import tell
 from fmu_support import DISCARD, Instance
 
 END = 0.4
@@ -108,8 +109,9 @@ class Slope:
         return self.place() - self.rest
 
 
+@functools.cache
 def couple(fmu, h: float, master) -> Course:
-    """Runs slope and wall to the end with a master, which takes one step of both."""
+    """Runs slope and wall to the end with a master, which takes one step of both; once for all tests."""
     slope, wall = Slope(fmu, linear=master is implicit), Wall()
     steps = round(END / h)
     toe, force, iterations = [numpy.zeros(2)], [wall.force()], []
@@ -147,16 +149,10 @@ def implicit(slope, wall, t, h):
     return after, count
 
 
-REFERENCES: dict[int, Course] = {}
-
-
 @pytest.fixture
 def reference(slope_fmu) -> Course:
     """Implicit coupling at a step that is a sixteenth of the coarsest."""
-    version = slope_fmu.version
-    if version not in REFERENCES:
-        REFERENCES[version] = couple(slope_fmu, 0.00125, implicit)
-    return REFERENCES[version]
+    return couple(slope_fmu, 0.00125, implicit)
 
 
 @pytest.fixture
@@ -206,6 +202,22 @@ def test_explicit_coupling_blows_up_where_implicit_holds(slope_fmu, reference):
     with pytest.raises(Torn):
         couple(slope_fmu, 0.02, explicit)
     assert couple(slope_fmu, 0.02, implicit).error(reference) < 0.4
+
+
+def test_the_table_of_the_document(slope_fmu, reference, explicit_errors):
+    """`docs/coupling.md` quotes errors and iterations."""
+    for name, h in ("coupling.explicit_10", 0.01), ("coupling.explicit_5", 0.005), ("coupling.explicit_2_5", 0.0025):
+        tell(name, explicit_errors[h])
+    for error, mean, most, h in (
+        ("coupling.implicit_20", "coupling.mean_20", "coupling.most_20", 0.02),
+        ("coupling.implicit_10", "coupling.mean_10", "coupling.most_10", 0.01),
+        ("coupling.implicit_5", "coupling.mean_5", "coupling.most_5", 0.005),
+        ("coupling.implicit_2_5", "coupling.mean_2_5", "coupling.most_2_5", 0.0025),
+    ):
+        course = couple(slope_fmu, h, implicit)
+        tell(error, course.error(reference))
+        tell(mean, numpy.mean(course.iterations))
+        tell(most, max(course.iterations))
 
 
 def test_rejected_iterations_leave_no_trace(slope_fmu):

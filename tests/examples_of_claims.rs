@@ -2,17 +2,42 @@
 
 mod common;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use common::run_all;
-use enmm::model::Simulation;
+use common::{run_all, tell};
+use enmm::model::strength_reduction::{ReductionOptions, factor_of_safety};
+use enmm::model::{Case, Simulation};
+
+/// Folder of the example cases.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases")
+}
+
+/// The text of `examples/cases/NAME.toml`.
+fn text(name: &str) -> String {
+    let path = folder().join(format!("{name}.toml"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn case(name: &str, text: &str) -> Case {
+    enmm::io::parse_case(text, name, &folder()).unwrap_or_else(|e| panic!("{e}")).case
+}
 
 /// The simulation of `examples/cases/NAME.toml`.
 fn example(name: &str) -> Simulation {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases").join(format!("{name}.toml"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let loaded = enmm::io::parse_case(&text, name, path.parent().expect("a folder")).unwrap_or_else(|e| panic!("{e}"));
-    Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"))
+    Simulation::new(case(name, &text(name))).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What `enmm fos` finds.
+fn factor(name: &str, text: &str) -> f64 {
+    let found = factor_of_safety(&case(name, text), &ReductionOptions::default(), &mut |_, _| {});
+    found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
+}
+
+/// `text` without what lies between the first `from` and the next `to`, or the end.
+fn without(text: &str, from: &str, to: &str) -> String {
+    let (before, rest) = text.split_once(from).expect(from);
+    rest.find(to).filter(|_| !to.is_empty()).map_or(before.to_owned(), |end| format!("{before}{}", &rest[end..]))
 }
 
 /// 0.906407 m at 1 s; the rock of 10 GPa rings a little more than that of the claim test: 5e-4.
@@ -66,6 +91,38 @@ fn the_wedge_rests_on_its_bolts() {
     let reports = run_all(&mut simulation);
     assert_eq!(reports.len(), 2);
     assert!(reports.iter().all(|report| report.unbalanced < 1e-5), "{reports:?}");
+}
+
+/// The comment has the factors of the wedge with and without bolts beside the formula of Hoek and Bray.
+fn wedge_as_its_comment_says(text: &str, case: &str) -> f64 {
+    let found = factor("plane_slide", text);
+    let row = text.lines().find(|line| line.starts_with(&format!("# {case} "))).expect(case);
+    assert!(row.contains(&format!("    {found:.4}")), "{found} instead of {row}");
+    found
+}
+
+#[test]
+fn the_wedge_with_water_has_the_factors_that_its_comment_says() {
+    let text = text("plane_slide");
+    tell("plane_slide.fos", wedge_as_its_comment_says(&text, "water and bolts"));
+    let bare = without(&text, "[[stage]]\nname = \"bolts\"", "");
+    tell("plane_slide.fos_without_bolts", wedge_as_its_comment_says(&bare, "water, no bolts"));
+}
+
+#[test]
+fn the_dry_wedge_has_the_factors_that_its_comment_says() {
+    let text = without(&text("plane_slide"), "\n[water]", "\n[[fix]]");
+    wedge_as_its_comment_says(&text, "dry and bolts");
+    let bare = without(&text, "[[stage]]\nname = \"bolts\"", "");
+    wedge_as_its_comment_says(&bare, "dry, no bolts");
+}
+
+/// Strength reduction of the columns without dilation stays below limit analysis, which lets joints dilate.
+#[test]
+fn the_columns_bear_less_than_limit_analysis_allows() {
+    let found = factor("goodman_bray", &text("goodman_bray"));
+    assert!((2.0..2.626).contains(&found), "{found}");
+    tell("goodman_bray.fos", found);
 }
 
 /// It starts from rest under its joints of Barton and Bandis; the wave takes 60 ms to the crest, which is 50 m at

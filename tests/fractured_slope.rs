@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use common::overlap::Audit;
-use common::run_stage;
+use common::{run_stage, tell};
 use enmm::contact::EntranceRule;
 use enmm::model::{Case, Simulation};
 
@@ -29,6 +29,8 @@ fn long_the_fractured_slope_rests_and_then_fails() {
     assert!(rest.ledger.kinetic < 1e-6 * rest.ledger.potential.abs(), "{:?}", rest.ledger);
     assert!(rest.ledger.residual().abs() < 1e-3 * rest.ledger.largest(), "{:?}", rest.ledger);
 
+    let settled = simulation.state().counters;
+    tell("fractured_slope.sweeps_settling", settled.sweeps as f64 / settled.substeps as f64);
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
     let overlaps = Audit::new(&simulation);
     let every = if std::env::var_os("ENMM_LONG").is_some() { 5 } else { 25 };
@@ -50,6 +52,8 @@ fn long_the_fractured_slope_rests_and_then_fails() {
         k += 1;
     }
     let counters = simulation.state().counters;
+    let failing = (counters.sweeps - settled.sweeps) as f64 / (counters.substeps - settled.substeps) as f64;
+    tell("fractured_slope.sweeps_failing", failing);
     println!("worst overlap {worst:?} of {size}, {counters:?}");
     assert!(simulation.monitor(0).0.norm() > 2.0, "the crest must move");
     assert!(worst[0] < 0.01 * size, "overlap {worst:?} m");

@@ -5,7 +5,7 @@ mod common;
 
 use std::path::Path;
 
-use common::simulation;
+use common::{simulation, tell};
 use enmm::io::{load_case, parse_case};
 use enmm::model::limit_analysis::{Bound, BoundError, Factor, bound};
 
@@ -48,6 +48,7 @@ fn columns_of_goodman_and_bray_bear_2_626_when_joints_dilate() {
     let found = of_example("goodman_bray.toml");
     near(found.associated.factor, 2.626);
     near(found.level_tops.factor, 2.626);
+    tell("goodman_bray.bound", found.associated.factor.value());
     assert!(found.associated.mechanism.len() > 8, "{:?}", found.associated.mechanism);
 }
 
@@ -56,6 +57,7 @@ fn columns_of_goodman_and_bray_bear_2_626_when_joints_dilate() {
 fn the_plane_slide_of_the_examples_bears_what_its_formula_gives() {
     let found = of_example("plane_slide.toml");
     near(found.associated.factor, 1.2501);
+    tell("plane_slide.bound", found.associated.factor.value());
     assert_eq!((found.blocks, found.associated.mechanism.len()), ([2, 1], 1));
 }
 

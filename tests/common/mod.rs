@@ -11,6 +11,15 @@ use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 use enmm::step::StepReport;
 
+/// Tells a figure that a document quotes behind a mark of this name: where `ENMM_FIGURES` names a folder, as `cargo
+/// xtask test` and `cargo xtask figures` do, the value goes into a file of that name there.
+pub fn tell(name: &str, value: f64) {
+    let Some(folder) = std::env::var_os("ENMM_FIGURES") else { return };
+    let written = std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::write(Path::new(&folder).join(name), format!("{value:?}\n")));
+    written.unwrap_or_else(|e| panic!("{name}: {e}"));
+}
+
 /// Builds a simulation from the text of a case.
 pub fn simulation(text: &str) -> Simulation {
     let loaded = enmm::io::parse_case(text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
