@@ -36,6 +36,11 @@ impl House {
         self.target.join("release").join(format!("enmm{}", std::env::consts::EXE_SUFFIX))
     }
 
+    /// Folder in which tests tell the figures that documents quote.
+    pub fn figures(&self) -> PathBuf {
+        self.target.join("figures")
+    }
+
     /// A command of cargo in the root.
     pub fn cargo(&self, args: &[&str]) -> Command {
         let mut command = self.command(&self.cargo);
@@ -46,7 +51,7 @@ impl House {
     /// A command in the root.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
-        command.current_dir(&self.root).stdin(Stdio::null());
+        command.current_dir(&self.root).stdin(Stdio::null()).env("ENMM_FIGURES", self.figures());
         command
     }
 }

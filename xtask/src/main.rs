@@ -4,6 +4,7 @@
 mod ab;
 mod counts;
 mod faults;
+mod figures;
 mod house;
 mod install;
 mod python;
@@ -17,6 +18,8 @@ usage: cargo xtask TASK
   test [--quick]   format, lints, build, tests, documentation, schema, Python;
                    --quick leaves out the last three
   python           the Python tests alone
+  figures [--long] writes the figures that documents quote; --long those of the long
+                   campaigns, too
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   fuzz [--minutes N] [--seed S] [--part NAME]
                    throws wrong cases, joint networks, calls and states at every entrance; without
@@ -45,6 +48,8 @@ fn main() -> ExitCode {
         ["test"] => Ok(tasks::test(&house, tasks::Extent::Full)),
         ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
         ["python"] => Ok(tasks::python(&house)),
+        ["figures"] => tasks::write_figures(&house, false).map(|()| ExitCode::SUCCESS),
+        ["figures", "--long"] => tasks::write_figures(&house, true).map(|()| ExitCode::SUCCESS),
         ["long"] => Ok(tasks::long(&house)),
         ["fuzz", ref words @ ..] => tasks::fuzz(&house, words).map(|()| ExitCode::SUCCESS),
         ["faults", ref words @ ..] => faults::run(&house, words).map(|()| ExitCode::SUCCESS),

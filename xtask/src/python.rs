@@ -15,18 +15,21 @@ const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
-/// Runs the short case, then pytest over its results.
+/// All Python tests.
+pub const ALL: &str = "python_tests";
+
+/// Runs the short case, then pytest over its results in these files or folders.
 ///
 /// # Errors
 /// When the environment cannot be made or the case does not run.
-pub fn test(house: &House) -> Result<Counts, String> {
+pub fn test(house: &House, places: &[&str]) -> Result<Counts, String> {
     let results = house.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = command(house)?;
-    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "python_tests"]);
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places);
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm()).env("ENMM_FMUS", pack(house)?);
     let (lines, good) = house::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::counts::{self, Counts};
 use crate::faults;
+use crate::figures;
 use crate::house::{self, House};
 use crate::python;
 
@@ -44,18 +45,38 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
     if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
         return steps.close();
     }
-    steps.take("tests", || cargo_test(house, &["--no-fail-fast"]));
+    steps.take("tests", || figures::forget(house).and_then(|()| cargo_test(house, &["--no-fail-fast"])));
     if extent == Extent::Full {
         steps.take("documentation", || {
             let mut doc = house.cargo(&["doc", "--release", "--workspace", "--no-deps"]);
             house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
-        steps.take("python", || python::test(house));
+        steps.take("python", || python::test(house, &[python::ALL]));
+        steps.take("figures", || figures::compare(house));
         steps.take("fuzz", || throw(house, &[]).map(|()| Counts::default()));
         steps.take("faults", || faults::rounds_of(house, 1));
     }
     steps.close()
+}
+
+/// Writes the figures that documents quote: has them told by their tests, `long` campaigns included or not.
+///
+/// # Errors
+/// When a test fails, or a document cannot be written.
+pub fn write_figures(house: &House, long: bool) -> Result<(), String> {
+    figures::forget(house)?;
+    let [rust, python] = figures::tellers(&house.root)?;
+    let stems = rust.iter().filter_map(|file| file.strip_prefix("tests/")?.strip_suffix(".rs"));
+    let mut test = house.cargo(&["test", "--release"]);
+    test.args(stems.flat_map(|stem| ["--test", stem])).envs(long.then_some(("ENMM_LONG", "1")));
+    house::run(&mut test)?;
+    house::run(&mut house.cargo(&["build", "--release", "--workspace", "--examples"]))?;
+    let counts = python::test(house, &python.iter().map(String::as_str).collect::<Vec<_>>())?;
+    if counts.failed > 0 {
+        return Err(format!("{} Python tests failed: nothing is written", counts.failed));
+    }
+    figures::write(house)
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
@@ -77,7 +98,7 @@ pub fn python(house: &House) -> ExitCode {
     let mut steps = Steps::default();
     let build = ["build", "--release", "--workspace", "--examples"];
     if steps.take("build", || house::run(&mut house.cargo(&build)).map(|()| Counts::default())) {
-        steps.take("python", || python::test(house));
+        steps.take("python", || python::test(house, &[python::ALL]));
     }
     steps.close()
 }
@@ -123,15 +144,19 @@ pub fn write_schema(house: &House) -> Result<(), String> {
 /// When the program does not build or run.
 pub fn write_benchmark(house: &House, options: &[&str]) -> Result<(), String> {
     house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let mut bench = house.command(house.enmm());
+    bench.args(["bench", "--output", BENCHMARK, "--label", &label(house)?]);
+    let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
+    house::run(bench.args(threads).args(options))
+}
+
+/// Commit and date, without which a time says nothing.
+fn label(house: &House) -> Result<String, String> {
     let line =
         |command: &mut Command| house::capture(command).map(|told| String::from_utf8_lossy(&told).trim().to_owned());
     let commit = line(house.command("git").args(["describe", "--always", "--dirty"]))?;
     let date = line(house.command("date").args(["-u", "+%Y-%m-%d"]))?;
-    let label = format!("Commit {commit}, {date}");
-    let mut bench = house.command(house.enmm());
-    bench.args(["bench", "--output", BENCHMARK, "--label", &label]);
-    let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
-    house::run(bench.args(threads).args(options))
+    Ok(format!("Commit {commit}, {date}"))
 }
 
 /// Runs the main case and further ones and copies their pictures to where the README shows them.
