@@ -7,6 +7,7 @@ mod report;
 use std::time::Instant;
 
 use enmm::geometry::Vector;
+use enmm::io::bench::Machine;
 use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::state::Counters;
@@ -15,6 +16,13 @@ use crate::{Plot, Setup, Trouble, Values};
 
 pub use models::{Totals, slope_text};
 pub(crate) use models::{block_displacements, difference, fail};
+
+/// When, by what and on what the times of a document were taken: `cargo xtask` tells commit and date.
+fn origin() -> String {
+    let label = std::env::var("ENMM_LABEL").unwrap_or_else(|_| "Commit and date not told".to_owned());
+    let Machine { processor, cores, .. } = Machine::here(false);
+    format!("{label}; {}, {cores} cores.\n", processor.as_deref().unwrap_or("a processor without a name"))
+}
 
 /// One run of one model by one method.
 #[derive(Debug, Clone, PartialEq)]

@@ -115,7 +115,8 @@ pub fn long(house: &House) -> ExitCode {
 /// # Errors
 /// When it does not build, or ends with another status than 0.
 pub fn verification(house: &House, program: &str) -> Result<(), String> {
-    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program]))
+    let run = ["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program];
+    house::run(house.cargo(&run).env("ENMM_LABEL", label(house)?))
 }
 
 /// Tells what a step costs through every export.

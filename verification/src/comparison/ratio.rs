@@ -223,7 +223,7 @@ fn text(size: f64, solver: &str) -> String {
 
 /// The costs as a document.
 pub fn markdown(costs: &[Cost]) -> String {
-    let mut text = String::from(HEAD);
+    let mut text = format!("{HEAD}{}\n{TABLE}", super::origin());
     let mut explicit = None;
     for cost in costs {
         let milliseconds = |seconds: f64| format!("{:.3}", 1e3 * seconds);
@@ -259,9 +259,10 @@ thread,\nprocessor time. Rock of 10 m by 10 m on a fixed base between smooth wal
 is that of\nthe displacements against the exact motion, root mean square over rock and half a period. *Constant* is \
 Newmark's\nrule with β = ½, γ = 1, as in discontinuous deformation analysis; *mean* the trapezoidal rule. The last two \
 columns\ndivide the cost of an implicit step by that of the explicit steps that cover the same time: the step as it \
-ran, and\nwith three factorisations and solutions, as contacts that open and close ask for.\n\n\
-| elements | method | ratio of steps | dt [s] | step [ms] | assembly / factor / solve [ms] | factors / solves | error \
-| times dearer | … with 3 solves |\n|---:|---|---:|---:|---:|---|---|---:|---:|---:|\n";
+ran, and\nwith three factorisations and solutions, as contacts that open and close ask for.\n\n";
+
+const TABLE: &str = "| elements | method | ratio of steps | dt [s] | step [ms] | assembly / factor / solve [ms] | \
+factors / solves | error | times dearer | … with 3 solves |\n|---:|---|---:|---:|---:|---|---|---:|---:|---:|\n";
 
 #[cfg(test)]
 mod tests {

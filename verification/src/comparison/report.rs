@@ -10,7 +10,7 @@ use crate::{Plot, Series};
 impl Comparison {
     /// The comparison as a document; `pictures` are the files of the plots, in their order.
     pub fn markdown(&self, pictures: &[String]) -> String {
-        let mut text = String::from(HEAD);
+        let mut text = format!("{HEAD}\n{}", super::origin());
         if self.quick {
             text += "\nThis is a quick run: small models, whose times say little.\n";
         }
