@@ -18,8 +18,9 @@ use enmm::model::strength_reduction::{
 const TOLERANCE: f64 = 5e-3;
 /// Area of a grain over the square of the mesh size.
 const GRAIN: f64 = 0.01;
-/// Spacings of joints and mesh sizes, over those of the coarsest slopes; a row of six slopes has one of them.
-const SCALES: [f64; 3] = [1.0, 0.7, 0.5];
+/// Spacings of joints and mesh sizes of the second and the third six slopes, over those of all others: the finer ones
+/// have up to 170 blocks, and take ten times as long.
+const FINE: [f64; 2] = [0.7, 0.5];
 
 /// Numbers between 0 and 1 that a seed gives.
 struct Dice(u64);
@@ -55,7 +56,7 @@ impl Slope {
         let mut dice = Dice(977 * seed + 13);
         (0..8).for_each(|_| _ = dice.roll());
         let face_deg = dice.between(50.0, 70.0);
-        let scale = SCALES[(seed / 6) as usize % SCALES.len()];
+        let scale = (seed / 6).checked_sub(1).and_then(|row| FINE.get(row as usize)).copied().unwrap_or(1.0);
         Self { dice, face_deg, scale, joints: String::new() }
     }
 
