@@ -6,6 +6,7 @@
 //! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side.
 
 pub mod comparison;
+mod lines;
 mod model;
 mod outcome;
 pub mod plot;

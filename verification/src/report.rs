@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use enmm::io::files::{at_path, write_atomic};
 
 use crate::record::{ParameterRecord, ProblemRecord, Record, RowRecord, ToleranceKind};
-use crate::{Solved, plot, text};
+use crate::{Solved, lines, plot, text};
 
 /// Name of the document.
 pub const DOCUMENT: &str = "verification.md";
@@ -17,6 +17,8 @@ pub const DOCUMENT: &str = "verification.md";
 pub const RECORD: &str = "verification.json";
 /// Folder of the plots.
 pub const PLOTS: &str = "verification";
+/// Levels of the record that are indented: record, problems, problem, and the lists of rows, parameters and plots.
+const INDENTED: usize = 4;
 /// Columns of running text.
 const COLUMNS: usize = 110;
 
@@ -70,10 +72,9 @@ pub fn read(directory: &Path) -> io::Result<Option<Record>> {
     serde_json::from_str(&text).map(Some).map_err(io::Error::other).map_err(at_path(&path))
 }
 
-/// The record as text, one value per line.
+/// The record as text, one row, parameter or plot per line.
 pub fn json(record: &Record) -> String {
-    // A record has no keys but texts and no numbers but finite ones: nothing in it can fail to be written.
-    serde_json::to_string_pretty(record).unwrap_or_default() + "\n"
+    lines::json(record, INDENTED)
 }
 
 /// Misses of `now` that `before` does not state: problems without rows, rows that fail.

@@ -102,6 +102,14 @@ fn the_document_and_its_plots_follow_from_the_record() {
 }
 
 #[test]
+fn the_record_has_a_row_on_each_line() {
+    let text = std::fs::read_to_string(docs().join(report::RECORD)).expect("docs/verification.json");
+    assert!(text == report::json(&committed()), "docs/verification.json differs: run `cargo xtask verify`");
+    let rows: usize = committed().problems.iter().map(|p| p.rows.len() + p.quick_rows.len()).sum();
+    assert_eq!(text.lines().filter(|line| line.contains("\"computed\":")).count(), rows);
+}
+
+#[test]
 fn the_quick_set_gives_what_the_report_states() {
     let (record, now) = (committed(), solve(true, &[]));
     let mut problems = Vec::new();
