@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use enmm::io::bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
+use enmm::io::files::write_atomic;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    /// Write the case files of the models there and time nothing.
+    #[arg(long, value_name = "DIR")]
+    write: Option<PathBuf>,
     /// Directory for tables (Markdown and JSON) and plots.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -46,6 +50,9 @@ pub fn run(arguments: &Arguments) -> ExitCode {
             return fail(&message, BAD_INPUT);
         }
     };
+    if let Some(folder) = &arguments.write {
+        return write_cases(&models, folder);
+    }
     let options = BenchOptions {
         models,
         seconds: arguments.seconds,
@@ -65,6 +72,21 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     let written = arguments.output.as_ref().map_or(Ok(()), |folder| write(&report, &arguments.label, folder));
     print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
     written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+/// Writes the case of each model into a file of its name.
+fn write_cases(models: &[Model], folder: &Path) -> ExitCode {
+    let write = || -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        models.iter().try_for_each(|model| {
+            let path = folder.join(format!("{model}.toml"));
+            write_atomic(&path, model.text().as_bytes())?;
+            print_line(&path.display().to_string());
+            Ok(())
+        })
+    };
+    let refused = |error| format!("cannot write to {} ({error}): choose another directory", folder.display());
+    write().map_err(refused).map_or_else(|message| fail(&message, BAD_INPUT), |()| ExitCode::SUCCESS)
 }
 
 fn write(report: &BenchReport, label: &str, folder: &Path) -> std::io::Result<()> {

@@ -78,7 +78,7 @@ impl<'a> Comparison<'a> {
 
     /// What a program tells of a model.
     fn bench(&self, house: &House, program: &Path, model: &str) -> Result<Value, String> {
-        let mut command = house.command(std::path::absolute(program).map_err(|error| error.to_string())?);
+        let mut command = house.command(house::program(program));
         command.args(["bench", "--json", "--no-limits", "--threads", self.threads, "--seconds", SECONDS]);
         command.args(["--models", model]);
         let told = house::capture(&mut command)?;

@@ -1,6 +1,8 @@
 //! Where the repository and the built programs are, and how children are run.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -106,6 +108,48 @@ fn cannot_start(command: &Command, error: &std::io::Error) -> String {
     format!("{} did not run: {error}", name(command))
 }
 
+/// The program at a path: itself, or that of a build or a checkout in this folder.
+pub fn program(path: &Path) -> PathBuf {
+    let name = format!("enmm{}", std::env::consts::EXE_SUFFIX);
+    let places = ["", "release", "target/release"].map(|folder| path.join(folder).join(&name));
+    let found = places.into_iter().find(|place| path.is_dir() && place.is_file()).unwrap_or_else(|| path.to_owned());
+    std::path::absolute(&found).unwrap_or(found)
+}
+
+/// Removes a folder or a file, if there is one.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn remove(path: &Path) -> Result<(), String> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    match removed {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(format!("{}: {error}", path.display())),
+        _ => Ok(()),
+    }
+}
+
+/// All files below a folder but hidden ones, which a run that was killed may leave half written.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![(folder.to_owned(), String::new())];
+    while let Some((path, before)) = folders.pop() {
+        let entries = fs::read_dir(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        for entry in entries.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if entry.path().is_dir() {
+                folders.push((entry.path(), format!("{before}{name}/")));
+            } else if !name.starts_with('.') {
+                let bytes = fs::read(entry.path()).map_err(|error| format!("{}: {error}", entry.path().display()))?;
+                files.insert(before.clone() + &name, bytes);
+            }
+        }
+    }
+    Ok(files)
+}
+
 /// Value of the first string `key` in a JSON text.
 fn json_string(text: &str, key: &str) -> Option<String> {
     let (_, rest) = text.split_once(&format!("\"{key}\":"))?;
@@ -123,6 +167,18 @@ fn json_string(text: &str, key: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn program_is_found_in_a_build_and_in_a_checkout() {
+        let place = std::env::temp_dir().join(format!("enmm-program-{}", std::process::id()));
+        let wanted = place.join("target/release").join(format!("enmm{}", std::env::consts::EXE_SUFFIX));
+        fs::create_dir_all(wanted.parent().expect("a folder")).expect("a folder");
+        fs::write(&wanted, "").expect("a file");
+        for given in [place.clone(), place.join("target"), place.join("target/release"), wanted.clone()] {
+            assert_eq!(program(&given), wanted, "{}", given.display());
+        }
+        remove(&place).expect("a folder to remove");
+    }
 
     #[test]
     fn json_string_takes_the_value_without_escapes() {

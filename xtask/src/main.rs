@@ -2,6 +2,7 @@
 //! generated, or run what takes too long for every change.
 
 mod ab;
+mod bits;
 mod counts;
 mod faults;
 mod figures;
@@ -39,6 +40,11 @@ usage: cargo xtask TASK
                    such as --models all
   ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
                    times two builds of the program in turn and prints the ratios of each part
+  bits [OLD NEW] [--quick]
+                   runs example cases, models, FMUs and problems by two builds and fails at the first bit
+                   of a result that differs; without OLD NEW compares this build with the golden table
+                   tests/golden/bits.csv; --quick takes the share that test takes
+  bits --renew     writes the golden table
   pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
 
 fn main() -> ExitCode {
@@ -63,6 +69,7 @@ fn main() -> ExitCode {
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&house)).map(|()| ExitCode::SUCCESS)
         }
+        ["bits", ref words @ ..] => bits::run(&house, words).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&house).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.to_owned()),

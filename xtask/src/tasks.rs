@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
+use crate::bits;
 use crate::counts::{self, Counts};
 use crate::faults;
 use crate::figures;
@@ -54,6 +55,7 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
         steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
         steps.take("python", || python::test(house, &[python::ALL]));
         steps.take("figures", || figures::compare(house));
+        steps.take("bits", || bits::quick(house));
         steps.take("fuzz", || throw(house, &[]).map(|()| Counts::default()));
         steps.take("faults", || faults::rounds_of(house, 1));
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::house::House;
+use crate::house::{House, files_of, remove};
 
 const CASE: &str = include_str!("case.toml");
 /// The one file that holds wall times.
@@ -125,32 +125,4 @@ pub fn refused(answer: &Output, names: &str) -> Result<String, String> {
         true => Ok(format!("status {}, {told:?}", answer.status.code().unwrap_or_default())),
         false => Err(format!("ended with {} and told {told:?}, which should name {names}", answer.status)),
     }
-}
-
-/// Removes a folder or a file.
-fn remove(path: &Path) -> Result<(), String> {
-    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-    match removed {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(format!("{}: {error}", path.display())),
-        _ => Ok(()),
-    }
-}
-
-/// All files below a folder but hidden ones, which a run that was killed may leave half written.
-fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![(folder.to_owned(), String::new())];
-    while let Some((path, before)) = folders.pop() {
-        let entries = fs::read_dir(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        for entry in entries.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            if entry.path().is_dir() {
-                folders.push((entry.path(), format!("{before}{name}/")));
-            } else if !name.starts_with('.') {
-                let bytes = fs::read(entry.path()).map_err(|error| format!("{}: {error}", entry.path().display()))?;
-                files.insert(before.clone() + &name, bytes);
-            }
-        }
-    }
-    Ok(files)
 }

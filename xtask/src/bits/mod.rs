@@ -1,0 +1,208 @@
+//! Which bits results have: those of two builds beside each other, or those of this build beside the golden table.
+
+mod golden;
+mod item;
+mod platform;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::counts::Counts;
+use crate::house::{self, House};
+use golden::Golden;
+use item::{ITEMS, Item, Maker};
+
+/// Contents by name.
+type Results = BTreeMap<String, Vec<u8>>;
+
+const USAGE: &str = "usage: cargo xtask bits [OLD NEW] [--quick], or cargo xtask bits --renew";
+
+/// Reads `[OLD NEW] [--quick]` or `--renew`, and does it.
+///
+/// # Errors
+/// When the words are others, an item does not run, or bits differ.
+pub fn run(house: &House, words: &[&str]) -> Result<(), String> {
+    if let [old, new, rest @ ..] = words {
+        let programs = [old, new].map(|path| house::program(path.as_ref()));
+        return match rest {
+            [] => compare(house, programs, |_| true),
+            ["--quick"] => compare(house, programs, |item| item.quick),
+            _ => Err(USAGE.to_owned()),
+        };
+    }
+    let act: fn(&House) -> Result<(), String> = match words {
+        [] => |house| all_good(against_golden(house, |_| true)?),
+        ["--quick"] => |house| all_good(quick(house)?),
+        ["--renew"] => renew,
+        _ => return Err(USAGE.to_owned()),
+    };
+    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
+    act(house)
+}
+
+fn all_good(counts: Counts) -> Result<(), String> {
+    println!("{} as in the golden table, {} others", counts.passed, counts.failed);
+    if counts.failed == 0 { Ok(()) } else { Err(format!("{} results have other bits: see above", counts.failed)) }
+}
+
+/// The items that `cargo xtask test` compares with the golden table.
+///
+/// # Errors
+/// When an item does not run, or the table cannot be read.
+pub fn quick(house: &House) -> Result<Counts, String> {
+    against_golden(house, |item| item.quick)
+}
+
+/// Runs items by both programs in turn, up to the first difference.
+fn compare(house: &House, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bool) -> Result<(), String> {
+    let folder = fresh_folder(house)?;
+    // Cases of models are written by one of the two, so that both compute the same ones.
+    let makers = [(&old, "old"), (&new, "new")].map(|(program, name)| Maker {
+        house,
+        program,
+        writer: &new,
+        folder: folder.join(name),
+    });
+    println!("| item | result | old | new |\n|---|---|---|---|");
+    for item in ITEMS.iter().filter(|item| chosen(item)) {
+        let [old, new] = [makers[0].make(item)?, makers[1].make(item)?];
+        let [of_old, of_new] = [&old, &new].map(golden::hashes);
+        let names: BTreeSet<&String> = of_old.keys().chain(of_new.keys()).collect();
+        for name in names {
+            let hash = |hashes: &BTreeMap<String, String>| hashes.get(name).map_or("–", |hash| &hash[..12]).to_owned();
+            println!("| {} | {name} | {} | {} |", item.name, hash(&of_old), hash(&of_new));
+        }
+        if let Some(difference) = first_difference(&old, &new) {
+            return Err(format!("{}: {difference}; both are in {}", item.name, folder.display()));
+        }
+        makers.iter().try_for_each(|maker| maker.forget(item))?;
+    }
+    println!("all bits are the same");
+    Ok(())
+}
+
+/// Runs items by this build and compares with the golden table; compares nothing on another platform, and says so.
+fn against_golden(house: &House, chosen: impl Fn(&Item) -> bool) -> Result<Counts, String> {
+    let golden = Golden::read(&house.root)?;
+    let mut counts = Counts::default();
+    if let Some(reason) = golden.other_platform() {
+        println!("nothing compared with {}: {reason}; `cargo xtask bits OLD NEW` holds anywhere", golden::PLACE);
+        return Ok(counts);
+    }
+    let (folder, program) = (fresh_folder(house)?, house.enmm());
+    let maker = Maker { house, program: &program, writer: &program, folder };
+    for item in ITEMS.iter().filter(|item| item.golden && chosen(item)) {
+        let start = Instant::now();
+        let found = golden::hashes(&maker.make(item)?);
+        maker.forget(item)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let problems = golden.problems(item.name, &found);
+        let differ = if problems.is_empty() { "as they were" } else { "OTHER BITS" };
+        println!("{:<24} {:>2} results {seconds:>6.1} s  {differ}", item.name, found.len());
+        problems.iter().for_each(|problem| println!("  {problem}"));
+        counts.failed += problems.len() as u64;
+        counts.passed += (found.len() as u64).saturating_sub(problems.len() as u64);
+    }
+    if counts.failed > 0 {
+        println!(
+            "results have changed: `cargo xtask bits OLD NEW` names the first difference between two builds; where it \
+             is meant, `cargo xtask bits --renew` and a line in CHANGELOG.md"
+        );
+    }
+    Ok(counts)
+}
+
+/// Writes the golden table anew.
+fn renew(house: &House) -> Result<(), String> {
+    let (folder, program) = (fresh_folder(house)?, house.enmm());
+    let maker = Maker { house, program: &program, writer: &program, folder };
+    let mut golden = Golden::here();
+    for item in ITEMS.iter().filter(|item| item.golden) {
+        println!("{} …", item.name);
+        golden.take(item.name, golden::hashes(&maker.make(item)?));
+        maker.forget(item)?;
+    }
+    golden.write(&house.root)?;
+    println!("wrote {}", golden::PLACE);
+    Ok(())
+}
+
+/// A folder for the results, without those of an earlier run.
+fn fresh_folder(house: &House) -> Result<PathBuf, String> {
+    let folder = house.target.join("bits");
+    house::remove(&folder)?;
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    Ok(folder)
+}
+
+/// Where two results are not the same first: a name that one of them lacks, or a place in a file.
+fn first_difference(old: &Results, new: &Results) -> Option<String> {
+    let lacks = |a: &Results, b: &Results| a.keys().find(|name| !b.contains_key(*name)).cloned();
+    if let Some(name) = lacks(old, new) {
+        return Some(format!("{name} is missing in the new results"));
+    }
+    if let Some(name) = lacks(new, old) {
+        return Some(format!("{name} is missing in the old results"));
+    }
+    let (name, old, new) = old.iter().map(|(name, old)| (name, old, &new[name])).find(|(_, old, new)| old != new)?;
+    let at = old.iter().zip(new).take_while(|(a, b)| a == b).count();
+    let line = 1 + newlines(&old[..at]);
+    let size = if old.len() == new.len() { String::new() } else { format!(" ({} and {} bytes)", old.len(), new.len()) };
+    let lines = [old, new].map(|bytes| std::str::from_utf8(bytes).ok().map(|text| excerpt(text, at)));
+    Some(match lines {
+        [Some(old), Some(new)] => format!("{name} differs{size} in line {line}: {old:?} became {new:?}"),
+        _ => format!("{name} differs{size} from byte {at} on"),
+    })
+}
+
+fn newlines(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte == b'\n').count()
+}
+
+/// What stands around a place in a text, within its line.
+fn excerpt(text: &str, at: usize) -> String {
+    const AROUND: usize = 24;
+    let start =
+        text[..floor(text, at)].rfind('\n').map_or(0, |end| end + 1).max(floor(text, at.saturating_sub(AROUND)));
+    text[start..].lines().next().unwrap_or_default().chars().take(3 * AROUND).collect()
+}
+
+/// The start of the letter that a byte belongs to.
+fn floor(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
+}
+
+/// Reads a file, with its path in the message.
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn results(files: &[(&str, &str)]) -> Results {
+        files.iter().map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec())).collect()
+    }
+
+    #[test]
+    fn the_first_difference_is_named() {
+        let old = results(&[("a.csv", "x\n1.0\n"), ("b.csv", "y\nµ 2.0\n")]);
+        assert_eq!(first_difference(&old, &old), None);
+        let last_digit = results(&[("a.csv", "x\n1.0\n"), ("b.csv", "y\nµ 2.1\n")]);
+        let told = first_difference(&old, &last_digit).expect("a difference");
+        assert_eq!(told, "b.csv differs in line 2: \"µ 2.0\" became \"µ 2.1\"");
+        let fewer = first_difference(&old, &results(&[("a.csv", "x\n1.0\n")])).expect("a difference");
+        assert_eq!(fewer, "b.csv is missing in the new results");
+        let longer = results(&[("a.csv", "x\n1.0\n"), ("b.csv", "y\nµ 2.0\n\n")]);
+        assert!(first_difference(&old, &longer).is_some_and(|told| told.contains("bytes")));
+    }
+
+    #[test]
+    fn the_table_of_the_repository_has_the_items() {
+        let golden = Golden::read(&House::find().expect("the repository").root).expect("a table");
+        let items: BTreeSet<&str> = ITEMS.iter().filter(|item| item.golden).map(|item| item.name).collect();
+        assert_eq!(golden.items().collect::<BTreeSet<_>>(), items, "run `cargo xtask bits --renew`");
+    }
+}
