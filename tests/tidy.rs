@@ -1,5 +1,6 @@
 //! The rules of the house, read off the files of the repository. Every check is also seen failing on a small text.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Rooms of `src/` in rank order; each imports only from those before it.
@@ -10,6 +11,12 @@ const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"
 /// Rooms whose results must not depend on the order of a hash.
 const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
 const THEORY: &str = "docs/theory.md";
+/// Documents that send the reader to files of the repository.
+const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
+/// What stands in guides for a path of the reader's choice.
+const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "verification/src/problems/xx.rs"];
+/// Heads of the sections that tell a tale by names of the code.
+const TALES: &str = "## The life of a ";
 
 /// A file of the repository; `text` is empty for kinds that are not text.
 struct File {
@@ -88,6 +95,23 @@ fn links_between_documents_resolve() {
         path.is_empty() || files.iter().any(|file| file.path == path || file.path.starts_with(&folder))
     };
     hold(files.iter().filter(|file| file.is(".md")).flat_map(|file| link_problems(file, &exists)).collect());
+}
+
+#[test]
+fn paths_that_guides_name_exist() {
+    let files = repository();
+    let guides: Vec<&File> = files.iter().filter(|file| GUIDES.contains(&&*file.path)).collect();
+    assert_eq!(guides.len(), GUIDES.len());
+    hold(guides.into_iter().flat_map(|guide| path_problems(guide, &files)).collect());
+}
+
+#[test]
+fn names_in_the_lives_of_a_step_and_a_contact_are_those_of_the_code() {
+    let files = repository();
+    let guide = files.iter().find(|file| file.path == GUIDES[0]).expect("ARCHITECTURE.md");
+    let code: String = files.iter().filter(|file| file.within(&["src/"])).map(|file| code_only(&file.text)).collect();
+    assert!(guide.text.matches(TALES).count() == 2, "the lives of a step and of a contact");
+    hold(name_problems(guide, &words(&code).into_iter().map(|(_, word, _)| word).collect()));
 }
 
 #[test]
@@ -205,6 +229,45 @@ fn link_problems(file: &File, exists: &dyn Fn(&str) -> bool) -> Vec<String> {
     };
     let links = links(&file.text).into_iter().filter(|(_, target)| dead(target));
     links.map(|(line, target)| format!("{}:{line}: link to {target} leads nowhere", file.path)).collect()
+}
+
+/// A path may be given from the root or by its end; a `*` stands for anything at its end.
+fn path_problems(guide: &File, files: &[File]) -> Vec<String> {
+    let exists = |path: &str| {
+        let bare = path.trim_end_matches(['*', '/']);
+        let [end, folder, inner] = [format!("/{bare}"), format!("{bare}/"), format!("/{bare}/")];
+        let is = |file: &File| {
+            let path = &file.path;
+            path == bare || path.ends_with(&end) || path.starts_with(&folder) || path.contains(&inner)
+        };
+        PLACEHOLDERS.contains(&path) || files.iter().any(is)
+    };
+    let of_path = |c: char| is_of_word(c) || "./*-".contains(c);
+    let source = |name: &str| [".rs", ".py", ".c", ".h", ".hpp", ".cpp"].iter().any(|end| name.ends_with(end));
+    let paths = quoted(&guide.text).into_iter().filter(|(_, word)| {
+        word.chars().all(of_path) && !word.starts_with('/') && (word.contains('/') || source(word))
+    });
+    let dead = paths.filter(|(_, path)| !exists(path));
+    dead.map(|(line, path)| format!("{}:{line}: `{path}` is no file or folder", guide.path)).collect()
+}
+
+/// Names in the sections of tales that no code has.
+fn name_problems(guide: &File, known: &BTreeSet<&str>) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mut inside = false;
+    for (line, text) in numbered(&guide.text) {
+        if text.starts_with("## ") {
+            inside = text.starts_with(TALES);
+        }
+        for (_, name) in quoted(text).into_iter().filter(|_| inside) {
+            let parts: Vec<&str> = name.split("::").collect();
+            let is_name = parts.iter().all(|part| !part.is_empty() && part.chars().all(is_of_word));
+            if is_name && !parts.iter().all(|part| known.contains(part)) {
+                problems.push(format!("{}:{line}: `{name}` is no name in src/", guide.path));
+            }
+        }
+    }
+    problems
 }
 
 /// Sources and documents may name the data that is shared; the data itself stays outside.
@@ -452,6 +515,12 @@ fn links(text: &str) -> Vec<(usize, String)> {
     found
 }
 
+/// What stands between backticks, with its line.
+fn quoted(text: &str) -> Vec<(usize, &str)> {
+    let of_line = |(number, line)| str::split(line, '`').skip(1).step_by(2).map(move |word| (number, word));
+    numbered(text).flat_map(of_line).collect()
+}
+
 /// `target` as seen from the folder of `from`, without `.` and `..`.
 fn join(from: &str, target: &str) -> String {
     let mut parts: Vec<&str> = from.split('/').collect();
@@ -571,6 +640,24 @@ fn links_rule_is_seen_failing() {
     assert_eq!(dead("README.md", "![a](docs/absent.png)"), 1);
     assert_eq!(dead("docs/a.md", "[a](theory.md) [b](../README.md) [c](README.md)"), 1);
     assert_eq!(dead("README.md", "```\n[a](absent.md)\n```"), 0);
+}
+
+#[test]
+fn paths_rule_is_seen_failing() {
+    let files = ["src/io/run.rs", "src/io/run/rows.rs", "ffi/capi/src/safe/model.rs"].map(|path| file(path, ""));
+    let dead = |text| path_problems(&file("CONTRIBUTING.md", text), &files).len();
+    assert_eq!(dead("`src/io/run.rs` `src/io/` `run/rows.rs` `rows.rs` `src/safe/*` `tests/NAME.rs`"), 0);
+    assert_eq!(dead("`src/io/absent.rs`"), 1);
+    assert_eq!(dead("`absent.rs` and `src/model/`"), 2);
+    assert_eq!(dead("`cargo xtask a/b` `/tmp/out` and src/absent.rs without marks"), 0);
+}
+
+#[test]
+fn names_rule_is_seen_failing() {
+    let known = BTreeSet::from(["Step", "interval"]);
+    let wrong = |text: &str| name_problems(&file("ARCHITECTURE.md", text), &known).len();
+    assert_eq!(wrong("## The life of a step\n`Step::interval`, `interval`, `a = b`, `src/a.rs`\n## Next\n`absent`"), 0);
+    assert_eq!(wrong("## The life of a step\n`Step::absent` and `Absent`"), 2);
 }
 
 #[test]
