@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use enmm::geometry::{Label, Point, Segment, arrange, arrange_within};
 use enmm::io::parse_case;
-use enmm::model::Simulation;
+use enmm::model::{BuildStage, Simulation};
 
 /// A square of 10 m with some joints, and a limit of memory (bytes).
 fn case(joints: &str, memory: u64) -> String {
@@ -52,6 +52,39 @@ fn thousands_of_joints_within_a_millimetre_are_refused_before_they_are_cut() {
     let clock = Instant::now();
     refused(&case(&parallel(20_000, 1e-5), 8 << 30), &["mesh.size: 1 m", "fewer joints"]);
     assert!(clock.elapsed().as_secs_f64() < 10.0, "{:?}", clock.elapsed());
+}
+
+/// Joints between places that a simple generator of numbers gives.
+fn random(count: usize) -> String {
+    let mut word = 1u64;
+    let mut next = || {
+        word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (word >> 54) as f64 / 102.4
+    };
+    (0..count).fold(String::new(), |mut text, _| {
+        let _ = writeln!(text, "[[joint]]\npoints = [[{}, {}], [{}, {}]]", next(), next(), next(), next());
+        text
+    })
+}
+
+#[test]
+fn thousands_of_joints_across_each_other_are_refused_before_they_are_cut() {
+    // They took more than two seconds, most of them for some million edges that no memory could hold then.
+    let loaded = parse_case(&case(&random(2_800), 8 << 30), "case.toml", Path::new("")).expect("reads");
+    let mut told = Vec::new();
+    let error = Simulation::build(loaded.case, &mut |stage| told.push(stage)).expect_err("too large").to_string();
+    assert!(error.contains("mesh.size: 1 m") && error.contains("fewer joints"), "{error}");
+    assert!(!told.contains(&BuildStage::Arrangement), "{told:?}");
+}
+
+#[test]
+fn joints_that_are_one_within_the_snap_tolerance_cross_nowhere() {
+    let near = |k: usize| {
+        format!("[[joint]]\npoints = [[-1, {:e}], [11, {:e}]]\n", 4.0 + 1e-9 * k as f64, 4.5 - 1e-9 * k as f64)
+    };
+    let loaded = parse_case(&case(&(0..600).map(near).collect::<String>(), 100 << 20), "case.toml", Path::new(""));
+    let built = Simulation::new(loaded.expect("reads").case).expect("one joint");
+    assert_eq!(built.slope().covers.block_count(), 2);
 }
 
 #[test]

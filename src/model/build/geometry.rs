@@ -47,6 +47,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
     demand.check_dense(&traces, tolerance)?;
+    demand.check_crossings(&traces, tolerance, |place| loops.hold(place))?;
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));
@@ -93,6 +94,12 @@ impl Loops {
     fn bounds(&self) -> (Point, Point) {
         let all: Vec<Point> = self.rock.iter().flatten().copied().collect();
         polygon::bounds(&all)
+    }
+
+    /// Whether a point lies in the outline or beside it in an island, and in no hole.
+    fn hold(&self, p: Point) -> bool {
+        let within = |loops: &[Vec<Point>]| loops.iter().any(|l| polygon::contains(l, p));
+        within(&self.rock) && !within(&self.holes)
     }
 
     fn segments(&self) -> Vec<Segment> {

@@ -27,6 +27,10 @@ const BYTES_PER_PAIR: f64 = 150.0;
 const CELLS_MAX: [f64; 2] = [1e9, u32::MAX as f64 / 3.0];
 /// Distance over the snap tolerance below which traces count as one: more than that at which vertices are merged.
 const MERGED: f64 = 4.0;
+/// Most pieces of traces whose crossings are counted one by one.
+const SAMPLE: usize = 2000;
+/// Crossings for each of them from which dead ends, which are no edges in the end, are few.
+const KNIT: usize = 4;
 /// Limit over the estimate at a spacing that is told as a remedy, so that it will do.
 const ROOM: f64 = 2.0;
 /// Step of the search for such a spacing.
@@ -270,15 +274,30 @@ impl Demand<'_> {
         for pair in traces.iter().flat_map(|(points, _)| points.windows(2)) {
             let [a, b] = [0, 1].map(|k| pair[k].sup(&self.low).inf(&self.high));
             let count = ((b - a).norm() / step) as usize;
-            samples.extend((0..count).map(|k| {
-                let place = (a + (b - a) * ((k as f64 + 0.5) / count as f64)) / merged;
-                [place.x.round() as i64, place.y.round() as i64]
-            }));
+            samples.extend((0..count).map(|k| a + (b - a) * ((k as f64 + 0.5) / count as f64)));
         }
-        samples.sort_unstable();
-        samples.dedup();
-        let places: Vec<Point> = samples.iter().map(|&[x, y]| Point::new(x as f64, y as f64) * merged).collect();
-        self.check_near(&places, step * self.mesh_crossings())
+        self.check_near(&distinct(&samples, merged), step * self.mesh_crossings())
+    }
+
+    /// Refuses traces that cross each other too often in the rock, before they are cut. Of many a sample is counted; a
+    /// crossing makes two edges, of which the half is taken, since dead ends are none in the end.
+    pub fn check_crossings(
+        &self,
+        traces: &[(Vec<Point>, u32)],
+        tolerance: f64,
+        is_rock: impl Fn(Point) -> bool,
+    ) -> Result<(), Invalid> {
+        let merged = MERGED * tolerance;
+        let pieces: Vec<&[Point]> = traces.iter().flat_map(|(points, _)| points.windows(2)).collect();
+        let count = pieces.len().min(SAMPLE);
+        let sample: Vec<&[Point]> = (0..count).map(|k| pieces[k * pieces.len() / count]).collect();
+        let mut places = Vec::new();
+        for (k, piece) in sample.iter().enumerate() {
+            let crossed = sample[..k].iter().filter_map(|other| crossing(piece, other, merged));
+            places.extend(crossed.filter(|&place| is_rock(place)));
+        }
+        let places = distinct(&places, merged);
+        if places.len() < KNIT * count { Ok(()) } else { self.check_near(&places, 1.0) }
     }
 
     /// Refuses edges of an arrangement that lie too close to each other.
@@ -328,6 +347,27 @@ impl SetDemand {
     fn cutting(&self) -> f64 {
         self.area * self.density
     }
+}
+
+/// Places that stay apart when those within a distance (m) become one.
+fn distinct(places: &[Point], distance: f64) -> Vec<Point> {
+    let cell = |place: &Point| [place.x / distance, place.y / distance].map(|number| number.round() as i64);
+    let mut cells: Vec<[i64; 2]> = places.iter().map(cell).collect();
+    cells.sort_unstable();
+    cells.dedup();
+    cells.iter().map(|&[x, y]| Point::new(x as f64, y as f64) * distance).collect()
+}
+
+/// Where two pieces cross each other, when the ends of each lie at least a distance (m) off the line of the other.
+fn crossing(first: &[Point], second: &[Point], distance: f64) -> Option<Point> {
+    let across = |line: &[Point], ends: &[Point]| {
+        let along = line[1] - line[0];
+        let least = distance * along.norm();
+        let [a, b] = [0, 1].map(|k| along.perp(&(ends[k] - line[0])));
+        (a.min(b) < -least && a.max(b) > least).then(|| a / (a - b))
+    };
+    across(first, second)?;
+    across(second, first).map(|at| first[0] + (first[1] - first[0]) * at)
 }
 
 /// Area of a box (m²); none when its ends have changed places.
