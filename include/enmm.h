@@ -144,7 +144,10 @@ enum enmm_log_level
    */
   ENMM_LOG_ERROR = 0,
   /**
-   * Something is unusual: warnings of the case, contact forces that did not settle.
+   * Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
+   * a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
+   * 0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
+   * doubled.
    */
   ENMM_LOG_WARNING = 1,
   /**
@@ -510,7 +513,7 @@ typedef struct enmm_totals {
    */
   double penetration_max;
   /**
-   * Net over applied force; near 0 at rest.
+   * Net over applied force; near 0 at rest. Where nothing is applied it is 1, or 0 when all is balanced.
    */
   double unbalanced;
   /**

@@ -5,8 +5,10 @@ mod common;
 
 use std::path::Path;
 
+use common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
+use enmm::io::checkpoint::{decode, encode};
 use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm::model::BlockState;
 
@@ -453,4 +455,27 @@ fn an_initial_stage_that_does_not_come_to_rest_says_so() {
     sliding.set_strength_factor(0.5).unwrap();
     sliding.start().unwrap();
     assert!(sliding.unrest().is_some_and(|ratio| ratio > 1e-3), "{:?}", sliding.unrest());
+}
+
+/// A ledger that lacks 1e9 J/m is looked at when four internal steps have been taken, and when they have doubled.
+#[test]
+fn energy_from_nowhere_is_told_to_hosts() {
+    let mut model = model("block_on_incline");
+    model.start().unwrap();
+    let h = model.internal_step();
+    let mut doubts = |lost: f64| -> Vec<u64> {
+        let mut whole: Whole = decode(&model.serialize(&model.save()).unwrap(), model.hash()).unwrap();
+        whole.state.ledger.baseline += lost;
+        let saved = model.deserialize(&encode(&whole, model.hash()).unwrap()).unwrap();
+        model.restore(&saved).unwrap();
+        let begin = (model.time() / h).round() as u64;
+        let steps = begin..begin + 20;
+        let told = steps.filter_map(|k| model.do_step(k as f64 * h, h).unwrap().doubt.map(|doubt| (k + 1, doubt)));
+        let told: Vec<_> = told.collect();
+        assert!(told.iter().all(|(_, doubt)| doubt.contains("energy residual is -")), "{told:?}");
+        told.into_iter().map(|(k, _)| k).collect()
+    };
+    assert_eq!(doubts(0.0), [0; 0]);
+    assert_eq!(doubts(1e9), [32]);
+    assert!(model.doubt().is_some());
 }

@@ -1,35 +1,16 @@
 //! Claim: bytes with a good checksum whose numbers, indices or lengths no state of the model can have are refused when
 //! they are read, by the name of what is wrong; whatever is not refused makes nothing panic.
 
+mod common;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use enmm::cosimulation::{Cosimulation, Interpolation};
+use common::saved::Whole;
+use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm::io::checkpoint::{decode, encode};
 use enmm::io::load_case;
-use enmm::state::State;
-use serde::{Deserialize, Serialize};
-
-/// A saved state as its bytes hold it.
-#[derive(Clone, Serialize, Deserialize)]
-struct Whole {
-    hash: String,
-    state: State,
-    grid: Option<Box<State>>,
-    standing: Standing,
-}
-
-#[derive(Clone, Serialize, Deserialize)]
-struct Standing {
-    origin: u64,
-    start: f64,
-    started: bool,
-    unrest: f64,
-    changed: bool,
-    interpolation: Interpolation,
-    told: f64,
-}
 
 /// A block on a slab, pushed by a host, between two internal steps; and the bytes of its state.
 fn model() -> (Cosimulation, Vec<u8>) {

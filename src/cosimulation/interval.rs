@@ -12,6 +12,8 @@ use super::{Cosimulation, CosimulationError, Interpolation};
 const SAME_TIME: f64 = 1e-6;
 /// Relative difference of times that hosts sum up.
 const SUM_ERROR: f64 = 1e-9;
+/// Internal steps before which energies cannot be judged: a step from rest does half of its work.
+const JUDGED_FROM: u64 = 4;
 /// Most internal steps of one communication step.
 const STEPS_MAX: f64 = 1e12;
 
@@ -22,6 +24,8 @@ pub struct Interval {
     info: StepInfo,
     events_before: usize,
     before: Counters,
+    /// Internal steps of all stages before it.
+    steps_before: u64,
     /// Number of the interval; a model has one in progress at most.
     serial: u64,
 }
@@ -53,6 +57,9 @@ pub struct StepInfo {
     pub halved: u64,
     /// Sub-steps whose open–close iteration ended unsettled.
     pub unsettled: u64,
+    /// [`Cosimulation::doubt`], which is looked at when four internal steps have been taken since time 0, and whenever
+    /// their number has doubled.
+    pub doubt: Option<String>,
 }
 
 impl Cosimulation {
@@ -87,8 +94,8 @@ impl Cosimulation {
         self.serial += 1;
         let state = self.simulation.state();
         let info = StepInfo { time: self.time(), ..StepInfo::default() };
-        let (events_before, before) = (state.events.list.len(), state.counters);
-        Ok(Interval { end, info, events_before, before, serial: self.serial })
+        let (events_before, before, steps_before) = (state.events.list.len(), state.counters, state.step);
+        Ok(Interval { end, info, events_before, before, steps_before, serial: self.serial })
     }
 
     /// Takes one internal step of an interval; false when its end is reached.
@@ -176,6 +183,10 @@ impl Cosimulation {
             drive.pass(now);
         } else {
             drive.arrive();
+        }
+        let doublings = |steps: u64| ((steps - self.standing.origin) / JUDGED_FROM).checked_ilog2();
+        if doublings(self.simulation.state().step) > doublings(interval.steps_before) {
+            interval.info.doubt = self.doubt();
         }
     }
 

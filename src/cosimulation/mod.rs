@@ -167,6 +167,12 @@ impl Cosimulation {
         Some(self.standing.unrest).filter(|ratio| *ratio > 0.0)
     }
 
+    /// Why the motion so far is worthless, when energy has come from nowhere: its residual is as large as the largest
+    /// term of the ledger. A look costs as much as an internal step.
+    pub fn doubt(&self) -> Option<String> {
+        self.simulation.doubt(&self.look(Simulation::report_on).ledger)
+    }
+
     /// Seeks the initial equilibrium: runs the static stages before the first dynamic one. Does nothing later.
     ///
     /// # Errors

@@ -320,7 +320,7 @@ impl From<&Ledger> for EnergyRecord {
             external_work: ledger.external_work,
             baseline: ledger.baseline,
             residual: ledger.residual(),
-            residual_relative: ledger.residual() / ledger.largest().max(f64::MIN_POSITIVE),
+            residual_relative: ledger.residual_relative(),
         }
     }
 }
@@ -361,25 +361,6 @@ pub(super) struct RunRecord<'a> {
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
     pub doubt: Option<String>,
-}
-
-/// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
-const RESIDUAL_MAX: f64 = 0.9;
-/// Displacement over the mesh size below which nothing has moved, and the ledger holds round-off.
-const MOVED_MIN: f64 = 1e-9;
-
-/// Why a run is worthless in which energy has come from nowhere.
-pub(super) fn doubt(simulation: &Simulation, ledger: &Ledger) -> Option<String> {
-    let residual = EnergyRecord::from(ledger).residual_relative;
-    let moved = MOVED_MIN * simulation.slope().covers.mesh.size;
-    let has_moved = simulation.state().displacement.iter().any(|u| u.norm() > moved);
-    (has_moved && residual.abs() >= RESIDUAL_MAX).then(|| {
-        format!(
-            "the energy residual is {residual:.2} of the largest term, at most {RESIDUAL_MAX} can be borne: the motion \
-             is an artefact of too few or too large steps; check units of rock and loads, lower solver.dt_safety, or \
-             refine mesh.size"
-        )
-    })
 }
 
 impl Summary {

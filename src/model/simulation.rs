@@ -12,6 +12,10 @@ use super::case::{Case, Invalid, Stage, StageKind};
 const CONVERGENCE: f64 = 1e-4;
 /// Kinetic over potential or strain energy below which a static stage counts as at rest.
 const REST: f64 = 1e-8;
+/// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
+const RESIDUAL_MAX: f64 = 0.9;
+/// Displacement over the mesh size below which nothing has moved, and the ledger holds round-off.
+const MOVED_MIN: f64 = 1e-9;
 
 /// A model in time.
 #[derive(Debug, Clone)]
@@ -214,6 +218,20 @@ impl Simulation {
         report.time >= self.state().stage_start + 1.5 * ramp
             && report.unbalanced <= self.stage().convergence.unwrap_or(CONVERGENCE)
             && report.ledger.kinetic <= REST * energy
+    }
+
+    /// Why a motion with this ledger is worthless, when energy has come from nowhere.
+    pub fn doubt(&self, ledger: &Ledger) -> Option<String> {
+        let residual = ledger.residual_relative();
+        let moved = MOVED_MIN * self.slope().covers.mesh.size;
+        let has_moved = self.state().displacement.iter().any(|u| u.norm() > moved);
+        (has_moved && residual.abs() >= RESIDUAL_MAX).then(|| {
+            format!(
+                "the energy residual is {residual:.2} of the largest term, at most {RESIDUAL_MAX} can be borne: the \
+                 motion is an artefact of too few or too large steps; check units of rock and loads, lower \
+                 solver.dt_safety, or refine mesh.size"
+            )
+        })
     }
 
     fn regime_of(&self, stage: usize) -> Regime {

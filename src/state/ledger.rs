@@ -71,6 +71,11 @@ impl Ledger {
             - self.baseline
     }
 
+    /// The residual over the largest term.
+    pub fn residual_relative(&self) -> f64 {
+        self.residual() / self.largest().max(f64::MIN_POSITIVE)
+    }
+
     /// The largest term, against which the residual is judged.
     pub fn largest(&self) -> f64 {
         [

@@ -127,7 +127,7 @@ impl Step<'_> {
             applied += (scratch.load_force[i] + acceleration * metric.row_sum[i]).norm_squared();
         }
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
-        (net / applied.max(stage).max(f64::MIN_POSITIVE)).sqrt()
+        report::unbalanced(net, applied.max(stage)).sqrt()
     }
 
     /// The forces out of balance in the first step of a static stage that begins under full load.

@@ -17,7 +17,7 @@ pub struct StepReport {
     pub dt: f64,
     /// Energies.
     pub ledger: Ledger,
-    /// Net over applied force.
+    /// Net over applied force; 1, or 0 in balance, where nothing is applied.
     pub unbalanced: f64,
     /// Contacts below their shear limit.
     pub locked: u32,
@@ -27,6 +27,12 @@ pub struct StepReport {
     pub penetration_max: f64,
     /// Largest speed of rock (m/s).
     pub speed_max: f64,
+}
+
+/// Net over applied force, or their squares (Eq. 19). Where nothing is applied it is 1, all being out of balance, or 0
+/// when nothing is; so it is finite.
+pub(super) fn unbalanced(net: f64, applied: f64) -> f64 {
+    if applied > 0.0 { (net / applied).min(f64::MAX) } else { f64::from(net > 0.0) }
 }
 
 /// Largest speed (m/s) of rock: of the corners of its blocks. Covers may be faster, since their stars lie outside small

@@ -3,6 +3,7 @@
 
 pub mod claims;
 pub mod overlap;
+pub mod saved;
 pub mod shared;
 
 use std::path::Path;

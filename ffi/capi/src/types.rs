@@ -109,7 +109,10 @@ pub enum enmm_event_kind {
 pub enum enmm_log_level {
     /// A step failed.
     ENMM_LOG_ERROR = 0,
-    /// Something is unusual: warnings of the case, contact forces that did not settle.
+    /// Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
+    /// a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
+    /// 0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
+    /// doubled.
     ENMM_LOG_WARNING = 1,
     /// Events, and the end of the search for the initial equilibrium.
     ENMM_LOG_INFO = 2,
@@ -243,7 +246,7 @@ pub struct enmm_totals {
     pub velocity_max: f64,
     /// Largest penetration of the whole run (m).
     pub penetration_max: f64,
-    /// Net over applied force; near 0 at rest.
+    /// Net over applied force; near 0 at rest. Where nothing is applied it is 1, or 0 when all is balanced.
     pub unbalanced: f64,
     /// Critical internal step (s).
     pub critical_dt: f64,

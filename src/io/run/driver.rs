@@ -12,7 +12,7 @@ use crate::io::blocks::write_blocks;
 use crate::io::case_file::LoadedCase;
 use crate::io::checkpoint::{self, CheckpointError};
 use crate::io::history::HistoryWriter;
-use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds, doubt};
+use crate::io::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::io::vtu::PvdWriter;
 use crate::model::Simulation;
 use crate::model::case::{Invalid, StageKind};
@@ -388,7 +388,7 @@ impl<'a> Driver<'a> {
             stages.push(self.stage_record(None));
         }
         let ended = status == RunStatus::Finished;
-        let doubt = doubt(&self.simulation, &self.progress.ledger).filter(|_| ended);
+        let doubt = self.simulation.doubt(&self.progress.ledger).filter(|_| ended);
         self.warnings.extend(doubt.clone());
         let record = RunRecord {
             case_file: self.loaded.source.file(),

@@ -7,7 +7,7 @@ use crate::state::{Implicit, Ledger, Rule};
 
 use super::balance::norm;
 use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
-use crate::step::report::{potential, speed_max, stored, strain};
+use crate::step::report::{potential, speed_max, stored, strain, unbalanced};
 
 impl Step<'_> {
     /// Ends a sub-step with the forces and places that the iteration left.
@@ -135,6 +135,6 @@ impl Step<'_> {
         self.start_balance();
         let (state, buffers) = (&*self.state, &self.scratch.implicit);
         let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
-        norm(&buffers.residual) / applied.max(f64::MIN_POSITIVE)
+        unbalanced(norm(&buffers.residual), applied)
     }
 }

@@ -208,6 +208,16 @@ impl Model {
             };
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
         }
+        if self.log.sink.is_some() {
+            self.warn_of(self.inner.doubt());
+        }
+    }
+
+    /// Warns of a motion that is worthless, of which no status tells.
+    fn warn_of(&mut self, doubt: Option<String>) {
+        if let Some(text) = doubt {
+            self.log.write(enmm_log_level::ENMM_LOG_WARNING, || text);
+        }
     }
 
     fn log_step(&mut self, info: &StepInfo) {
@@ -219,6 +229,7 @@ impl Model {
             let message = || format!("up to t = {end} s: contact forces did not settle in {count} sub-steps");
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
         }
+        self.warn_of(info.doubt.clone());
     }
 
     /// How inputs go through a communication step, as a value of `enmm_interpolation`.

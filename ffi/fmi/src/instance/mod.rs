@@ -260,7 +260,15 @@ impl Instance {
             );
             self.log(Status::Warning, Category::Warning, text);
         }
+        self.warn_of(self.model.doubt());
         Ok(())
+    }
+
+    /// Warns of a motion that is worthless, of which no status tells.
+    fn warn_of(&mut self, doubt: Option<String>) {
+        if let Some(text) = doubt {
+            self.log(Status::Warning, Category::Warning, text);
+        }
     }
 
     fn use_threads(&mut self, threads: usize) -> Result<(), Failure> {
@@ -324,6 +332,7 @@ impl Instance {
     pub fn terminate(&mut self) -> Status {
         let outcome = self.allow(Call::Terminate);
         if outcome.is_ok() {
+            self.warn_of(self.model.doubt());
             self.phase = Phase::Terminated;
         }
         self.end(outcome)

@@ -106,12 +106,14 @@ impl Instance {
             let text = format!("the contacts of {unsettled} sub-steps did not settle; they went on unsettled");
             self.log(Status::Warning, Category::Warning, text);
         }
+        self.warn_of(step.interval.info().doubt.clone());
         Status::Ok
     }
 
     /// Ends the step where the model stands.
     fn leave(&mut self, step: &mut Step) -> Status {
-        self.model.leave(step.interval.clone());
+        let info = self.model.leave(step.interval.clone());
+        self.warn_of(info.doubt);
         (step.done, step.early) = (true, true);
         self.phase = Phase::Step;
         self.time = self.time_of_model();

@@ -1,0 +1,26 @@
+//! What the bytes of a saved state of a co-simulation hold, for tests that change them.
+
+use enmm::cosimulation::Interpolation;
+use enmm::state::State;
+use serde::{Deserialize, Serialize};
+
+/// A saved state as its bytes hold it.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Whole {
+    pub hash: String,
+    pub state: State,
+    pub grid: Option<Box<State>>,
+    pub standing: Standing,
+}
+
+/// Where the model stands beside its state.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Standing {
+    pub origin: u64,
+    pub start: f64,
+    pub started: bool,
+    pub unrest: f64,
+    pub changed: bool,
+    pub interpolation: Interpolation,
+    pub told: f64,
+}
