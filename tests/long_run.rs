@@ -1,11 +1,14 @@
-//! An undamped elastic block keeps its energy: leapfrog drifts by less than 1e-6 in 2e4 steps.
+//! An undamped elastic block keeps its energy: leapfrog drifts by less than 1e-6 in 2e4 steps. A million steps lose
+//! neither energy nor memory nor bits.
 
 mod common;
 
 use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::geometry::Vector;
+use enmm::io::checkpoint::{decode, encode};
 use enmm::model::Simulation;
+use enmm::state::State;
 use enmm::step::energies;
 
 /// One irregular block that swings freely after a uniform stretch.
@@ -58,5 +61,98 @@ fn an_undamped_block_keeps_its_energy() {
         println!("{mesh:?}: {first:e} J, drift {worst:e}");
         assert!(first > 0.0 && largest > 1e-5, "it must swing: {largest:e} m/s");
         assert!(worst < 1e-6, "drift {worst:e}");
+    }
+}
+
+/// A block without friction in a bin, thrown so that it bounces on floor and walls, which are springs, for ever. The
+/// step is 0.28 of the critical one: the residual is that of leapfrog, at most ½(2·0.28)² = 0.16 of the energy of the
+/// waves that bounces wake, which is a hundredth of all.
+fn bouncing() -> Simulation {
+    simulation(&format!(
+        "title = \"bin\"\n[domain]\n\
+         outline = [[0, 0], [4, 0], [4, 3], [3.5, 3], [3.5, 0.5], [0.5, 0.5], [0.5, 3], [0, 3]]\n\
+         islands = [[[1.5, 0.8], [2.5, 0.9], [2.4, 1.9], [1.4, 1.8]]]\n[mesh]\nsize = 1.1\norigin = [0.03, 0.02]\n\
+         [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = 1e8\n[[fix]]\nblock = [0.2, 0.2]\n\
+         [[initial_velocity]]\nblock = [2, 1.3]\nvelocity = [0.7, 0.0]\n[solver]\ndt_max = 1e-4\n{}{}",
+        rock(1e10, 2500.0),
+        dynamic("bounce", 1e9, 0.0)
+    ))
+}
+
+/// A block that the friction of an incline holds.
+fn resting() -> Simulation {
+    let text = include_str!("../examples/cases/block_on_incline.toml").replace("duration = 1.0", "duration = 1e9");
+    let mut simulation = simulation(&text.replace("friction_deg = 20.0", "friction_deg = 34.0"));
+    common::run_stage(&mut simulation);
+    assert!(simulation.next_stage().expect("a stage"));
+    simulation
+}
+
+/// Memory of the process that is there (bytes).
+fn resident() -> Option<f64> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    Some(4096.0 * pages.split(' ').nth(1)?.parse::<f64>().ok()?)
+}
+
+/// What many steps have left.
+#[derive(Debug, Default)]
+struct Endured {
+    /// Largest residual over the largest energy so far, in the first tenth of the steps and in all of them.
+    residual: [f64; 2],
+    /// Memory that came on after the first tenth (bytes).
+    grown: f64,
+    /// Whether the second half from a checkpoint in another model gives the same bits.
+    same_bits: bool,
+}
+
+/// Takes `steps`, and the second half of them once more from a checkpoint.
+fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
+    let advance = |simulation: &mut Simulation, report: bool| {
+        simulation.advance(report).unwrap_or_else(|error| panic!("{error}")).ledger
+    };
+    let mut simulation = make();
+    let (mut endured, mut largest, mut early, mut half) = (Endured::default(), 0.0f64, None, Vec::new());
+    for k in 0..steps {
+        let report = k % 100 == 99;
+        let ledger = advance(&mut simulation, report);
+        if report {
+            largest = largest.max(ledger.largest());
+            endured.residual[1] = endured.residual[1].max(ledger.residual().abs() / largest);
+        }
+        if k == steps / 10 {
+            endured.residual[0] = endured.residual[1];
+            early = resident();
+        }
+        if k == steps / 2 {
+            half = encode(simulation.state(), "long").expect("bytes");
+        }
+    }
+    endured.grown = resident().zip(early).map_or(0.0, |(now, early)| now - early);
+    let mut other = make();
+    other.restore(decode(&half, "long").expect("a state"));
+    for k in steps / 2 + 1..steps {
+        advance(&mut other, k % 100 == 99);
+    }
+    // A restored model searches anew at once: the one thing that it counts and an uninterrupted one does not.
+    let bits = |simulation: &Simulation| {
+        let mut state: State = simulation.state().clone();
+        state.counters.searches = 0;
+        encode(&state, "long").expect("bytes")
+    };
+    endured.same_bits = bits(&simulation) == bits(&other);
+    endured
+}
+
+/// A million steps each with `ENMM_LONG=1`, a hundredth of them otherwise.
+#[test]
+fn long_a_million_steps_lose_neither_energy_nor_memory_nor_bits() {
+    let steps = if std::env::var_os("ENMM_LONG").is_some() { 1_000_000 } else { 10_000 };
+    for (name, make) in [("bounces", bouncing as fn() -> Simulation), ("rests", resting)] {
+        let clock = std::time::Instant::now();
+        let endured = endure(make, steps);
+        println!("{name}, {steps} steps in {:.1} s: {endured:?}", clock.elapsed().as_secs_f64());
+        assert!(endured.residual[1] < 3e-3, "{name}: {endured:?}");
+        assert!(endured.grown < 1e6, "{name}: {endured:?}");
+        assert!(endured.same_bits, "{name}");
     }
 }
