@@ -9,6 +9,7 @@ mod figures;
 mod house;
 mod install;
 mod python;
+mod sanitize;
 mod tasks;
 
 use std::process::ExitCode;
@@ -27,6 +28,7 @@ usage: cargo xtask TASK
                    --minutes the share that test takes
   faults [--rounds N]
                    kills, interrupts and starves runs of the program, and compares what they leave
+  sanitize         valgrind and the sanitizers of the nightly compiler, those that are there
   verify           solves the full set of verification problems and writes docs/verification.md
                    with its plots; fails when a value is missed that the report did not state
   compare          runs the comparison of the explicit with the implicit integrator
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         ["long"] => Ok(tasks::long(&house)),
         ["fuzz", ref words @ ..] => tasks::fuzz(&house, words).map(|()| ExitCode::SUCCESS),
         ["faults", ref words @ ..] => faults::run(&house, words).map(|()| ExitCode::SUCCESS),
+        ["sanitize"] => sanitize::run(&house).map(|()| ExitCode::SUCCESS),
         ["verify"] => tasks::verification(&house, "report").map(|()| ExitCode::SUCCESS),
         ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
         ["overhead"] => tasks::overhead(&house).map(|()| ExitCode::SUCCESS),

@@ -14,6 +14,8 @@ use crate::trace::Trace;
 pub const PANICKED: i32 = 101;
 /// Address space (bytes) that a process may have: an input that floods the memory is a find, and no harm to others.
 const MEMORY: libc::rlim_t = 4 << 30;
+/// Where an address sanitizer has its options, the limit among them: it takes more address space than any machine has.
+const SANITIZER: &str = "ASAN_OPTIONS";
 
 /// Inputs of one part.
 pub struct Task {
@@ -64,8 +66,10 @@ impl Task {
 /// Limits the memory, and makes every panic the end, wherever it would be caught.
 fn guard() {
     let limit = libc::rlimit { rlim_cur: MEMORY, rlim_max: MEMORY };
-    // SAFETY: the limits are there. Without them a flood only ends later.
-    unsafe { libc::setrlimit(libc::RLIMIT_AS, &raw const limit) };
+    if std::env::var_os(SANITIZER).is_none() {
+        // SAFETY: the limits are there. Without them a flood only ends later.
+        unsafe { libc::setrlimit(libc::RLIMIT_AS, &raw const limit) };
+    }
     let told = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         told(panic);

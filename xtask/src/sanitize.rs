@@ -1,0 +1,160 @@
+//! Memory under the eyes of other tools: valgrind over the hosts in C, the address sanitizer of the nightly compiler
+//! over the share of fuzzing, its thread sanitizer over the claim of equal bits. What is not there is told with what
+//! would bring it, and is no failure.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use crate::house::{self, House};
+
+const SMALL: &str = "ffi/capi/tests/cases/small.toml";
+/// Hosts in C with their arguments. Left out are the one that counts its own memory, where valgrind's would count as
+/// well, and the one that forks, whose child has none of the threads that held memory in its parent.
+const HOSTS: [(&str, &[&str]); 4] = [
+    ("ffi/capi/tests/c/checks.c", &[SMALL]),
+    ("ffi/capi/tests/c/unchanged.c", &[SMALL]),
+    ("ffi/capi/tests/c/threads.c", &[SMALL]),
+    ("ffi/c/coupled_reservoir.c", &["examples/cases/coupled_slope.toml"]),
+];
+const VALGRIND: [&str; 5] = [
+    "--quiet",
+    "--error-exitcode=99",
+    "--leak-check=full",
+    "--show-leak-kinds=definite",
+    "--errors-for-leak-kinds=definite",
+];
+/// A flood is a find, as without the sanitizer, which takes too much address space for a limit of that.
+const ASAN_OPTIONS: &str = "detect_leaks=1:hard_rss_limit_mb=4096:allocator_may_return_null=1";
+
+/// What came of a tool.
+enum Verdict {
+    Clean(String),
+    Missing(&'static str),
+}
+
+/// Name of a tool with what it looks at, and how it is run.
+type Tool = (&'static str, fn(&House) -> Result<Verdict, String>);
+
+const TOOLS: [Tool; 3] = [
+    ("valgrind, hosts in C", valgrind),
+    ("address sanitizer, share of fuzzing", addresses),
+    ("thread sanitizer, equal bits at any number of threads", threads),
+];
+
+/// Runs all tools that are there; fails when one finds something.
+///
+/// # Errors
+/// What was found.
+pub fn run(house: &House) -> Result<(), String> {
+    let mut bad = Vec::new();
+    for (name, act) in TOOLS {
+        let start = Instant::now();
+        let verdict = act(house);
+        let seconds = start.elapsed().as_secs_f64();
+        match verdict {
+            Ok(Verdict::Clean(seen)) => println!("clean    {seconds:>6.1} s  {name}: {seen}"),
+            Ok(Verdict::Missing(why)) => println!("left out {seconds:>6.1} s  {name}: {why}"),
+            Err(found) => {
+                println!("FOUND    {seconds:>6.1} s  {name}: {found}");
+                bad.push(name);
+            }
+        }
+    }
+    if bad.is_empty() { Ok(()) } else { Err(format!("something was found by {}: see above", bad.join("; "))) }
+}
+
+fn is_there(program: &str, argument: &str) -> bool {
+    let mut ask = Command::new(program);
+    ask.arg(argument).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    ask.status().is_ok_and(|status| status.success())
+}
+
+fn valgrind(house: &House) -> Result<Verdict, String> {
+    if !is_there("valgrind", "--version") {
+        return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
+    }
+    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
+    let libraries = house.target.join("release");
+    for (source, arguments) in HOSTS {
+        let program = compile(house, source, &libraries)?;
+        let mut watched = house.command("valgrind");
+        watched.args(VALGRIND).arg(program).args(arguments).stdout(Stdio::null());
+        house::run(&mut watched)?;
+    }
+    Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
+}
+
+/// Compiles a host in C against the library as it is built.
+fn compile(house: &House, source: &str, libraries: &Path) -> Result<PathBuf, String> {
+    let folder = house.target.join("sanitize-hosts");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let program = folder.join(Path::new(source).file_stem().unwrap_or_default());
+    let mut cc = house.command(std::env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    cc.args(["-std=c99", "-g", "-O1", "-Iinclude", source, "-o"]).arg(&program).arg("-L").arg(libraries);
+    cc.args(["-lenmm", "-lm", "-lpthread"]).arg(format!("-Wl,-rpath,{}", libraries.display()));
+    house::run(&mut cc)?;
+    Ok(program)
+}
+
+/// The nightly compiler, which alone has sanitizers.
+struct Nightly {
+    system: PathBuf,
+    /// Must be named as the target, so that build scripts and macros, which run in the compiler, go without sanitizer.
+    host: String,
+}
+
+impl Nightly {
+    fn find() -> Option<Self> {
+        let mut ask = Command::new("rustup");
+        ask.args(["run", "nightly", "rustc", "--print", "sysroot", "--print", "host-tuple"]);
+        let told = ask.stderr(Stdio::null()).output().ok().filter(|told| told.status.success())?;
+        let told = String::from_utf8(told.stdout).ok()?;
+        let mut lines = told.lines();
+        Some(Self { system: lines.next()?.into(), host: lines.next()?.to_owned() })
+    }
+
+    /// Its cargo, which builds with a sanitizer into a folder of its own.
+    fn cargo(&self, house: &House, sanitizer: &str, arguments: &[&str]) -> Command {
+        let mut cargo = house.command("rustup");
+        cargo.args(["run", "nightly", "cargo"]).args(arguments).args(["--release", "--target", &self.host]);
+        cargo.env("CARGO_TARGET_DIR", place(house)).env("RUSTFLAGS", format!("-Zsanitizer={sanitizer}"));
+        cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
+        cargo
+    }
+}
+
+/// Where sanitized programs are built; the room is given back when they have run.
+fn place(house: &House) -> PathBuf {
+    house.target.join("sanitize")
+}
+
+fn clear(house: &House) -> Result<(), String> {
+    let place = place(house);
+    std::fs::remove_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))
+}
+
+fn addresses(house: &House) -> Result<Verdict, String> {
+    let Some(nightly) = Nightly::find() else {
+        return Ok(Verdict::Missing("there is no nightly compiler (rustup toolchain install nightly)"));
+    };
+    house::run(&mut nightly.cargo(house, "address", &["build", "--package", "enmm-fuzz"]))?;
+    let mut fuzz = house.command(place(house).join(&nightly.host).join("release/enmm-fuzz"));
+    fuzz.env("ASAN_OPTIONS", ASAN_OPTIONS).arg("--finds").arg(house.target.join("fuzz-sanitized"));
+    house::run(&mut fuzz)?;
+    clear(house)?;
+    Ok(Verdict::Clean("all parts".to_owned()))
+}
+
+fn threads(house: &House) -> Result<Verdict, String> {
+    let sources = |nightly: &Nightly| nightly.system.join("lib/rustlib/src/rust/library").is_dir();
+    let Some(nightly) = Nightly::find().filter(sources) else {
+        return Ok(Verdict::Missing(
+            "the nightly compiler, or the sources of its standard library, which must be built along, are not there \
+             (rustup component add rust-src --toolchain nightly)",
+        ));
+    };
+    house::run(&mut nightly.cargo(house, "thread", &["test", "-Zbuild-std", "--test", "determinism"]))?;
+    clear(house)?;
+    Ok(Verdict::Clean("tests/determinism.rs".to_owned()))
+}
