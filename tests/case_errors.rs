@@ -22,8 +22,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mesh]",
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, domain, fix, \
-         free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, output, \
-         port, quiet, rock, solver, stage, title, water; rename or remove it",
+         fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, \
+         output, port, quiet, rock, solver, stage, title, water; rename or remove it",
     );
 }
 

@@ -41,6 +41,7 @@ pub fn fmu(arguments: &Arguments) -> ExitCode {
         Ok(packed) => packed,
         Err((message, status)) => return fail(&message, status),
     };
+    packed.warnings.iter().for_each(|warning| tell_line(&format!("warning: {warning}")));
     if let Err(error) = enmm::io::files::write_atomic(&output, &packed.bytes) {
         return fail(&format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
     }
@@ -60,9 +61,6 @@ fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed,
     if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
         return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
     }
-    for warning in &loaded.warnings {
-        tell_line(&format!("warning: {warning}"));
-    }
     let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
     let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;
     let unreadable = |error| (format!("{}: cannot read the library ({error})", path.display()), BAD_INPUT);
@@ -75,7 +73,7 @@ fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed,
 }
 
 fn line(packed: &Packed, version: table::Version, output: &Path) -> String {
-    let Packed { bytes, variables, blocks } = packed;
+    let Packed { bytes, variables, blocks, .. } = packed;
     let number = if version == table::Version::Two { "2.0" } else { "3.0" };
     let many = if *blocks == 1 { "" } else { "s" };
     let size = bytes.len() as f64 / 1e6;

@@ -76,3 +76,17 @@ fn a_program_without_libraries_says_where_it_looked() {
     assert!(error.contains("enmm_fmi3") && error.contains("looked in") && error.contains("cargo build"), "{error}");
     assert!(is_empty(empty.path()));
 }
+
+#[test]
+fn all_that_check_warns_of_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = std::fs::read_to_string(example()).unwrap().replace("density = 2650.0", "density = 26.5");
+    std::fs::write(folder.path().join("light.toml"), soft).unwrap();
+    let output = enmm(folder.path(), &["light.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).starts_with("warning: rock."), "{}", text(&output.stderr));
+    let mut check = Command::new(env!("CARGO_BIN_EXE_enmm"));
+    let checked = text(&check.args(["check", "light.toml"]).current_dir(folder.path()).output().unwrap().stdout);
+    let told: Vec<_> = checked.lines().filter(|line| line.contains("warning: ")).map(str::trim).collect();
+    assert_eq!(told, text(&output.stderr).lines().collect::<Vec<_>>());
+}

@@ -77,6 +77,9 @@ pub struct Case {
     /// Named places where hosts exchange values with the model.
     #[serde(default, rename = "port")]
     pub ports: Vec<Port>,
+    /// What an FMU of the case says of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fmu: Option<FmuNotes>,
     /// Stages in order.
     #[serde(rename = "stage")]
     pub stages: Vec<Stage>,
@@ -89,6 +92,21 @@ pub struct Case {
     /// Numerical choices.
     #[serde(default)]
     pub solver: Solver,
+}
+
+/// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FmuNotes {
+    /// Who wrote the case: name and organisation.
+    #[serde(default)]
+    pub author: Option<String>,
+    /// Notice of copyright of the case.
+    #[serde(default)]
+    pub copyright: Option<String>,
+    /// Terms of use of the case.
+    #[serde(default)]
+    pub license: Option<String>,
 }
 
 /// Rock outline, holes, islands, and a file that may hold them.

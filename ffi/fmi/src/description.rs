@@ -10,12 +10,6 @@ use crate::table::{Causality, Table, Type, Variable};
 use crate::unit;
 use crate::xml::{Xml, number};
 
-/// Whose the model is: the case tells no name.
-const AUTHOR: &str = "Case: whoever wrote it; engine: the enmm developers";
-/// Whose the parts are.
-const COPYRIGHT: &str = "Case: its author; library: Copyright (c) 2026 the enmm developers";
-/// Terms of use of the parts.
-const LICENSE: &str = "Case: as its author says; library: MIT or Apache-2.0, see documentation/licenses/license.txt";
 /// Made when the times of the archive begin: no clock is read, so that the same case gives the same bytes.
 const MADE_AT: &str = "1980-01-01T00:00:00Z";
 
@@ -28,6 +22,12 @@ pub struct Facts {
     pub identifier: String,
     /// What the model is.
     pub summary: String,
+    /// Who made the case and the engine.
+    pub author: String,
+    /// Notices of copyright of case and library.
+    pub copyright: String,
+    /// Terms of use of case and library.
+    pub license: String,
     /// Version of the model: that of the engine, and the fingerprint of the case.
     pub version: String,
     /// Time (s) that the stages of the case cover.
@@ -62,10 +62,10 @@ pub fn document(dialect: &Dialect, table: &Table, facts: &Facts) -> io::Result<V
         ("modelName", facts.title.clone()),
         (dialect.token, table.token.clone()),
         ("description", facts.summary.clone()),
-        ("author", AUTHOR.to_owned()),
+        ("author", facts.author.clone()),
         ("version", facts.version.clone()),
-        ("copyright", COPYRIGHT.to_owned()),
-        ("license", LICENSE.to_owned()),
+        ("copyright", facts.copyright.clone()),
+        ("license", facts.license.clone()),
         ("generationTool", tool()),
         ("generationDateAndTime", MADE_AT.to_owned()),
         ("variableNamingConvention", convention(table.variables.iter().map(|v| v.name.as_str())).to_owned()),
@@ -99,6 +99,7 @@ impl Facts {
     pub fn of(model: &Cosimulation, identifier: &str) -> Self {
         let blocks = model.simulation().slope().covers.block_count();
         let title = model.case().title.trim();
+        let notes = model.case().fmu.clone().unwrap_or_default();
         let title = if title.is_empty() { identifier } else { title };
         Self {
             title: title.to_owned(),
@@ -108,9 +109,23 @@ impl Facts {
             stop_time: model.stop_time(),
             communication_step: short(model.communication_step()),
             internal_step: short(model.internal_step()),
+            author: format!("Case: {}; engine: the enmm developers", said(&notes.author, "whoever wrote it")),
+            copyright: format!(
+                "Case: {}; library: Copyright (c) 2026 the enmm developers",
+                said(&notes.copyright, "its author")
+            ),
+            license: format!(
+                "Case: {}; library: MIT or Apache-2.0, see documentation/licenses/license.txt",
+                said(&notes.license, "as its author says")
+            ),
             blocks,
         }
     }
+}
+
+/// What the case says, or what holds when it does not.
+fn said<'a>(note: &'a Option<String>, otherwise: &'a str) -> &'a str {
+    note.as_deref().map_or(otherwise, str::trim)
 }
 
 /// The value without the last digits of a rounding error: 0.012 for 0.011999999999999999.

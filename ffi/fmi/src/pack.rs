@@ -23,6 +23,8 @@ pub struct Packed {
     pub variables: usize,
     /// Number of blocks.
     pub blocks: usize,
+    /// What the user should know of the case and of the model as built.
+    pub warnings: Vec<String>,
 }
 
 /// Why a case cannot be packed.
@@ -46,7 +48,8 @@ pub fn pack(loaded: &LoadedCase, name: &str, version: Version, library: &[u8]) -
     let table = Table::new(model.case(), facts.blocks, &loaded.hash, version);
     let files = files(loaded, name, &model, &facts, &table, library)?;
     let bytes = archive(&files).map_err(|error| PackError::Part("the archive", error.to_string()))?;
-    Ok(Packed { bytes, variables: table.variables.len(), blocks: facts.blocks })
+    let warnings = loaded.warnings.iter().chain(model.warnings()).cloned().collect();
+    Ok(Packed { bytes, variables: table.variables.len(), blocks: facts.blocks, warnings })
 }
 
 /// A file of the archive.
@@ -87,7 +90,7 @@ fn files(
     files.push(file(&format!("resources/{}", resource::FILE), case));
     files.push(file("documentation/index.html", page::page(model, table, facts).into_bytes()));
     files.push(file(&format!("documentation/{}", page::PICTURE), slope));
-    files.push(file("documentation/licenses/license.txt", license().into_bytes()));
+    files.push(file("documentation/licenses/license.txt", license(facts).into_bytes()));
     Ok(files)
 }
 
@@ -105,14 +108,17 @@ fn archive(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
     Ok(archive.finish()?.into_inner())
 }
 
-fn license() -> String {
+fn license(facts: &Facts) -> String {
     let (mit, apache) = (include_str!("../../../LICENSE-MIT"), include_str!("../../../LICENSE-APACHE"));
     format!(
         "The library in binaries/ was made by {} and may be used under either of the two licences below. It contains\n\
          Rust crates and the font DejaVu Sans under their own licences, all of which allow redistribution; Cargo.lock\n\
-         of the sources names them. The case in resources/ belongs to whoever wrote it.\n\n{rule}\n\n\
-         {mit}\n{rule}\n\n{apache}",
+         of the sources names them. Of the case in resources/ the model description says:\n\n\
+         {}\n{}\n{}\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}",
         tool(),
+        facts.author,
+        facts.copyright,
+        facts.license,
         rule = "-".repeat(80),
     )
 }

@@ -104,9 +104,9 @@ const AT_REST: u16 = I | N | S | F | T | E;
 ///
 /// FMI 2 leaves a failed step by a saved state. Here the step is a transaction and the model stands at its begin, so
 /// that a shorter step, or other inputs, are also welcome without one. FMI 3 knows no such state: a discarded step
-/// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists; outputs, which
-/// have none, only from initialization mode on. Within a step, for a logger that calls back or another thread, there is
-/// nothing but logging.
+/// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists; outputs and
+/// time, which have none, only from initialization mode on. Within a step, for a logger that calls back or another
+/// thread, there is nothing but logging.
 const TABLE: [(Call, u16, u16); 14] = [
     (Call::Logging, AT_REST | P, AT_REST | P | U),
     (Call::Free, AT_REST, AT_REST),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::io::{LoadedCase, load_case};
+use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm_fmi::pack::{PackError, identifier, pack};
 use enmm_fmi::table::{Axis, Causality, Quantity, Table, Type, Version};
 use enmm_fmi::{library, log, resource};
@@ -33,8 +33,11 @@ fn case(path: &str) -> LoadedCase {
 
 /// Table of the case and the files of its FMU.
 fn packed(path: &str, version: Version) -> (Table, Vec<(String, Vec<u8>)>) {
-    let loaded = case(path);
-    let packed = pack(&loaded, path, version, LIBRARY).unwrap();
+    packed_of(&case(path), path, version)
+}
+
+fn packed_of(loaded: &LoadedCase, path: &str, version: Version) -> (Table, Vec<(String, Vec<u8>)>) {
+    let packed = pack(loaded, path, version, LIBRARY).unwrap();
     let table = Table::new(&loaded.case, packed.blocks, &loaded.hash, version);
     assert_eq!(packed.variables, table.variables.len());
     let mut archive = zip::ZipArchive::new(Cursor::new(packed.bytes)).unwrap();
@@ -404,4 +407,24 @@ fn the_identifier_is_part_of_the_description() {
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut text).unwrap();
     assert!(text.contains("modelIdentifier=\"case_1_slope\""));
     assert!(archive.file_names().any(|name| name.unwrap().contains("/case_1_slope.")));
+}
+
+#[test]
+fn a_case_says_whose_it_is() {
+    let text = std::fs::read_to_string(root().join(CASES[1])).unwrap();
+    let notes = "author = \"R. Ock <Slopes & Co>\"\ncopyright = \"(c) 2026 Slopes & Co\"\nlicense = \"CC BY 4.0\"\n";
+    let loaded = |notes: &str| parse_case(&format!("{text}\n[fmu]\n{notes}"), "noted.toml", &root());
+    for version in VERSIONS {
+        let (table, files) = packed_of(&loaded(notes).unwrap(), "noted.toml", version);
+        assert_eq!((table, files.clone()), packed_of(&loaded(notes).unwrap(), "noted.toml", version));
+        let elements = elements(part(&files, "modelDescription.xml"));
+        let head = |name| elements[0].get(name).unwrap();
+        assert_eq!(head("author"), "Case: R. Ock <Slopes & Co>; engine: the enmm developers");
+        assert!(head("copyright").starts_with("Case: (c) 2026 Slopes & Co; library: "), "{}", head("copyright"));
+        assert!(head("license").starts_with("Case: CC BY 4.0; library: MIT or Apache-2.0"), "{}", head("license"));
+        let terms = String::from_utf8_lossy(part(&files, "documentation/licenses/license.txt")).into_owned();
+        assert!(terms.contains("Case: CC BY 4.0;"), "{terms}");
+    }
+    let error = loaded(&notes.replace("CC BY 4.0", " ")).unwrap_err().to_string();
+    assert!(error.contains("noted.toml:") && error.contains("fmu.license: is empty"), "{error}");
 }

@@ -337,3 +337,13 @@ fn slips_of_units_are_warnings_of_the_log() {
     let told: Vec<_> = instance.lines().into_iter().filter(|line| line.1 == "logStatusWarning").collect();
     assert!(told.iter().any(|line| line.2.contains("rock.stone.density: is 26.5 kg/m³")), "{told:?}");
 }
+
+#[test]
+fn time_has_no_value_before_initialization_mode() {
+    let fmu = Fmu::boxed();
+    let instance = fmu.instance();
+    let (time, mut value) = (fmu.reference("time"), 7.0);
+    assert_eq!(unsafe { fmi3GetFloat64(instance.pointer, &time, 1, &mut value, 1) }, ERROR);
+    assert!(instance.last_line().contains("time: has no start value"), "{}", instance.last_line());
+    assert_eq!(value, 7.0);
+}

@@ -12,7 +12,7 @@ mod stages;
 use thiserror::Error;
 
 use super::key::Key;
-use super::{Case, Domain, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, Rock, Solver};
+use super::{Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, Rock, Solver};
 use checks::{
     COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, number, optional, point, points, polygon, region,
     unique, whole,
@@ -60,6 +60,9 @@ impl Case {
             ports::validate_water(&root.field("water"), water)?;
         }
         ports::validate_ports(&root.field("port"), &self.ports)?;
+        if let Some(notes) = &self.fmu {
+            fmu_notes(&root.field("fmu"), notes)?;
+        }
         stages::validate_stages(&root.field("stage"), self)?;
         bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
@@ -295,6 +298,15 @@ fn in_situ(key: &Key, stress: &InSitu) -> Check {
     let slope = "density times gravity is usual";
     number(key, "szz_gradient", stress.szz_gradient, Range::within(1e9), "Pa/m", slope)?;
     number(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
+}
+
+fn fmu_notes(key: &Key, notes: &FmuNotes) -> Check {
+    for (name, note) in [("author", &notes.author), ("copyright", &notes.copyright), ("license", &notes.license)] {
+        if note.as_ref().is_some_and(|note| note.trim().is_empty()) {
+            return fail(&key.field(name), "is empty, must say something; leave it out for what holds without it");
+        }
+    }
+    Ok(())
 }
 
 fn output(key: &Key, output: &Output) -> Check {

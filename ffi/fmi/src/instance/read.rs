@@ -97,19 +97,18 @@ impl Instance {
         }
     }
 
-    /// Outputs have no value before initialization mode, where they are those of the equilibrium under the parameters
-    /// and inputs that hold.
+    /// Outputs and time have no start value, which is all that can be read before initialization mode. There outputs
+    /// are those of the equilibrium under the parameters and inputs that hold.
     fn prepare(&mut self, references: &[u32]) -> Result<(), Failure> {
-        let variables = references.iter().filter_map(|&reference| self.table.get(reference));
-        let Some(output) = variables.into_iter().find(|v| v.causality == Causality::Output) else { return Ok(()) };
+        let mut variables = references.iter().filter_map(|&reference| self.table.get(reference));
         match self.phase {
-            Phase::Instantiated => {
-                let name = &output.name;
+            Phase::Instantiated => variables.find(|v| v.start.is_none()).map_or(Ok(()), |v| {
+                let name = &v.name;
                 Err(format!(
                     "{name}: has no start value, and none before initialization mode; enter that, then read it"
                 ))
-            }
-            Phase::Initialization => self.start_model(),
+            }),
+            Phase::Initialization if variables.any(|v| v.causality == Causality::Output) => self.start_model(),
             _ => Ok(()),
         }
     }
