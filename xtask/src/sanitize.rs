@@ -74,7 +74,7 @@ fn valgrind(house: &House) -> Result<Verdict, String> {
     if !is_there("valgrind", "--version") {
         return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
     }
-    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
+    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
     let libraries = house.target.join("release");
     for (source, arguments) in HOSTS {
         let program = compile(house, source, &libraries)?;
