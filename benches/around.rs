@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
-use enmm::contact::{Near, SearchGrid, SearchView};
+use enmm::contact::{NeighbourList, SearchGrid, SearchView};
 use enmm::geometry::Vector;
 use enmm::io::bench::Model;
 use enmm::io::checkpoint::encode;
@@ -44,9 +44,9 @@ fn search(criterion: &mut Criterion) {
             fixed: &scratch.metric.fixed,
             serial: true,
         };
-        let (mut grid, mut near) = (SearchGrid::default(), Near::default());
+        let (mut grid, mut neighbours) = (SearchGrid::default(), NeighbourList::default());
         group.throughput(Throughput::Elements(slope.boundary.len() as u64));
-        group.bench_function(model.to_string(), |bencher| bencher.iter(|| grid.search(&view, &mut near)));
+        group.bench_function(model.to_string(), |bencher| bencher.iter(|| grid.search(&view, &mut neighbours)));
     }
 }
 

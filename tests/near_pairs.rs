@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use enmm::contact::{Boundary, Near, SearchGrid, SearchView};
+use enmm::contact::{Boundary, NeighbourList, SearchGrid, SearchView};
 use enmm::geometry::{Point, Vector, segment};
 use enmm::model::Simulation;
 
@@ -58,15 +58,15 @@ fn the_search_finds_what_all_against_all_find() {
     let fixed = &simulation.scratch().metric.fixed;
     let removed: Vec<bool> = (0..fixed.len()).map(|block| block % 40 == 3).collect();
     let cutoff = 0.25 * simulation.slope().covers.mesh.size;
-    let mut grids: [(SearchGrid, Near); 2] = Default::default();
+    let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();
     for share in [0.0, 0.1, 0.3] {
         let place = push(&simulation, share);
         let view = |serial| SearchView { boundary, place: &place, cutoff, removed: &removed, fixed, serial };
         let expected = all_against_all(&view(true));
         assert!(expected.len() > 5000, "{} pairs", expected.len());
-        for (serial, (grid, near)) in [true, false].into_iter().zip(&mut grids) {
-            grid.search(&view(serial), near);
-            let found: Vec<_> = near.candidates.iter().map(|c| [c.node, c.side, c.edge]).collect();
+        for (serial, (grid, neighbours)) in [true, false].into_iter().zip(&mut grids) {
+            grid.search(&view(serial), neighbours);
+            let found: Vec<_> = neighbours.pairs.iter().map(|c| [c.node, c.side, c.edge]).collect();
             assert!(found == expected, "{} pairs at {share}, not {}", found.len(), expected.len());
         }
         assert!(grids[0].1 == grids[1].1, "a run of all nodes and many runs differ at {share}");

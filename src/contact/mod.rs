@@ -3,10 +3,10 @@
 
 mod bolt;
 mod boundary;
+mod broad_phase;
 mod entrance;
 mod law;
 mod pair;
-mod search;
 mod spring;
 mod support;
 mod sweep;
@@ -14,10 +14,10 @@ mod vertex_edge;
 
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner, SideEnd};
+pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use entrance::{Admitted, Approach, Bearings, EntranceRule, Frames, Narrow, Remembered, entrance_edges};
 pub use law::{Closure, JointLaw, Limits, Roughness};
 pub use pair::Pair;
-pub use search::{Candidate, Near, SearchGrid, SearchView};
 pub use spring::{Answer, Spring};
 pub use support::{Resistance, Support, SupportRow};
 pub use sweep::{BlockPush, OpenClose, Others, SweepOptions, SweepReport};

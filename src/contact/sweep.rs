@@ -20,7 +20,7 @@ use self::order::{Sequence, SweepOrder};
 use self::part::{Part, Pass, Work};
 use self::row::{Row, RowView};
 use self::support::Bearings;
-use super::{BoltRow, Boundary, Candidate, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, NearPair, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
 const CONTACTS: usize = 1024;
@@ -121,14 +121,14 @@ impl OpenClose {
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
-        candidates: &[Candidate],
+        near_pairs: &[NearPair],
         metric: &Metric,
         block_covers: &[u32],
         contacts: &[VertexEdge],
     ) {
         let view = SweepView { metric, roots: &self.roots };
         if self.order.is_empty() {
-            self.order.order(boundary, candidates, &view);
+            self.order.order(boundary, near_pairs, &view);
             self.cuts.clear();
             self.cuts.extend(self.order.leaf_block().iter().map(|&block| [block, block_covers[block as usize]]));
         }

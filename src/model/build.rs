@@ -383,7 +383,7 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         displacement: vec![Vector::zeros(); covers],
         velocity,
         contacts: Vec::new(),
-        near: Default::default(),
+        neighbours: Default::default(),
         support_force: slope.supports.iter().map(|s| s.preload).collect(),
         support_rest: vec![0.0; slope.supports.len()],
         fix_active: slope.fixities.iter().map(|f| f.active).collect(),

@@ -3,7 +3,7 @@
 
 use std::fmt::Display;
 
-use crate::contact::{BoltState, ContactHistory, Near};
+use crate::contact::{BoltState, ContactHistory, NeighbourList};
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, Inputs, Ledger, State};
 
@@ -117,7 +117,7 @@ impl Simulation {
         self.check_clock(state)?;
         self.check_motion(state)?;
         self.check_contacts(&state.contacts)?;
-        self.check_near(&state.near)?;
+        self.check_neighbours(&state.neighbours)?;
         self.check_stages(state)?;
         self.check_inputs("drive.from", &state.drive.from)?;
         self.check_inputs("drive.to", &state.drive.to)?;
@@ -213,17 +213,17 @@ impl Simulation {
         in_order("contacts", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
     }
 
-    fn check_near(&self, near: &Near) -> Fit {
+    fn check_neighbours(&self, neighbours: &NeighbourList) -> Fit {
         let boundary = &self.slope().boundary;
-        for (k, candidate) in near.candidates.iter().enumerate() {
-            index(format_args!("near.candidates[{k}].node"), candidate.node, boundary.node_count())?;
-            index(format_args!("near.candidates[{k}].side"), candidate.side, boundary.side_first.len())?;
-            index(format_args!("near.candidates[{k}].edge"), candidate.edge, boundary.len())?;
+        for (k, pair) in neighbours.pairs.iter().enumerate() {
+            index(format_args!("neighbours.pairs[{k}].node"), pair.node, boundary.node_count())?;
+            index(format_args!("neighbours.pairs[{k}].side"), pair.side, boundary.side_first.len())?;
+            index(format_args!("neighbours.pairs[{k}].edge"), pair.edge, boundary.len())?;
         }
-        in_order("near.candidates", near.candidates.is_sorted())?;
-        let found_at = near.found_at();
-        length("near.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
-        vectors("near.found_at", found_at, LENGTH)
+        in_order("neighbours.pairs", neighbours.pairs.is_sorted())?;
+        let found_at = neighbours.found_at();
+        length("neighbours.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
+        vectors("neighbours.found_at", found_at, LENGTH)
     }
 
     /// What stages change: supports, fixities, blocks that are gone, laws and bolts.

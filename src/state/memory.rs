@@ -63,7 +63,7 @@ impl State {
         vec![
             ("motion", motion + sum(&[&self.stage_displacement, &self.stage_force])),
             ("contacts", self.contacts.bytes()),
-            ("near pairs", self.near.bytes()),
+            ("near pairs", self.neighbours.bytes()),
             ("plastic strain", self.plastic.bytes()),
             ("supports and bolts", sum(&[&self.support_force, &self.support_rest, &self.bolts])),
             ("inputs", inputs(&self.drive.from) + inputs(&self.drive.to)),

@@ -21,7 +21,7 @@ pub use slope::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{BoltState, ContactHistory, JointLaw, Near};
+use crate::contact::{BoltState, ContactHistory, JointLaw, NeighbourList};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
@@ -51,7 +51,7 @@ pub struct State {
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,
     /// Near pairs of the last search.
-    pub near: Near,
+    pub neighbours: NeighbourList,
     /// Force of each support (N/m).
     pub support_force: Vec<f64>,
     /// Displacement along each support's direction at which it bears only its preload (m).
@@ -98,7 +98,7 @@ impl State {
         self.displacement.clone_from(&other.displacement);
         self.velocity.clone_from(&other.velocity);
         self.contacts.clone_from(&other.contacts);
-        self.near.copy_from(&other.near);
+        self.neighbours.copy_from(&other.neighbours);
         self.support_force.clone_from(&other.support_force);
         self.support_rest.clone_from(&other.support_rest);
         self.fix_active.clone_from(&other.fix_active);

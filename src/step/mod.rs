@@ -226,14 +226,14 @@ impl Step<'_> {
     }
 
     /// The contacts of a step of `dt` (s), judged piece by piece: all together they can be larger than the model. The
-    /// candidates of the state are spoilt.
+    /// near pairs of the state are spoilt.
     fn entrance_by_pieces(&mut self, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
-        let all = std::mem::take(&mut self.state.near.candidates);
+        let all = std::mem::take(&mut self.state.neighbours.pairs);
         let mut rest = all.as_slice();
         while let Some(last) = rest.get(PIECE).or(rest.last()) {
             let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
-            self.state.near.candidates.clear();
-            self.state.near.candidates.extend_from_slice(piece);
+            self.state.neighbours.pairs.clear();
+            self.state.neighbours.pairs.extend_from_slice(piece);
             self.touch(dt);
             self.scratch.contacts.iter().for_each(&mut *see);
             rest = others;

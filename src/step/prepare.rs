@@ -99,7 +99,7 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage_starts.truncate(stage as usize);
     state.stage_starts.push(start);
     quiet::begin_stage(slope, regime, state);
-    state.near.forget();
+    state.neighbours.forget();
     state.stage_displacement.clear();
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {

@@ -49,7 +49,7 @@ impl Step<'_> {
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         let boundary = &slope.boundary;
         let size = slope.covers.mesh.size;
-        if self.state.near.is_stale(boundary, &scratch.place, SKIN * size) {
+        if self.state.neighbours.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {
                 boundary,
                 place: &scratch.place,
@@ -58,7 +58,7 @@ impl Step<'_> {
                 fixed: &scratch.metric.fixed,
                 serial: scratch.serial,
             };
-            scratch.search.search(&view, &mut self.state.near);
+            scratch.search.search(&view, &mut self.state.neighbours);
             scratch.open_close.forget_order();
             self.state.counters.searches += 1;
         }
@@ -115,8 +115,8 @@ impl Step<'_> {
             in_situ: slope.in_situ.as_ref(),
             serial: scratch.serial,
         };
-        let candidates = &state.near.candidates;
-        contact::entrance_edges(&narrow, candidates, &mut scratch.admitted, &mut scratch.contacts);
+        let near_pairs = &state.neighbours.pairs;
+        contact::entrance_edges(&narrow, near_pairs, &mut scratch.admitted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -152,8 +152,8 @@ impl Step<'_> {
         let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        let (candidates, block_covers) = (&self.state.near.candidates, &slope.covers.block_covers);
-        open_close.arrange(&slope.boundary, candidates, metric, block_covers, contacts);
+        let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &slope.covers.block_covers);
+        open_close.arrange(&slope.boundary, near_pairs, metric, block_covers, contacts);
         let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();

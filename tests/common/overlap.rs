@@ -78,7 +78,7 @@ impl Audit {
         let (boundary, place) = (&simulation.slope().boundary, &simulation.scratch().place);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let mut pairs: Vec<[u32; 2]> = Vec::new();
-        for c in &simulation.state().near.candidates {
+        for c in &simulation.state().neighbours.pairs {
             let [a, b] = [boundary.node_point[c.node as usize], c.edge].map(|k| boundary.block[k as usize]);
             let pair = [a.min(b), a.max(b)];
             if pairs.last() != Some(&pair) && a != b {
@@ -129,14 +129,14 @@ pub fn deepest_overlap(simulation: &Simulation) -> Overlap {
 
 /// Overlap (m) of two blocks: the width of its widest piece, or how deep a corner lies in it.
 fn pair_depth(p: &Placed, q: &Placed) -> f64 {
-    let near = |own: &Placed, other: &Placed| -> Vec<[Point; 3]> {
+    let neighbours = |own: &Placed, other: &Placed| -> Vec<[Point; 3]> {
         let boxed = own.triangles.iter().filter(|t| {
             let (low, high) = polygon::bounds(&t[..]);
             !other.is_apart(low, high)
         });
         boxed.copied().collect()
     };
-    let (own, others) = (near(p, q), near(q, p));
+    let (own, others) = (neighbours(p, q), neighbours(q, p));
     let pieces = own.iter().flat_map(|t| others.iter().map(move |u| polygon::clip_convex(t, u)));
     let widest = pieces.filter(|piece| piece.len() > 2).map(|piece| polygon::width(&piece)).fold(0.0, f64::max);
     if widest == 0.0 { 0.0 } else { widest.max(deepest_corner(p, q)).max(deepest_corner(q, p)) }
@@ -144,8 +144,8 @@ fn pair_depth(p: &Placed, q: &Placed) -> f64 {
 
 /// Distance (m) to the boundary of the corner of one block that is deepest inside another.
 fn deepest_corner(p: &Placed, q: &Placed) -> f64 {
-    let near: Vec<Point> = p.points.iter().filter(|x| !q.is_apart(**x, **x)).copied().collect();
-    polygon::deepest_corner(&near, &q.points)
+    let neighbours: Vec<Point> = p.points.iter().filter(|x| !q.is_apart(**x, **x)).copied().collect();
+    polygon::deepest_corner(&neighbours, &q.points)
 }
 
 /// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.

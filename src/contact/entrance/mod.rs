@@ -14,7 +14,7 @@ use crate::mechanics::{BlockMotion, Metric, StressField};
 
 use frame::{EdgeFrame, Over};
 
-use super::{Boundary, Candidate, ContactHistory, ContactState, JointLaw, VertexEdge};
+use super::{Boundary, ContactHistory, ContactState, JointLaw, NearPair, VertexEdge};
 
 pub use bearing::Bearings;
 pub use constants::EntranceRule;
@@ -170,17 +170,17 @@ impl Admitted {
     }
 }
 
-/// Judges every candidate and fills the contacts that take part in this step, ordered by node and side.
+/// Judges every near pair and fills the contacts that take part in this step, ordered by node and side.
 pub fn entrance_edges(
     narrow: &Narrow,
-    candidates: &[Candidate],
+    near_pairs: &[NearPair],
     admitted: &mut Admitted,
     contacts: &mut Vec<VertexEdge>,
 ) {
     let mut made = 0;
-    // In pieces: what is admitted of all candidates together would be as large as the contacts.
+    // In pieces: what is admitted of all near pairs together would be as large as the contacts.
     let runs = if narrow.serial { 1 } else { RUNS };
-    let mut rest = candidates;
+    let mut rest = near_pairs;
     while !rest.is_empty() {
         let (piece, others) = rest.split_at(first_of_run(rest, runs));
         made = narrow.enter(piece, admitted, contacts, made);
@@ -190,44 +190,44 @@ pub fn entrance_edges(
 }
 
 /// Where run `k` begins: at a multiple of its length, moved on to the next node.
-fn first_of_run(candidates: &[Candidate], k: usize) -> usize {
-    let start = (k * RUN).min(candidates.len());
-    match start.checked_sub(1).map(|last| candidates[last].node) {
-        Some(node) => start + candidates[start..].iter().take_while(|c| c.node == node).count(),
+fn first_of_run(near_pairs: &[NearPair], k: usize) -> usize {
+    let start = (k * RUN).min(near_pairs.len());
+    match start.checked_sub(1).map(|last| near_pairs[last].node) {
+        Some(node) => start + near_pairs[start..].iter().take_while(|c| c.node == node).count(),
         None => 0,
     }
 }
 
 impl Narrow<'_> {
-    /// Judges some candidates and makes their contacts, from the contact `made` on; returns where they end.
+    /// Judges some near pairs and makes their contacts, from the contact `made` on; returns where they end.
     fn enter(
         &self,
-        candidates: &[Candidate],
+        near_pairs: &[NearPair],
         admitted: &mut Admitted,
         contacts: &mut Vec<VertexEdge>,
         made: usize,
     ) -> usize {
         let Admitted { runs, picks } = admitted;
-        let count = if self.serial { 1 } else { candidates.len().div_ceil(RUN) };
+        let count = if self.serial { 1 } else { near_pairs.len().div_ceil(RUN) };
         runs.resize_with(runs.len().max(count), Run::default);
         let runs = &mut runs[..count];
         if let [run] = runs {
-            self.judge(candidates, run);
+            self.judge(near_pairs, run);
             return self.make(&run.admitted, contacts, made);
         }
         runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            self.judge(&candidates[first_of_run(candidates, k)..first_of_run(candidates, k + 1)], run);
+            self.judge(&near_pairs[first_of_run(near_pairs, k)..first_of_run(near_pairs, k + 1)], run);
         });
         picks.clear();
         runs.iter().for_each(|run| picks.extend_from_slice(&run.admitted));
         self.make(picks, contacts, made)
     }
 
-    /// Finds the picks that the vertex rule admits of some candidates.
-    fn judge(&self, candidates: &[Candidate], run: &mut Run) {
+    /// Finds the picks that the vertex rule admits of some near pairs.
+    fn judge(&self, near_pairs: &[NearPair], run: &mut Run) {
         let Run { admitted, sides } = run;
         admitted.clear();
-        for group in candidates.chunk_by(|a, b| a.node == b.node) {
+        for group in near_pairs.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node as usize;
             sides.resize(sides.len().max(group.len()), Pick::default());
             let picks = self.pick_edges(node, group, sides);
@@ -246,8 +246,8 @@ impl Narrow<'_> {
     }
 
     /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; there is
-    /// place for as many as there are candidates.
-    fn pick_edges<'p>(&self, node: usize, group: &[Candidate], picks: &'p mut [Pick]) -> &'p mut [Pick] {
+    /// place for as many as there are near pairs.
+    fn pick_edges<'p>(&self, node: usize, group: &[NearPair], picks: &'p mut [Pick]) -> &'p mut [Pick] {
         let mut count = 0;
         let mut known = self.remembered.of_node(node);
         for edges in group.chunk_by(|a, b| a.side == b.side) {
@@ -264,13 +264,13 @@ impl Narrow<'_> {
 
     /// Fills the pick of one side; returns whether the node is over that side.
     #[inline(always)]
-    fn pick(&self, node: usize, edges: &[Candidate], held: Option<u32>, pick: &mut Pick) -> bool {
+    fn pick(&self, node: usize, edges: &[NearPair], held: Option<u32>, pick: &mut Pick) -> bool {
         let (edge, over) = self.nearest(self.node_place(node), edges);
         let Over { along, gap, beyond } = over;
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
         let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
-        let Candidate { node: own, side, .. } = edges[0];
+        let NearPair { node: own, side, .. } = edges[0];
         *pick = Pick {
             node: own,
             side,
@@ -293,8 +293,8 @@ impl Narrow<'_> {
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.
     #[inline(always)]
-    fn nearest(&self, p: Point, edges: &[Candidate]) -> (u32, Over) {
-        let over = |c: &Candidate| (c.edge, self.frames.edges[c.edge as usize].over(p));
+    fn nearest(&self, p: Point, edges: &[NearPair]) -> (u32, Over) {
+        let over = |c: &NearPair| (c.edge, self.frames.edges[c.edge as usize].over(p));
         edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 

@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use enmm_lanes::{LANES, prefetch};
 
-use crate::contact::{Boundary, Candidate, VertexEdge};
+use crate::contact::{Boundary, NearPair, VertexEdge};
 
 use super::SweepView;
 use super::abreast::Abreast;
@@ -25,9 +25,9 @@ const SHARED: u32 = u64::BITS - 1;
 /// In what manifold every near pair of a node and a side is.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOrder {
-    /// Near nodes and sides, sorted, the first candidate of each, and its manifold.
+    /// Near nodes and sides, sorted, the first near pair of each, and its manifold.
     keys: Vec<u64>,
-    first_candidate: Vec<u32>,
+    first_near_pair: Vec<u32>,
     manifold: Vec<u32>,
     /// Manifolds in the order in which they are judged.
     manifolds: Vec<Manifold>,
@@ -89,8 +89,8 @@ pub struct Sequence {
 impl SweepOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { first_candidate, manifold, leaf, count, touching, leaf_block, .. } = self;
-        let lists = [first_candidate, manifold, leaf, count, touching, leaf_block];
+        let Self { first_near_pair, manifold, leaf, count, touching, leaf_block, .. } = self;
+        let lists = [first_near_pair, manifold, leaf, count, touching, leaf_block];
         let order = size_of_val(self.keys.as_slice()) + size_of_val(self.manifolds.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
@@ -113,27 +113,27 @@ impl SweepOrder {
     }
 
     /// Orders near pairs, sorted by node and side.
-    pub fn order(&mut self, boundary: &Boundary, candidates: &[Candidate], view: &SweepView) {
+    pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SweepView) {
         self.keys.clear();
-        self.first_candidate.clear();
+        self.first_near_pair.clear();
         self.entries.clear();
         let mut first = 0;
-        for run in candidates.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
+        for run in near_pairs.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
             let point = boundary.node_point[run[0].node as usize] as usize;
             let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
-            self.first_candidate.push(first);
+            self.first_near_pair.push(first);
             self.entries.push(Entry { part: 0, blocks: [own.min(other), own.max(other)], key });
             first += run.len() as u32;
         }
-        self.first_candidate.push(first);
+        self.first_near_pair.push(first);
         self.cut(view);
         for entry in &mut self.entries {
             entry.part = part_of(entry.blocks.map(|b| self.leaf[b as usize]));
         }
         self.entries.sort_unstable();
-        self.colour(boundary, candidates, view);
+        self.colour(boundary, near_pairs, view);
         self.manifold.resize(self.keys.len(), 0);
         for (index, manifold) in (0u32..).zip(&self.manifolds) {
             for entry in &self.entries[manifold.first as usize..manifold.end as usize] {
@@ -166,7 +166,7 @@ impl SweepOrder {
     }
 
     /// Gives every manifold the first colour that no earlier one of its part has given to what they both push.
-    fn colour(&mut self, boundary: &Boundary, candidates: &[Candidate], view: &SweepView) {
+    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SweepView) {
         self.manifolds.clear();
         self.colours.begin(view);
         let (mut first, mut part_first) = (0, 0);
@@ -180,8 +180,8 @@ impl SweepOrder {
             let blocks = if view.metric.is_free(a as usize) { [a, b] } else { [b, a] };
             self.colours.covers.clear();
             for entry in run {
-                let range = [0, 1].map(|k| self.first_candidate[entry.key as usize + k] as usize);
-                self.colours.meet(boundary, &candidates[range[0]..range[1]], view);
+                let range = [0, 1].map(|k| self.first_near_pair[entry.key as usize + k] as usize);
+                self.colours.meet(boundary, &near_pairs[range[0]..range[1]], view);
             }
             let colour = self.colours.give(blocks, view);
             let end = first + run.len() as u32;
@@ -268,13 +268,13 @@ impl Colours {
     }
 
     /// Covers of held blocks that a node and the near edges of a side may push.
-    fn meet(&mut self, boundary: &Boundary, edges: &[Candidate], view: &SweepView) {
+    fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SweepView) {
         let is_held = |point: usize| !view.metric.is_free(boundary.block[point] as usize);
         let node = boundary.node_point[edges[0].node as usize] as usize;
         if is_held(node) {
             self.covers.extend(boundary.covers[node]);
         }
-        for edge in edges.iter().map(|candidate| candidate.edge as usize).filter(|&edge| is_held(edge)) {
+        for edge in edges.iter().map(|near_pair| near_pair.edge as usize).filter(|&edge| is_held(edge)) {
             self.covers.extend(boundary.covers_on(edge));
         }
     }

@@ -42,7 +42,7 @@ impl Step<'_> {
         for ids in &covers.element_covers {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
-        for near in &self.state.near.candidates {
+        for near in &self.state.neighbours.pairs {
             let node = boundary.covers[boundary.node_point[near.node as usize] as usize];
             for a in node {
                 boundary.covers_on(near.edge as usize).for_each(|b| couple(a, b));

@@ -8,7 +8,7 @@ use crate::contact::Boundary;
 
 use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
-use super::{Candidate, SearchView};
+use super::{NearPair, SearchView};
 
 /// Most nodes in a row that look round together.
 const FEW: usize = 8;
@@ -18,7 +18,7 @@ const SHORT: usize = 32;
 /// What is found for some nodes, and buffers for it.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
-    pub candidates: Vec<Candidate>,
+    pub near_pairs: Vec<NearPair>,
     /// Stretches round a few nodes, and their boxes.
     around: Vec<u32>,
     boxes: Vec<Boxes>,
@@ -30,7 +30,7 @@ impl Run {
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(self.around.as_slice()) + size_of_val(self.near.as_slice());
         let around = lists + size_of_val(self.boxes.as_slice());
-        size_of_val(self.candidates.as_slice()) + around
+        size_of_val(self.near_pairs.as_slice()) + around
     }
 }
 
@@ -48,7 +48,7 @@ impl Kernel for Find<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let within = Within::new(lanes, self.view.cutoff);
-        self.run.candidates.clear();
+        self.run.near_pairs.clear();
         while !self.nodes.is_empty() {
             let (few, block, span) = self.next_few();
             if !self.view.removed[block as usize] {
@@ -111,7 +111,7 @@ impl Find<'_> {
     #[inline(always)]
     fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
         let (boundary, grid) = (self.view.boundary, self.grid);
-        let Run { candidates, around, boxes, near } = &mut *self.run;
+        let Run { near_pairs, around, boxes, near } = &mut *self.run;
         let p = self.view.place[boundary.node_point[node] as usize];
         let mut marks = Marks::default();
         near.clear();
@@ -122,7 +122,7 @@ impl Find<'_> {
         marks.see(&mut list);
         let mut add = |edge: u32, k: usize| {
             let edge = edge + k as u32;
-            candidates.push(Candidate { node: node as u32, side: boundary.side[edge as usize], edge });
+            near_pairs.push(NearPair { node: node as u32, side: boundary.side[edge as usize], edge });
         };
         for &stretch in near.iter() {
             let stretch = &grid.stretches[stretch as usize];

@@ -20,7 +20,7 @@ const RUN: usize = 1024;
 
 /// A node and an edge that may meet before the next search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub struct Candidate {
+pub struct NearPair {
     /// Node.
     pub node: u32,
     /// Side of the edge.
@@ -31,13 +31,13 @@ pub struct Candidate {
 
 /// What the last search found, and where the nodes were then.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Near {
+pub struct NeighbourList {
     /// Near pairs, ordered by node, side and edge.
-    pub candidates: Vec<Candidate>,
+    pub pairs: Vec<NearPair>,
     found_at: Vec<Point>,
 }
 
-impl Near {
+impl NeighbourList {
     /// Whether a node has moved more than `slack` (m) since the last search.
     pub fn is_stale(&self, boundary: &Boundary, place: &[Point], slack: f64) -> bool {
         self.found_at.len() != boundary.node_count()
@@ -55,12 +55,12 @@ impl Near {
 
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.candidates.as_slice()) + size_of_val(self.found_at.as_slice())
+        size_of_val(self.pairs.as_slice()) + size_of_val(self.found_at.as_slice())
     }
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.candidates.clone_from(&other.candidates);
+        self.pairs.clone_from(&other.pairs);
         self.found_at.clone_from(&other.found_at);
     }
 
@@ -72,10 +72,10 @@ impl Near {
     /// Takes what was found in runs, and notes where the nodes are.
     fn take(&mut self, runs: &mut [Run], view: &SearchView) {
         if let [run] = runs {
-            std::mem::swap(&mut self.candidates, &mut run.candidates);
+            std::mem::swap(&mut self.pairs, &mut run.near_pairs);
         } else {
-            self.candidates.clear();
-            runs.iter().for_each(|run| self.candidates.extend_from_slice(&run.candidates));
+            self.pairs.clear();
+            runs.iter().for_each(|run| self.pairs.extend_from_slice(&run.near_pairs));
         }
         self.found_at.clear();
         self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.place[point as usize]));
@@ -112,7 +112,7 @@ impl SearchGrid {
     }
 
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
-    pub fn search(&mut self, view: &SearchView, found: &mut Near) {
+    pub fn search(&mut self, view: &SearchView, found: &mut NeighbourList) {
         self.grid.lay(view);
         let nodes = view.boundary.node_count();
         let length = if view.serial { nodes.max(1) } else { RUN };
