@@ -4,8 +4,8 @@
 mod bolt;
 mod boundary;
 mod broad_phase;
-mod entrance;
 mod law;
+mod narrow_phase;
 mod pair;
 mod spring;
 mod support;
@@ -15,8 +15,10 @@ mod vertex_edge;
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner, SideEnd};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
-pub use entrance::{Admitted, Approach, Bearings, EntranceRule, Frames, Narrow, Remembered, entrance_edges};
 pub use law::{Closure, JointLaw, Limits, Roughness};
+pub use narrow_phase::{
+    AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, PenetratingContacts, entrance_edges,
+};
 pub use pair::Pair;
 pub use spring::{Answer, Spring};
 pub use support::{Resistance, Support, SupportRow};

@@ -86,7 +86,7 @@ impl Scratch {
             ("masses", metric(&self.metric)),
             ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
             ("places", self.place.bytes() + self.frames.bytes()),
-            ("judged pairs", self.admitted.bytes() + self.remembered.bytes() + self.bearings.bytes()),
+            ("judged pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
             ("search", self.search.bytes()),
             ("contacts", sum(&[&self.contacts, &self.outcomes])),
             ("open–close iteration", self.open_close.bytes()),

@@ -1,7 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    Admitted, Bearings, BlockPush, BoltRow, Frames, OpenClose, Remembered, SearchGrid, SupportRow, VertexEdge,
+    AcceptedPairs, BlockPush, BoltRow, ContactCache, Frames, OpenClose, PenetratingContacts, SearchGrid, SupportRow,
+    VertexEdge,
 };
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
@@ -41,11 +42,11 @@ pub struct Scratch {
     /// Boundary edges and nodes at those places.
     pub frames: Frames,
     /// What the vertex rule admits in this step.
-    pub admitted: Admitted,
+    pub accepted: AcceptedPairs,
     /// Where the contacts of the last step are.
-    pub remembered: Remembered,
+    pub contact_cache: ContactCache,
     /// Those contacts by the node segment that they lie on.
-    pub bearings: Bearings,
+    pub penetrating: PenetratingContacts,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
     /// Contacts of this step.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::contact::{self, Approach, BoltView, Narrow, Others, SearchView, SweepOptions, SweepReport};
+use crate::contact::{self, Approach, BoltView, NarrowPhase, Others, SearchView, SweepOptions, SweepReport};
 use crate::cover::Weights;
 use crate::geometry::Point;
 use crate::state::Scratch;
@@ -85,10 +85,10 @@ impl Step<'_> {
         };
         let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
         let size = slope.covers.mesh.size;
-        scratch.remembered.index(&state.contacts, slope.boundary.node_count());
-        scratch.bearings.index(&slope.boundary, &scratch.frames, &state.contacts);
+        scratch.contact_cache.index(&state.contacts, slope.boundary.node_count());
+        scratch.penetrating.index(&slope.boundary, &scratch.frames, &state.contacts);
         let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
-        let narrow = Narrow {
+        let narrow = NarrowPhase {
             boundary: &slope.boundary,
             place: &scratch.place,
             frames: &scratch.frames,
@@ -103,8 +103,8 @@ impl Step<'_> {
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,
-            remembered: &scratch.remembered,
-            bearings: &scratch.bearings,
+            cache: &scratch.contact_cache,
+            penetrating: &scratch.penetrating,
             approach: dt.map(approach),
             size,
             rule: slope.entrance,
@@ -116,7 +116,7 @@ impl Step<'_> {
             serial: scratch.serial,
         };
         let near_pairs = &state.neighbours.pairs;
-        contact::entrance_edges(&narrow, near_pairs, &mut scratch.admitted, &mut scratch.contacts);
+        contact::entrance_edges(&narrow, near_pairs, &mut scratch.accepted, &mut scratch.contacts);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 

@@ -3,7 +3,7 @@
 use crate::contact::{ContactState, Corner, SideEnd};
 use crate::geometry::{Point, Vector};
 
-use super::{Narrow, Pick, TIE_TOLERANCE, faces, right_of};
+use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE, faces, right_of};
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,29 +12,29 @@ pub(super) enum End {
     Finish,
 }
 
-impl Narrow<'_> {
+impl NarrowPhase<'_> {
     /// Rule (ii): how far (m) along the side a node overlaps with the block before the start and the finish of it, with
     /// springs unloaded, infinite at ends that are far or no corners; none where it is no contact of this side.
-    pub(super) fn overlap_at_ends(&self, node: usize, pick: &Pick) -> Option<[f64; 2]> {
+    pub(super) fn overlap_at_ends(&self, node: usize, candidate: &ContactCandidate) -> Option<[f64; 2]> {
         let p = self.node_place(node);
-        let tolerance = self.corner_tolerance(pick);
+        let tolerance = self.corner_tolerance(candidate);
         let mut overlap = [f64::INFINITY; 2];
         for end in [End::Start, End::Finish] {
-            let at = self.boundary.side_ends[pick.side as usize][end as usize];
+            let at = self.boundary.side_ends[candidate.side as usize][end as usize];
             if at.corner == Corner::Reflex {
                 continue;
             }
             let past = match end {
-                End::Start => pick.along < 0.0,
-                End::Finish => pick.along > pick.length,
+                End::Start => candidate.along < 0.0,
+                End::Finish => candidate.along > candidate.length,
             };
-            let missed = at.edge == pick.edge && past && pick.beyond > tolerance;
-            if missed && !self.is_kept(node, pick, end) {
+            let missed = at.edge == candidate.edge && past && candidate.beyond > tolerance;
+            if missed && !self.is_kept(node, candidate, end) {
                 return None;
             }
             let corner = self.place[at.point as usize];
             if (p - corner).norm_squared() < self.size * self.size {
-                overlap[end as usize] = self.overlap_round(node, pick, p, end)?;
+                overlap[end as usize] = self.overlap_round(node, candidate, p, end)?;
             }
         }
         Some(overlap)
@@ -48,26 +48,26 @@ impl Narrow<'_> {
     /// that as well, or else (q, the side of p that turns towards it). The shallower facet is the way out: how deep
     /// springs have let the corners in, of this facet itself or of others beside them, is no depth. Faces that lie on
     /// each other do not exclude each other; a sharp one may be pierced: the node is then past the facet round its tip.
-    fn overlap_round(&self, node: usize, pick: &Pick, p: Point, end: End) -> Option<f64> {
+    fn overlap_round(&self, node: usize, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
-        let SideEnd { round, point: corner, .. } = boundary.side_ends[pick.side as usize][end as usize];
+        let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side as usize][end as usize];
         let meets = boundary.node_before[corner as usize] as usize;
         let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
-        let normal = right_of(pick.tangent);
+        let normal = right_of(candidate.tangent);
         let flush = -facing.dot(&normal) > self.flush_cosine;
         let faces_round = flush || own.dot(&outward) >= 0.0;
         let out = if faces_round { outward } else { -facing };
         let depth = (q - p).dot(&out);
-        if depth < -self.corner_tolerance(pick) {
+        if depth < -self.corner_tolerance(candidate) {
             let pierced = flush && (q - p).dot(&facing) <= 0.0;
-            return (pierced || self.is_kept(node, pick, end)).then_some(f64::INFINITY);
+            return (pierced || self.is_kept(node, candidate, end)).then_some(f64::INFINITY);
         }
         let most = self.rule.closure_most * self.size;
-        let along = out.dot(&pick.tangent).abs().max(f64::MIN_POSITIVE);
-        if -pick.gap < most && depth > 2.0 * most {
+        let along = out.dot(&candidate.tangent).abs().max(f64::MIN_POSITIVE);
+        if -candidate.gap < most && depth > 2.0 * most {
             return Some(depth / along);
         }
         let closure = if faces_round {
@@ -79,10 +79,10 @@ impl Narrow<'_> {
         if flush {
             return Some(beyond / along);
         }
-        let closure = pick.held.map_or(0.0, |known| -pick.gap * self.history[known as usize].share);
+        let closure = candidate.held.map_or(0.0, |known| -candidate.gap * self.history[known as usize].share);
         let tie = TIE_TOLERANCE * self.size;
-        let way_out = || -pick.gap - closure.max(self.let_in_by_others(node, meets, normal));
-        (-pick.gap <= beyond + tie || way_out() <= beyond + tie).then_some(beyond / along)
+        let way_out = || -candidate.gap - closure.max(self.let_in_by_others(node, meets, normal));
+        (-candidate.gap <= beyond + tie || way_out() <= beyond + tie).then_some(beyond / along)
     }
 
     /// How far (m) a node and a corner of another block part along a direction, out of that block, when the springs of
@@ -93,14 +93,14 @@ impl Narrow<'_> {
     }
 
     /// Whether a contact that carries force outlasts an end of its side.
-    fn is_kept(&self, node: usize, pick: &Pick, end: End) -> bool {
-        pick.is_held && self.overlap_at(node, pick, end) >= 0.0
+    fn is_kept(&self, node: usize, candidate: &ContactCandidate, end: End) -> bool {
+        candidate.is_held && self.overlap_at(node, candidate, end) >= 0.0
     }
 
     /// How far (m) the node is inside the facet round an end of the side, or the corner there inside both facets of the
     /// node, unless that corner is a contact itself; negative where the two have parted.
-    pub(super) fn overlap_at(&self, node: usize, pick: &Pick, end: End) -> f64 {
-        let at = self.boundary.side_ends[pick.side as usize][end as usize];
+    pub(super) fn overlap_at(&self, node: usize, candidate: &ContactCandidate, end: End) -> f64 {
+        let at = self.boundary.side_ends[candidate.side as usize][end as usize];
         let frame = &self.frames.nodes[node];
         let to = self.place[at.point as usize] - frame.place;
         let inside = to.dot(&self.frames.edges[at.round as usize].normal());
@@ -121,24 +121,24 @@ impl Narrow<'_> {
     }
 
     /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
-    pub(super) fn enters(&self, node: usize, pick: &Pick) -> bool {
-        let (normal, frame) = (right_of(pick.tangent), &self.frames.nodes[node]);
+    pub(super) fn enters(&self, node: usize, candidate: &ContactCandidate) -> bool {
+        let (normal, frame) = (right_of(candidate.tangent), &self.frames.nodes[node]);
         let outside = |k: usize| frame.to[k].dot(&normal) >= -self.rule.flush_sine * frame.distance[k];
         outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal, self.rule.flush_sine))
     }
 
     /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
     /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
-    pub(super) fn choose_sides(&self, picks: &mut [Pick]) {
-        let block = |p: &Pick| self.boundary.block[p.edge as usize];
-        for i in 0..picks.len() {
-            for j in i + 1..picks.len() {
-                let (a, b) = (&picks[i], &picks[j]);
+    pub(super) fn choose_sides(&self, candidates: &mut [ContactCandidate]) {
+        let block = |p: &ContactCandidate| self.boundary.block[p.edge as usize];
+        for i in 0..candidates.len() {
+            for j in i + 1..candidates.len() {
+                let (a, b) = (&candidates[i], &candidates[j]);
                 if block(a) != block(b) || self.is_notch(a.side, b.side) {
                     continue;
                 }
                 if let Some(first) = self.loser(a, b) {
-                    picks[if first { i } else { j }].admitted = false;
+                    candidates[if first { i } else { j }].accepted = false;
                 }
             }
         }
@@ -161,7 +161,7 @@ impl Narrow<'_> {
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
     /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
-    fn loser(&self, a: &Pick, b: &Pick) -> Option<bool> {
+    fn loser(&self, a: &ContactCandidate, b: &ContactCandidate) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
         let cosine = deep.tangent.dot(&shallow.tangent);
@@ -172,14 +172,14 @@ impl Narrow<'_> {
         }
         let behind = -deep.gap > shallow.gap.abs() + TIE_TOLERANCE * self.size;
         let deep_loses = if deep.is_held {
-            shallow.is_held && shallow.admitted
+            shallow.is_held && shallow.accepted
         } else {
-            behind && end.is_none() && shallow.gap > 0.0 || shallow.admitted && (shallow.is_held || shallow.gap <= 0.0)
+            behind && end.is_none() && shallow.gap > 0.0 || shallow.accepted && (shallow.is_held || shallow.gap <= 0.0)
         };
         if deep_loses {
             return Some(first_is_deeper);
         }
-        let contest = deep.gap <= 0.0 && shallow.gap <= 0.0 && deep.admitted && shallow.admitted;
+        let contest = deep.gap <= 0.0 && shallow.gap <= 0.0 && deep.accepted && shallow.accepted;
         contest.then_some(!first_is_deeper)
     }
 }

@@ -3,11 +3,11 @@
 use crate::contact::{Boundary, ContactHistory};
 use crate::geometry::Vector;
 
-use super::{Frames, Narrow};
+use super::{Frames, NarrowPhase};
 
 /// A contact of the last step that is in penetration at the present places.
 #[derive(Debug, Clone, Copy)]
-struct Bearing {
+struct PenetratingContact {
     /// Side that the node is in.
     side: u32,
     /// Sides before and after the node.
@@ -20,11 +20,11 @@ struct Bearing {
 
 /// The contacts of the last step that are in penetration, by their nodes and by the node segments that they lie on.
 #[derive(Debug, Clone, Default)]
-pub struct Bearings {
+pub struct PenetratingContacts {
     /// First of each node, and their number.
     first: Vec<u32>,
     /// Bearings, ordered by node and side.
-    bearings: Vec<Bearing>,
+    penetrating: Vec<PenetratingContact>,
     /// First place of those on the segment after each node, and their number.
     first_after: Vec<u32>,
     /// Bearings by segment.
@@ -33,11 +33,11 @@ pub struct Bearings {
     segment: Vec<u32>,
 }
 
-impl Bearings {
+impl PenetratingContacts {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
         let indices = self.first.len() + self.first_after.len() + self.after.len() + self.segment.len();
-        size_of::<u32>() * indices + size_of_val(self.bearings.as_slice())
+        size_of::<u32>() * indices + size_of_val(self.penetrating.as_slice())
     }
 
     /// Finds which contacts are in penetration and sorts them by segment; within one they keep their order.
@@ -61,49 +61,53 @@ impl Bearings {
     }
 
     fn find(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {
-        let Self { first, bearings, segment, .. } = self;
+        let Self { first, penetrating, segment, .. } = self;
         first.clear();
-        bearings.clear();
+        penetrating.clear();
         segment.clear();
         for contact in history {
             let (node, edge) = (contact.node as usize, &frames.edges[contact.edge as usize]);
             let gap = (frames.nodes[node].place - edge.start).dot(&edge.normal());
             let closure = (-gap).max(0.0) * contact.share;
             if closure > 0.0 {
-                first.resize(first.len().max(node + 1), bearings.len() as u32);
+                first.resize(first.len().max(node + 1), penetrating.len() as u32);
                 segment.push(boundary.node_before[contact.edge as usize]);
                 let own = boundary.sides_of_node(node);
-                bearings.push(Bearing { side: contact.side, own, closure, outward: edge.normal() });
+                penetrating.push(PenetratingContact { side: contact.side, own, closure, outward: edge.normal() });
             }
         }
-        first.resize(boundary.node_count() + 1, bearings.len() as u32);
+        first.resize(boundary.node_count() + 1, penetrating.len() as u32);
     }
 
     /// Those of a node.
     #[inline(always)]
-    fn of_node(&self, node: usize) -> &[Bearing] {
-        &self.bearings[self.first[node] as usize..self.first[node + 1] as usize]
+    fn of_node(&self, node: usize) -> &[PenetratingContact] {
+        &self.penetrating[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
     /// Those on the segment after a node.
     #[inline(always)]
-    fn after(&self, node: usize) -> impl Iterator<Item = &Bearing> {
+    fn after(&self, node: usize) -> impl Iterator<Item = &PenetratingContact> {
         let places = self.first_after[node] as usize..self.first_after[node + 1] as usize;
-        self.after[places].iter().map(|&k| &self.bearings[k as usize])
+        self.after[places].iter().map(|&k| &self.penetrating[k as usize])
     }
 }
 
-impl Narrow<'_> {
+impl NarrowPhase<'_> {
     /// Contacts of a node in the last step.
     #[inline(always)]
     pub(super) fn known(&self, node: usize) -> &[ContactHistory] {
-        &self.history[self.remembered.of_node(node)]
+        &self.history[self.cache.of_node(node)]
     }
 
     /// How deep (m) a contact of a node with a side is, as far as it bears; 0 where it was none in the last step.
     #[inline(always)]
     pub(super) fn closure_with(&self, node: usize, side: u32) -> f64 {
-        self.bearings.of_node(node).iter().find(|bearing| bearing.side == side).map_or(0.0, |bearing| bearing.closure)
+        self.penetrating
+            .of_node(node)
+            .iter()
+            .find(|contact| contact.side == side)
+            .map_or(0.0, |contact| contact.closure)
     }
 
     /// How deep (m), along a direction, the contacts of a node and of the faces next to it have let it in, but for
@@ -111,15 +115,15 @@ impl Narrow<'_> {
     #[inline(always)]
     pub(super) fn let_in(&self, node: usize, direction: Vector, others: [u32; 2]) -> f64 {
         let mut depth = 0.0f64;
-        for bearing in self.bearings.of_node(node) {
-            if !others.contains(&bearing.side) {
-                depth = depth.max(bearing.closure * bearing.outward.dot(&direction));
+        for contact in self.penetrating.of_node(node) {
+            if !others.contains(&contact.side) {
+                depth = depth.max(contact.closure * contact.outward.dot(&direction));
             }
         }
         for node in [self.boundary.node_previous[node] as usize, node] {
-            for bearing in self.bearings.after(node) {
-                if !bearing.own.iter().any(|side| others.contains(side)) {
-                    depth = depth.max(-bearing.closure * bearing.outward.dot(&direction));
+            for contact in self.penetrating.after(node) {
+                if !contact.own.iter().any(|side| others.contains(side)) {
+                    depth = depth.max(-contact.closure * contact.outward.dot(&direction));
                 }
             }
         }

@@ -2,8 +2,8 @@
 
 use crate::contact::Corner;
 
-use super::rule::End;
-use super::{Narrow, Pick};
+use super::vertex_rule::End;
+use super::{ContactCandidate, NarrowPhase};
 
 /// Least tributary length, relative to the mean of the neighbouring node segments: no division by nothing.
 const LENGTH_FLOOR: f64 = 1e-9;
@@ -28,38 +28,38 @@ struct Facing {
     oblique: f64,
 }
 
-impl Narrow<'_> {
+impl NarrowPhase<'_> {
     /// Lengths over which a node acts on an edge (Eq. 13). Where corners meet they are those of the overlap that is
     /// there with springs unloaded: a face pushes with as much of itself as lies against the other.
     #[inline(always)]
-    pub(super) fn tributary(&self, node: usize, pick: &Pick) -> Tributary {
-        let [start, finish] = pick.overlap;
+    pub(super) fn tributary(&self, node: usize, candidate: &ContactCandidate) -> Tributary {
+        let [start, finish] = candidate.overlap;
         let ramp = |overlap: f64| (overlap / (self.rule.ledge * self.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(start.min(finish));
-        let Facing { flush, oblique } = self.facing(node, pick);
+        let Facing { flush, oblique } = self.facing(node, candidate);
         let share = at_ends.max(ramp(flush));
         let distance = &self.frames.nodes[node].distance;
         let span = 0.5 * (distance[0] + distance[1]);
         let length = (0.5 * (flush + at_ends * oblique)).max(LENGTH_FLOOR * span);
         let penalty = length.max(self.rule.stiffness_floor * span * share);
-        let at_corner = self.share_at_corner(node, pick);
+        let at_corner = self.share_at_corner(node, candidate);
         Tributary { length: length * at_corner, penalty: penalty * at_corner, share }
     }
 
     /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the
     /// side no farther than the overlap at its ends.
     #[inline(always)]
-    fn facing(&self, node: usize, pick: &Pick) -> Facing {
+    fn facing(&self, node: usize, candidate: &ContactCandidate) -> Facing {
         let boundary = self.boundary;
         let frame = &self.frames.nodes[node];
-        let p = frame.place.dot(&pick.tangent);
-        let before = boundary.node_before[pick.edge as usize] as usize;
+        let p = frame.place.dot(&candidate.tangent);
+        let before = boundary.node_before[candidate.edge as usize] as usize;
         let after = boundary.node_next[before] as usize;
-        let place = |n: u32| self.node_place(n as usize).dot(&pick.tangent);
+        let place = |n: u32| self.node_place(n as usize).dot(&candidate.tangent);
         let (from, to) = (place(before as u32), place(after as u32));
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(place);
-        let [low, high] = self.tie_shares(node, pick, before, [p - from, to - p]);
+        let [low, high] = self.tie_shares(node, candidate, before, [p - from, to - p]);
         let flush_cosine = self.flush_cosine;
         let mut facing = Facing::default();
         let mut add = |over: f64, along: f64, distance: f64, overlap: f64| {
@@ -71,13 +71,16 @@ impl Narrow<'_> {
         };
         if q > p {
             let beyond =
-                if high > 0.0 { high * self.reach_beyond(boundary.node_next[after], to, q, pick) } else { 0.0 };
-            add(over(q) + beyond, q - p, frame.distance[0], pick.overlap[1]);
+                if high > 0.0 { high * self.reach_beyond(boundary.node_next[after], to, q, candidate) } else { 0.0 };
+            add(over(q) + beyond, q - p, frame.distance[0], candidate.overlap[1]);
         }
         if r < p {
-            let beyond =
-                if low > 0.0 { low * self.reach_beyond(boundary.node_previous[before], from, r, pick) } else { 0.0 };
-            add(over(r) + beyond, p - r, frame.distance[1], pick.overlap[0]);
+            let beyond = if low > 0.0 {
+                low * self.reach_beyond(boundary.node_previous[before], from, r, candidate)
+            } else {
+                0.0
+            };
+            add(over(r) + beyond, p - r, frame.distance[1], candidate.overlap[0]);
         }
         facing
     }
@@ -85,16 +88,16 @@ impl Narrow<'_> {
     /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from
     /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
     #[inline(always)]
-    fn tie_shares(&self, node: usize, pick: &Pick, before: usize, distances: [f64; 2]) -> [f64; 2] {
+    fn tie_shares(&self, node: usize, candidate: &ContactCandidate, before: usize, distances: [f64; 2]) -> [f64; 2] {
         let (boundary, band) = (self.boundary, self.rule.held_beyond * self.size);
         if !boundary.node_convex[node] {
             return [0.0; 2];
         }
         let is_inner = |k: usize| match k {
-            0 => boundary.side_first[pick.side as usize] != boundary.node_point[before],
+            0 => boundary.side_first[candidate.side as usize] != boundary.node_point[before],
             _ => {
                 let after = boundary.node_point[boundary.node_next[before] as usize] as usize;
-                boundary.side[after] == pick.side
+                boundary.side[after] == candidate.side
             }
         };
         [0, 1].map(|k| {
@@ -103,26 +106,26 @@ impl Narrow<'_> {
         })
     }
 
-    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the pick's edge.
+    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's edge.
     #[inline(always)]
-    fn reach_beyond(&self, far: u32, at: f64, target: f64, pick: &Pick) -> f64 {
-        let far = self.node_place(far as usize).dot(&pick.tangent);
+    fn reach_beyond(&self, far: u32, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
+        let far = self.node_place(far as usize).dot(&candidate.tangent);
         if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 
     /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
     /// an inner node, whose segments that corner has. One that is kept by the overlap of the corners fades with it.
     #[inline(always)]
-    fn share_at_corner(&self, node: usize, pick: &Pick) -> f64 {
+    fn share_at_corner(&self, node: usize, candidate: &ContactCandidate) -> f64 {
         let band = self.rule.held_beyond * self.size;
         let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
-        for (end, within) in [(End::Start, pick.along), (End::Finish, pick.length - pick.along)] {
-            let at = self.boundary.side_ends[pick.side as usize][end as usize];
-            if within < band && at.edge == pick.edge && at.corner == Corner::Convex {
+        for (end, within) in [(End::Start, candidate.along), (End::Finish, candidate.length - candidate.along)] {
+            let at = self.boundary.side_ends[candidate.side as usize][end as usize];
+            if within < band && at.edge == candidate.edge && at.corner == Corner::Convex {
                 let kept = |overlap: f64| within.max((overlap - band).min(0.0));
-                let is_past = pick.is_held && within < 0.0;
-                let within = if is_past { kept(self.overlap_at(node, pick, end)) } else { within };
+                let is_past = candidate.is_held && within < 0.0;
+                let within = if is_past { kept(self.overlap_at(node, candidate, end)) } else { within };
                 share = share.min(least + (1.0 - least) * within / band);
             }
         }

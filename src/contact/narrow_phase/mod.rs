@@ -1,11 +1,11 @@
 //! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
 
-mod bearing;
 mod constants;
-mod contact;
 mod frame;
-mod length;
-mod rule;
+mod make_contact;
+mod penetrating;
+mod tributary_length;
+mod vertex_rule;
 
 use rayon::prelude::*;
 
@@ -16,13 +16,13 @@ use frame::{EdgeFrame, Over};
 
 use super::{Boundary, ContactHistory, ContactState, JointLaw, NearPair, VertexEdge};
 
-pub use bearing::Bearings;
 pub use constants::EntranceRule;
 pub use frame::Frames;
+pub use penetrating::PenetratingContacts;
 
-/// Near pairs that are judged as one run, and shared between threads as one: fixed, since the order is the model's.
+/// Near pairs that are tested as one run, and shared between threads as one: fixed, since the order is the model's.
 const RUN: usize = 4096;
-/// Runs that are judged before their contacts are made.
+/// Runs that are tested before their contacts are made.
 const RUNS: usize = 64;
 /// Contacts whose geometry a thread makes at least.
 const GRAIN: usize = 256;
@@ -33,7 +33,7 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 
 /// What the narrow phase reads.
-pub struct Narrow<'a> {
+pub struct NarrowPhase<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
     /// Current places of the boundary points (m).
@@ -63,9 +63,9 @@ pub struct Narrow<'a> {
     /// Contacts of the last step, ordered by node and side.
     pub history: &'a [ContactHistory],
     /// Where those of each node are.
-    pub remembered: &'a Remembered,
+    pub cache: &'a ContactCache,
     /// Those in penetration, by node and by the node segment that they lie on.
-    pub bearings: &'a Bearings,
+    pub penetrating: &'a PenetratingContacts,
     /// How contacts come on in an explicit step; none in an implicit one.
     pub approach: Option<Approach<'a>>,
     /// Mesh size (m).
@@ -100,12 +100,12 @@ pub struct Approach<'a> {
 
 /// Where the contacts of the last step are in the list that is ordered by node and side.
 #[derive(Debug, Clone, Default)]
-pub struct Remembered {
+pub struct ContactCache {
     /// First contact of each node, and the number of contacts.
     first: Vec<u32>,
 }
 
-impl Remembered {
+impl ContactCache {
     /// Bytes of the buffer.
     pub fn bytes(&self) -> usize {
         size_of_val(self.first.as_slice())
@@ -129,7 +129,7 @@ impl Remembered {
 
 /// A node over an edge of one side.
 #[derive(Debug, Clone, Copy, Default)]
-struct Pick {
+struct ContactCandidate {
     node: u32,
     side: u32,
     edge: u32,
@@ -144,46 +144,46 @@ struct Pick {
     is_held: bool,
     /// How far (m) along the side it overlaps before its start and its finish, with springs unloaded.
     overlap: [f64; 2],
-    admitted: bool,
+    accepted: bool,
 }
 
-/// What the vertex rule admits in one step: buffers of [`entrance_edges`].
+/// What the vertex rule accepts in one step: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
-pub struct Admitted {
+pub struct AcceptedPairs {
     runs: Vec<Run>,
-    picks: Vec<Pick>,
+    candidates: Vec<ContactCandidate>,
 }
 
-/// What it admits of a run of near pairs.
+/// What it accepts of a run of near pairs.
 #[derive(Debug, Clone, Default)]
 struct Run {
-    admitted: Vec<Pick>,
+    accepted: Vec<ContactCandidate>,
     /// Sides of the node in hand.
-    sides: Vec<Pick>,
+    sides: Vec<ContactCandidate>,
 }
 
-impl Admitted {
+impl AcceptedPairs {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let of_run = |run: &Run| size_of_val(run.admitted.as_slice()) + size_of_val(run.sides.as_slice());
-        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.picks.as_slice())
+        let of_run = |run: &Run| size_of_val(run.accepted.as_slice()) + size_of_val(run.sides.as_slice());
+        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.candidates.as_slice())
     }
 }
 
 /// Judges every near pair and fills the contacts that take part in this step, ordered by node and side.
 pub fn entrance_edges(
-    narrow: &Narrow,
+    narrow: &NarrowPhase,
     near_pairs: &[NearPair],
-    admitted: &mut Admitted,
+    accepted: &mut AcceptedPairs,
     contacts: &mut Vec<VertexEdge>,
 ) {
     let mut made = 0;
-    // In pieces: what is admitted of all near pairs together would be as large as the contacts.
+    // In pieces: what is accepted of all near pairs together would be as large as the contacts.
     let runs = if narrow.serial { 1 } else { RUNS };
     let mut rest = near_pairs;
     while !rest.is_empty() {
         let (piece, others) = rest.split_at(first_of_run(rest, runs));
-        made = narrow.enter(piece, admitted, contacts, made);
+        made = narrow.enter(piece, accepted, contacts, made);
         rest = others;
     }
     contacts.truncate(made);
@@ -198,80 +198,85 @@ fn first_of_run(near_pairs: &[NearPair], k: usize) -> usize {
     }
 }
 
-impl Narrow<'_> {
+impl NarrowPhase<'_> {
     /// Judges some near pairs and makes their contacts, from the contact `made` on; returns where they end.
     fn enter(
         &self,
         near_pairs: &[NearPair],
-        admitted: &mut Admitted,
+        accepted: &mut AcceptedPairs,
         contacts: &mut Vec<VertexEdge>,
         made: usize,
     ) -> usize {
-        let Admitted { runs, picks } = admitted;
+        let AcceptedPairs { runs, candidates } = accepted;
         let count = if self.serial { 1 } else { near_pairs.len().div_ceil(RUN) };
         runs.resize_with(runs.len().max(count), Run::default);
         let runs = &mut runs[..count];
         if let [run] = runs {
-            self.judge(near_pairs, run);
-            return self.make(&run.admitted, contacts, made);
+            self.apply_vertex_rule(near_pairs, run);
+            return self.make(&run.accepted, contacts, made);
         }
         runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            self.judge(&near_pairs[first_of_run(near_pairs, k)..first_of_run(near_pairs, k + 1)], run);
+            self.apply_vertex_rule(&near_pairs[first_of_run(near_pairs, k)..first_of_run(near_pairs, k + 1)], run);
         });
-        picks.clear();
-        runs.iter().for_each(|run| picks.extend_from_slice(&run.admitted));
-        self.make(picks, contacts, made)
+        candidates.clear();
+        runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
+        self.make(candidates, contacts, made)
     }
 
-    /// Finds the picks that the vertex rule admits of some near pairs.
-    fn judge(&self, near_pairs: &[NearPair], run: &mut Run) {
-        let Run { admitted, sides } = run;
-        admitted.clear();
+    /// Finds the candidates that the vertex rule accepts of some near pairs.
+    fn apply_vertex_rule(&self, near_pairs: &[NearPair], run: &mut Run) {
+        let Run { accepted, sides } = run;
+        accepted.clear();
         for group in near_pairs.chunk_by(|a, b| a.node == b.node) {
             let node = group[0].node as usize;
-            sides.resize(sides.len().max(group.len()), Pick::default());
-            let picks = self.pick_edges(node, group, sides);
+            sides.resize(sides.len().max(group.len()), ContactCandidate::default());
+            let candidates = self.nearest_edges(node, group, sides);
             let mut contested = false;
-            for pick in picks.iter_mut().filter(|pick| pick.admitted) {
-                let overlap = self.overlap_at_ends(node, pick).filter(|_| !self.is_false_sight(node, pick));
-                pick.admitted = overlap.is_some();
-                pick.overlap = overlap.unwrap_or_default();
-                contested |= pick.admitted & !pick.is_held & (pick.gap < -TIE_TOLERANCE * self.size);
+            for candidate in candidates.iter_mut().filter(|candidate| candidate.accepted) {
+                let overlap = self.overlap_at_ends(node, candidate).filter(|_| !self.is_false_sight(node, candidate));
+                candidate.accepted = overlap.is_some();
+                candidate.overlap = overlap.unwrap_or_default();
+                contested |= candidate.accepted & !candidate.is_held & (candidate.gap < -TIE_TOLERANCE * self.size);
             }
-            // Those that are not admitted matter only where a deep one without force is.
-            let count = if contested { picks.len() } else { keep_admitted(picks) };
-            self.choose_sides(&mut picks[..count]);
-            admitted.extend(picks[..count].iter().filter(|p| p.admitted));
+            // Those that are not accepted matter only where a deep one without force is.
+            let count = if contested { candidates.len() } else { keep_accepted(candidates) };
+            self.choose_sides(&mut candidates[..count]);
+            accepted.extend(candidates[..count].iter().filter(|p| p.accepted));
         }
     }
 
     /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; there is
     /// place for as many as there are near pairs.
-    fn pick_edges<'p>(&self, node: usize, group: &[NearPair], picks: &'p mut [Pick]) -> &'p mut [Pick] {
+    fn nearest_edges<'p>(
+        &self,
+        node: usize,
+        group: &[NearPair],
+        candidates: &'p mut [ContactCandidate],
+    ) -> &'p mut [ContactCandidate] {
         let mut count = 0;
-        let mut known = self.remembered.of_node(node);
+        let mut known = self.cache.of_node(node);
         for edges in group.chunk_by(|a, b| a.side == b.side) {
             while !known.is_empty() && self.history[known.start].side < edges[0].side {
                 known.start += 1;
             }
             let held = !known.is_empty() && self.history[known.start].side == edges[0].side;
             // Whether it counts is seldom the same twice: no branch depends on it.
-            let is_over = self.pick(node, edges, held.then_some(known.start as u32), &mut picks[count]);
+            let is_over = self.candidate(node, edges, held.then_some(known.start as u32), &mut candidates[count]);
             count += usize::from(is_over);
         }
-        &mut picks[..count]
+        &mut candidates[..count]
     }
 
-    /// Fills the pick of one side; returns whether the node is over that side.
+    /// Fills the candidate of one side; returns whether the node is over that side.
     #[inline(always)]
-    fn pick(&self, node: usize, edges: &[NearPair], held: Option<u32>, pick: &mut Pick) -> bool {
+    fn candidate(&self, node: usize, edges: &[NearPair], held: Option<u32>, candidate: &mut ContactCandidate) -> bool {
         let (edge, over) = self.nearest(self.node_place(node), edges);
         let Over { along, gap, beyond } = over;
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
         let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
         let NearPair { node: own, side, .. } = edges[0];
-        *pick = Pick {
+        *candidate = ContactCandidate {
             node: own,
             side,
             edge,
@@ -283,11 +288,11 @@ impl Narrow<'_> {
             held,
             is_held,
             overlap: [f64::INFINITY; 2],
-            admitted: false,
+            accepted: false,
         };
         let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
         let near = bonded | (gap - known.map_or(0.0, |h| h.rest - h.offset) < self.reach);
-        pick.admitted = near & self.enters(node, pick);
+        candidate.accepted = near & self.enters(node, candidate);
         beyond <= self.rule.wedge_ratio * gap.abs() + self.rule.held_beyond * self.size
     }
 
@@ -300,21 +305,21 @@ impl Narrow<'_> {
 
     /// Whether it is a first sight that cannot be a contact: deep and not of the nearest side of the rock that the node
     /// is in, or from outside the rock past a side that does not meet this one, or deep within one block.
-    fn is_false_sight(&self, node: usize, pick: &Pick) -> bool {
+    fn is_false_sight(&self, node: usize, candidate: &ContactCandidate) -> bool {
         let tie = TIE_TOLERANCE * self.size;
-        if pick.held.is_some() || pick.gap >= -tie {
+        if candidate.held.is_some() || candidate.gap >= -tie {
             return false;
         }
         let boundary = self.boundary;
-        let is_deep = self.is_deep(node, pick, pick.gap);
-        if boundary.block[boundary.node_point[node] as usize] == boundary.block[pick.edge as usize] {
+        let is_deep = self.is_deep(node, candidate, candidate.gap);
+        if boundary.block[boundary.node_point[node] as usize] == boundary.block[candidate.edge as usize] {
             return is_deep;
         }
-        let (depth, nearest) = self.depth_in_rock(node, pick.edge);
+        let (depth, nearest) = self.depth_in_rock(node, candidate.edge);
         if is_deep {
-            return -pick.gap > depth + tie;
+            return -candidate.gap > depth + tie;
         }
-        let meets = nearest == pick.side || self.end_between(pick.side, nearest).is_some();
+        let meets = nearest == candidate.side || self.end_between(candidate.side, nearest).is_some();
         depth <= tie && !meets
     }
 
@@ -344,10 +349,10 @@ impl Narrow<'_> {
         (if is_inside { nearest.0 } else { 0.0 }, self.boundary.side[nearest.1 as usize])
     }
 
-    /// Whether a gap (m) of a pick is too deep for what has come in within a step.
-    fn is_deep(&self, node: usize, pick: &Pick, gap: f64) -> bool {
+    /// Whether a gap (m) of a candidate is too deep for what has come in within a step.
+    fn is_deep(&self, node: usize, candidate: &ContactCandidate, gap: f64) -> bool {
         let Boundary { block, block_thickness, node_point, .. } = self.boundary;
-        let blocks = [node_point[node], pick.edge].map(|point| block[point as usize] as usize);
+        let blocks = [node_point[node], candidate.edge].map(|point| block[point as usize] as usize);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
         -gap > (self.rule.deep * self.size).min(self.rule.deep_share * thin)
     }
@@ -358,17 +363,17 @@ impl Narrow<'_> {
     }
 
     /// Distance (m) beyond a corner that counts as the corner.
-    fn corner_tolerance(&self, pick: &Pick) -> f64 {
-        self.size * if pick.is_held { self.rule.held_beyond } else { CORNER_TOLERANCE }
+    fn corner_tolerance(&self, candidate: &ContactCandidate) -> f64 {
+        self.size * if candidate.is_held { self.rule.held_beyond } else { CORNER_TOLERANCE }
     }
 }
 
-/// Moves those that are admitted to the front, in their order; returns how many they are.
-fn keep_admitted(picks: &mut [Pick]) -> usize {
+/// Moves those that are accepted to the front, in their order; returns how many they are.
+fn keep_accepted(candidates: &mut [ContactCandidate]) -> usize {
     let mut kept = 0;
-    for k in 0..picks.len() {
-        if picks[k].admitted {
-            picks[kept] = picks[k];
+    for k in 0..candidates.len() {
+        if candidates[k].accepted {
+            candidates[kept] = candidates[k];
             kept += 1;
         }
     }

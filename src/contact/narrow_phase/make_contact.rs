@@ -1,4 +1,4 @@
-//! Geometry, law, stiffness and history of an admitted contact.
+//! Geometry, law, stiffness and history of an accepted contact.
 
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
@@ -7,13 +7,13 @@ use crate::contact::{Closure, ContactHistory, ContactState, Pair, Spring, Vertex
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::length::Tributary;
-use super::{Approach, CORNER_TOLERANCE, GRAIN, Narrow, Pick, right_of};
+use super::tributary_length::Tributary;
+use super::{Approach, CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase, right_of};
 
-/// Contacts are made of what was admitted: compiled for every kind of lanes.
+/// Contacts are made of what was accepted: compiled for every kind of lanes.
 struct Make<'a> {
-    narrow: &'a Narrow<'a>,
-    picks: &'a [Pick],
+    narrow: &'a NarrowPhase<'a>,
+    candidates: &'a [ContactCandidate],
     contacts: &'a mut [VertexEdge],
 }
 
@@ -22,50 +22,50 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        for (contact, pick) in self.contacts.iter_mut().zip(self.picks) {
-            self.narrow.make_one(pick, contact);
+        for (contact, candidate) in self.contacts.iter_mut().zip(self.candidates) {
+            self.narrow.make_one(candidate, contact);
         }
     }
 }
 
-impl Narrow<'_> {
-    /// Makes the contacts of some picks in place, from the contact `made` on; returns where they end.
-    pub(super) fn make(&self, picks: &[Pick], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
-        let end = made + picks.len();
+impl NarrowPhase<'_> {
+    /// Makes the contacts of some candidates in place, from the contact `made` on; returns where they end.
+    pub(super) fn make(&self, candidates: &[ContactCandidate], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
+        let end = made + candidates.len();
         contacts.resize(contacts.len().max(end), VertexEdge::default());
         let contacts = &mut contacts[made..end];
-        if self.serial || picks.len() <= GRAIN {
-            dispatch(Make { narrow: self, picks, contacts });
+        if self.serial || candidates.len() <= GRAIN {
+            dispatch(Make { narrow: self, candidates, contacts });
         } else {
-            let parts = contacts.par_chunks_mut(GRAIN).zip(picks.par_chunks(GRAIN));
-            parts.for_each(|(contacts, picks)| dispatch(Make { narrow: self, picks, contacts }));
+            let parts = contacts.par_chunks_mut(GRAIN).zip(candidates.par_chunks(GRAIN));
+            parts.for_each(|(contacts, candidates)| dispatch(Make { narrow: self, candidates, contacts }));
         }
         end
     }
 
     #[inline(always)]
-    fn make_one(&self, pick: &Pick, contact: &mut VertexEdge) {
-        let (boundary, node) = (self.boundary, pick.node as usize);
-        let (point, edge) = (boundary.node_point[node] as usize, pick.edge as usize);
+    fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
+        let (boundary, node) = (self.boundary, candidate.node as usize);
+        let (point, edge) = (boundary.node_point[node] as usize, candidate.edge as usize);
         let p = self.place[point];
-        let normal = right_of(pick.tangent);
-        let covers = [boundary.covers[point], self.covers_under(pick)];
+        let normal = right_of(candidate.tangent);
+        let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b as usize].centre);
-        let Tributary { length, penalty, share } = self.tributary(node, pick);
+        let Tributary { length, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law as usize].stiffness(length, penalty);
         let closure_max = self.laws[law as usize].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
-        let history = match pick.held {
+        let history = match candidate.held {
             Some(known) => self.history[known as usize],
-            None => self.first_sight(node, pick, length, closure, stiffness[1], normal),
+            None => self.first_sight(node, candidate, length, closure, stiffness[1], normal),
         };
-        let history = ContactHistory { edge: pick.edge, share, ..history };
-        let gap = pick.gap + history.offset;
+        let history = ContactHistory { edge: candidate.edge, share, ..history };
+        let gap = candidate.gap + history.offset;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
-        let compliance = pair.weigh(self.metric, [normal, pick.tangent]);
+        let compliance = pair.weigh(self.metric, [normal, candidate.tangent]);
         if self.laws[law as usize].penalty[0] {
             stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
         }
@@ -83,7 +83,7 @@ impl Narrow<'_> {
             length,
             law,
             torn: false,
-            fresh: pick.held.is_none(),
+            fresh: candidate.held.is_none(),
         };
         if let Some(approach) = &self.approach {
             self.answer(contact, compliance, approach);
@@ -132,11 +132,11 @@ impl Narrow<'_> {
     /// Covers that carry the place on an edge under a node: at a point of the boundary those of the point, since there
     /// round-off decides which of two edges is the nearer.
     #[inline(always)]
-    fn covers_under(&self, pick: &Pick) -> [u32; 3] {
-        let (boundary, edge, band) = (self.boundary, pick.edge as usize, CORNER_TOLERANCE * self.size);
-        if pick.along.abs() < band {
+    fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
+        let (boundary, edge, band) = (self.boundary, candidate.edge as usize, CORNER_TOLERANCE * self.size);
+        if candidate.along.abs() < band {
             boundary.covers[edge]
-        } else if (pick.length - pick.along).abs() < band {
+        } else if (candidate.length - candidate.along).abs() < band {
             boundary.covers[boundary.after(edge)]
         } else {
             boundary.edge_covers[edge]
@@ -166,7 +166,7 @@ impl Narrow<'_> {
     fn first_sight(
         &self,
         node: usize,
-        pick: &Pick,
+        candidate: &ContactCandidate,
         length: f64,
         closure: Closure,
         shear_stiffness: f64,
@@ -174,8 +174,8 @@ impl Narrow<'_> {
     ) -> ContactHistory {
         let mut history = ContactHistory {
             node: node as u32,
-            side: pick.side,
-            edge: pick.edge,
+            side: candidate.side,
+            edge: candidate.edge,
             normal_force: 0.0,
             shear_force: 0.0,
             trend: [0.0; 2],
@@ -187,15 +187,15 @@ impl Narrow<'_> {
             state: ContactState::Open,
             intact: self.first,
         };
-        if self.is_deep(node, pick, pick.gap) {
-            history.offset = -pick.gap;
+        if self.is_deep(node, candidate, candidate.gap) {
+            history.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
             let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);
-            history.shear_force = -traction.dot(&pick.tangent);
+            history.shear_force = -traction.dot(&candidate.tangent);
             history.sheared = history.shear_force / shear_stiffness;
             history.state = ContactState::Lock;
         }
