@@ -7,9 +7,9 @@ mod broad_phase;
 mod law;
 mod narrow_phase;
 mod pair;
+mod solver;
 mod spring;
 mod support;
-mod sweep;
 mod vertex_edge;
 
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
@@ -20,7 +20,7 @@ pub use narrow_phase::{
     AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, PenetratingContacts, entrance_edges,
 };
 pub use pair::Pair;
-pub use spring::{Answer, Spring};
+pub use solver::{BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
+pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
-pub use sweep::{BlockPush, OpenClose, Others, SweepOptions, SweepReport};
 pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

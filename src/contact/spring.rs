@@ -6,7 +6,7 @@ const CENTRED: f64 = 0.25;
 /// What a spring asks for: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all impulses so far.
 /// Of a linear spring it is the force times 1 + `kept`, of a curved one the closure (m) that the force follows from.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Answer<T = f64> {
+pub struct SoftSpring<T = f64> {
     /// Force (N/m), or closure (m).
     pub rest: T,
     /// The same per velocity (N·s/m², or s).
@@ -50,17 +50,17 @@ impl Spring {
 
     /// The answer of a linear spring that bears `stored` (N/m) at the step's start.
     #[inline(always)]
-    pub fn linear(&self, stored: f64) -> Answer {
+    pub fn linear(&self, stored: f64) -> SoftSpring {
         let a = self.stiffness * self.forward * self.dt;
         let aw = a * self.compliance * self.kick;
-        Answer { rest: stored - self.stiffness * self.lag - a * self.approach, rate: a, kept: aw }
+        SoftSpring { rest: stored - self.stiffness * self.lag - a * self.approach, rate: a, kept: aw }
     }
 
     /// The answer of a curved spring that is closed by `closure` (m) at the step's start.
     #[inline(always)]
-    pub fn curved(&self, closure: f64) -> Answer {
+    pub fn curved(&self, closure: f64) -> SoftSpring {
         let reach = self.forward * self.dt;
         let rest = closure - self.lag - reach * self.approach;
-        Answer { rest, rate: reach, kept: reach * self.compliance * self.kick }
+        SoftSpring { rest, rate: reach, kept: reach * self.compliance * self.kick }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Answer, Closure, Limits, Pair};
+use super::{Closure, Limits, Pair, SoftSpring};
 
 /// What a contact does at the end of a step.
 #[doc(alias = "sliding")]
@@ -58,7 +58,7 @@ pub struct VertexEdge {
     /// Outward unit normal of the edge.
     pub normal: Vector,
     /// How the springs normal and shear answer in an explicit step.
-    pub answers: [Answer; 2],
+    pub answers: [SoftSpring; 2],
     /// Forces (N/m), normal and shear, that an explicit step starts from.
     pub expected: [f64; 2],
     /// Limits of the joint law for this length.

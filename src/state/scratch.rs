@@ -1,7 +1,7 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockPush, BoltRow, ContactCache, Frames, OpenClose, PenetratingContacts, SearchGrid, SupportRow,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, OpenClose, PenetratingContacts, SearchGrid, SupportRow,
     VertexEdge,
 };
 use crate::geometry::{Point, Vector};
@@ -64,7 +64,7 @@ pub struct Scratch {
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.
-    pub push: Vec<BlockPush>,
+    pub push: Vec<BlockImpulse>,
     /// Law of each joint trace after switches.
     pub trace_law: Vec<u32>,
     /// Yield surface of each rock in this step; none for one that never yields.

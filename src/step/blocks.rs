@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 
-use crate::contact::BlockPush;
+use crate::contact::BlockImpulse;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
 use crate::mechanics::{
@@ -449,7 +449,7 @@ pub(super) struct Finish<'a> {
     pub before: &'a [Vector],
     pub motion: &'a [BlockMotion],
     pub start: &'a [BlockStart],
-    pub push: &'a [BlockPush],
+    pub push: &'a [BlockImpulse],
     /// Velocity increments of covers by contacts and supports (m/s).
     pub increment: &'a [Vector],
     /// Damping of each block.
@@ -529,7 +529,7 @@ impl Finish<'_> {
     #[inline(always)]
     fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2], f64) {
         let (metric, push, from) = (self.metric, &self.push[block], &self.start[block].from);
-        let is_pushed = *push != BlockPush::default() && metric.is_free(block);
+        let is_pushed = *push != BlockImpulse::default() && metric.is_free(block);
         let mut common = Common::default();
         if is_pushed {
             let share = metric.inverse_total[block];

@@ -21,7 +21,7 @@ pub use prepare::{begin_stage, prepare};
 pub use report::{StepReport, block_motion, energies, momentum};
 pub(crate) use touch::CUTOFF;
 
-use crate::contact::{SweepReport, VertexEdge};
+use crate::contact::{SolverReport, VertexEdge};
 use crate::mechanics::Damping;
 use crate::state::{Scratch, Slope, State};
 
@@ -240,7 +240,7 @@ impl Step<'_> {
         }
     }
 
-    fn count(&mut self, dt: f64, swept: &SweepReport) {
+    fn count(&mut self, dt: f64, swept: &SolverReport) {
         let counters = &mut self.state.counters;
         counters.substeps += 1;
         counters.sweeps += u64::from(swept.sweeps);

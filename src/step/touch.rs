@@ -4,7 +4,9 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::contact::{self, Approach, BoltView, NarrowPhase, Others, SearchView, SweepOptions, SweepReport};
+use crate::contact::{
+    self, Approach, BoltView, NarrowPhase, OtherConstraints, SearchView, SolverOptions, SolverReport,
+};
 use crate::cover::Weights;
 use crate::geometry::Point;
 use crate::state::Scratch;
@@ -145,16 +147,16 @@ impl Step<'_> {
     }
 
     /// Open–close iteration on the predicted velocities.
-    pub(super) fn open_close(&mut self, dt: f64) -> SweepReport {
+    pub(super) fn open_close(&mut self, dt: f64) -> SolverReport {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
         let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
-        let options = SweepOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
+        let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
         let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &slope.covers.block_covers);
         open_close.arrange(&slope.boundary, near_pairs, metric, block_covers, contacts);
-        let swept = open_close.run(metric, &options, contacts, &mut Others { rows, bolts });
+        let swept = open_close.run(metric, &options, contacts, &mut OtherConstraints { rows, bolts });
         open_close.impulses(metric, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept

@@ -1,13 +1,13 @@
 //! The open–close iteration: Gauss–Seidel sweeps over contacts and supports (Eqs. 14–17).
 
-mod abreast;
-mod body;
+mod anchor;
 mod order;
-mod part;
-mod row;
+mod subdomain;
 mod support;
+mod wide_contact;
+mod wide_pairs;
 
-pub use body::BlockPush;
+pub use anchor::BlockImpulse;
 
 use enmm_lanes::LANES;
 use rayon::prelude::*;
@@ -15,11 +15,11 @@ use rayon::prelude::*;
 use crate::geometry::{NONE, Vector};
 use crate::mechanics::Metric;
 
-use self::body::{Body, Ground, Push};
-use self::order::{Sequence, SweepOrder};
-use self::part::{Part, Pass, Work};
-use self::row::{Row, RowView};
-use self::support::Bearings;
+use self::anchor::{Accumulators, Anchor, PackedImpulse};
+use self::order::{Sequence, SolverOrder};
+use self::subdomain::{PassKind, Subdomain, SubdomainPass};
+use self::support::SupportSystem;
+use self::wide_contact::{ContactView, WideContact};
 use super::{BoltRow, Boundary, NearPair, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
@@ -29,7 +29,7 @@ const LIGHT: f64 = 0.02;
 
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SweepOptions {
+pub struct SolverOptions {
     /// Step (s) over which places move.
     pub dt: f64,
     /// Time (s) over which forces act: the mean of this step and the one before it (Eq. 10).
@@ -46,10 +46,10 @@ pub struct SweepOptions {
 
 /// What the iteration did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct SweepReport {
+pub struct SolverReport {
     /// Sweeps done, those over what still moved included.
     pub sweeps: u32,
-    /// Contacts judged, summed over the sweeps.
+    /// Contacts solved, summed over the sweeps.
     pub judged: u64,
     /// Largest change of a force in the last sweep, which is one over all contacts, over the largest force.
     pub unsettled: f64,
@@ -57,15 +57,15 @@ pub struct SweepReport {
 
 /// Masses as the iteration sees them.
 #[derive(Clone, Copy)]
-struct SweepView<'a> {
+struct SolverView<'a> {
     /// Masses.
     metric: &'a Metric,
     /// 1/√m of the covers along each axis, 0 where held.
     roots: &'a [Vector],
 }
 
-/// What is judged in a step besides contacts.
-pub struct Others<'a> {
+/// What is solved in a step besides contacts.
+pub struct OtherConstraints<'a> {
     /// Supports of this step.
     pub rows: &'a mut [SupportRow],
     /// Bolts of this step.
@@ -75,15 +75,15 @@ pub struct Others<'a> {
 /// Buffers of the iteration.
 #[derive(Debug, Clone, Default)]
 pub struct OpenClose {
-    order: SweepOrder,
+    order: SolverOrder,
     sequence: Sequence,
-    rows: Vec<Row>,
-    bearings: Bearings,
-    bolts: Vec<[Body; 2]>,
+    rows: Vec<WideContact>,
+    supports: SupportSystem,
+    bolts: Vec<[Anchor; 2]>,
     /// √m times the velocity increments of the covers by their own impulses.
-    own: Vec<Vector>,
+    cover_impulse: Vec<Vector>,
     /// Impulse sums of the blocks.
-    push: Vec<Push>,
+    block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
     cuts: Vec<[u32; 2]>,
     /// 1/√m of the covers along each axis.
@@ -93,15 +93,20 @@ pub struct OpenClose {
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let Sequence { abreast, ends, first_turn, contacts, places } = &self.sequence;
-        let sequence = size_of_val(abreast.as_slice())
+        let Sequence { wide_pairs, ends, first_turn, contacts, places } = &self.sequence;
+        let sequence = size_of_val(wide_pairs.as_slice())
             + size_of_val(ends.as_slice())
             + size_of_val(first_turn.as_slice())
             + size_of_val(contacts.as_slice())
             + size_of_val(places.as_slice());
-        let own = size_of_val(self.own.as_slice()) + size_of_val(self.roots.as_slice());
-        let push = size_of_val(self.push.as_slice());
-        size_of_val(self.rows.as_slice()) + sequence + own + push + self.order.bytes() + self.bearings.bytes()
+        let cover_impulse = size_of_val(self.cover_impulse.as_slice()) + size_of_val(self.roots.as_slice());
+        let block_impulse = size_of_val(self.block_impulse.as_slice());
+        size_of_val(self.rows.as_slice())
+            + sequence
+            + cover_impulse
+            + block_impulse
+            + self.order.bytes()
+            + self.supports.bytes()
     }
 
     /// Forgets the order, and takes the masses of a stage.
@@ -109,7 +114,7 @@ impl OpenClose {
         self.order.clear();
         self.roots.clear();
         self.roots.extend(metric.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
-        self.bearings.prepare(supports, rows, &self.roots);
+        self.supports.prepare(supports, rows, &self.roots);
     }
 
     /// Makes the next step order the near pairs anew.
@@ -126,7 +131,7 @@ impl OpenClose {
         block_covers: &[u32],
         contacts: &[VertexEdge],
     ) {
-        let view = SweepView { metric, roots: &self.roots };
+        let view = SolverView { metric, roots: &self.roots };
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, &view);
             self.cuts.clear();
@@ -139,78 +144,84 @@ impl OpenClose {
     pub fn run(
         &mut self,
         metric: &Metric,
-        options: &SweepOptions,
+        options: &SolverOptions,
         contacts: &mut [VertexEdge],
-        others: &mut Others,
-    ) -> SweepReport {
+        others: &mut OtherConstraints,
+    ) -> SolverReport {
         self.begin(metric, options, others);
-        self.pass(metric, contacts, options, Work::Load);
-        for (bolt, bodies) in others.bolts.iter().zip(&self.bolts) {
-            let mut ground = whole(&mut self.own, &mut self.push);
-            push_bolt(bodies, bolt.direction * (-bolt.force * options.kick), &mut ground);
+        self.pass(metric, contacts, options, PassKind::Prepare);
+        for (bolt, anchors) in others.bolts.iter().zip(&self.bolts) {
+            let mut accumulators = all_blocks(&mut self.cover_impulse, &mut self.block_impulse);
+            apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
         let report = self.sweeps(metric, options, contacts, others);
         self.finish(contacts, options.serial);
-        self.bearings.finish(others.rows);
+        self.supports.finish(others.rows);
         report
     }
 
     /// Nothing has moved but by supports.
-    fn begin(&mut self, metric: &Metric, options: &SweepOptions, others: &Others) {
-        let view = SweepView { metric, roots: &self.roots };
-        self.rows.resize(self.sequence.first_turn.len() - 1, Row::default());
-        self.own.clear();
-        self.own.resize(self.roots.len(), Vector::zeros());
-        self.push.clear();
-        self.push.resize(metric.total.len(), Push::default());
+    fn begin(&mut self, metric: &Metric, options: &SolverOptions, others: &OtherConstraints) {
+        let view = SolverView { metric, roots: &self.roots };
+        self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
+        self.cover_impulse.clear();
+        self.cover_impulse.resize(self.roots.len(), Vector::zeros());
+        self.block_impulse.clear();
+        self.block_impulse.resize(metric.total.len(), PackedImpulse::default());
         self.bolts.clear();
-        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Body::new(&b.pair, k, &view))));
-        self.bearings.load(others.rows, options.kick, &mut self.own);
+        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, &view))));
+        self.supports.load(others.rows, options.kick, &mut self.cover_impulse);
     }
 
     /// One pass over the rows, part by part.
-    fn pass(&mut self, metric: &Metric, contacts: &[VertexEdge], options: &SweepOptions, work: Work) -> part::Swept {
-        let from = RowView {
+    fn pass(
+        &mut self,
+        metric: &Metric,
+        contacts: &[VertexEdge],
+        options: &SolverOptions,
+        kind: PassKind,
+    ) -> subdomain::SweepOutcome {
+        let from = ContactView {
             contacts,
             turns: &self.sequence.contacts,
-            view: SweepView { metric, roots: &self.roots },
+            view: SolverView { metric, roots: &self.roots },
             options,
         };
-        Part {
-            abreast: &mut self.sequence.abreast,
+        Subdomain {
+            wide_pairs: &mut self.sequence.wide_pairs,
             rows: &mut self.rows,
             first: [0; 2],
             ends: &self.sequence.ends,
             cuts: &self.cuts,
-            ground: whole(&mut self.own, &mut self.push),
+            accumulators: all_blocks(&mut self.cover_impulse, &mut self.block_impulse),
         }
-        .run(&Pass { from, first_turn: &self.sequence.first_turn, work })
+        .run(&SubdomainPass { from, first_turn: &self.sequence.first_turn, kind })
     }
 
-    /// Sweeps over all contacts until they settle; between two such sweeps only those are judged that have something to
+    /// Sweeps over all contacts until they settle; between two such sweeps only those are solved that have something to
     /// answer, until none has.
     fn sweeps(
         &mut self,
         metric: &Metric,
-        options: &SweepOptions,
+        options: &SolverOptions,
         contacts: &[VertexEdge],
-        others: &mut Others,
-    ) -> SweepReport {
-        let mut report = SweepReport::default();
+        others: &mut OtherConstraints,
+    ) -> SolverReport {
+        let mut report = SolverReport::default();
         let mut all = true;
-        let any = !(self.rows.is_empty() && self.bearings.is_empty() && self.bolts.is_empty());
+        let any = !(self.rows.is_empty() && self.supports.is_empty() && self.bolts.is_empty());
         while any && report.sweeps < options.sweeps_max {
             all |= report.sweeps + 1 == options.sweeps_max;
-            let manifolds = self.sequence.abreast.iter();
-            let largest = manifolds.map(|abreast| abreast.force).fold(f64::MIN_POSITIVE, f64::max);
-            let turns = part::ROUNDS * self.sequence.abreast.len() as u32;
+            let block_pairs = self.sequence.wide_pairs.iter();
+            let largest = block_pairs.map(|wide_pairs| wide_pairs.force).fold(f64::MIN_POSITIVE, f64::max);
+            let turns = subdomain::ROUNDS * self.sequence.wide_pairs.len() as u32;
             let turn = report.sweeps * (turns + 1) + 1;
-            let swept = self.pass(metric, contacts, options, Work::Sweep { all, floor: LIGHT * largest, turn });
-            let support_change = self.bearings.sweep(&mut self.own);
+            let outcome = self.pass(metric, contacts, options, PassKind::Sweep { all, floor: LIGHT * largest, turn });
+            let support_change = self.supports.sweep(&mut self.cover_impulse);
             let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
-            let change = swept.change.max(support_change).max(bolt_change);
+            let change = outcome.change.max(support_change).max(bolt_change);
             report.sweeps += 1;
-            report.judged += swept.judged;
+            report.judged += outcome.judged;
             if all {
                 report.unsettled = change;
             }
@@ -224,20 +235,20 @@ impl OpenClose {
 
     /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack
     /// ones.
-    fn sweep_bolts(&mut self, options: &SweepOptions, bolts: &mut [BoltRow], floor: f64, turn: u32) -> f64 {
-        let SweepOptions { dt, kick, theta, .. } = *options;
+    fn sweep_bolts(&mut self, options: &SolverOptions, bolts: &mut [BoltRow], floor: f64, turn: u32) -> f64 {
+        let SolverOptions { dt, kick, theta, .. } = *options;
         let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
         let floor = floor.max(LIGHT * largest);
         let mut change = 0.0f64;
-        let mut ground = whole(&mut self.own, &mut self.push);
-        for (bolt, bodies) in bolts.iter_mut().zip(&self.bolts) {
-            let [a, b] = [0, 1].map(|k| bodies[k].velocity(&ground));
+        let mut accumulators = all_blocks(&mut self.cover_impulse, &mut self.block_impulse);
+        for (bolt, anchors) in bolts.iter_mut().zip(&self.bolts) {
+            let [a, b] = [0, 1].map(|k| anchors[k].velocity(&accumulators));
             let force = bolt.answer(bolt.approach + (a - b).dot(&bolt.direction), dt, kick, theta);
             let step = force - bolt.force;
             if step != 0.0 {
-                push_bolt(bodies, bolt.direction * (-step * kick), &mut ground);
-                for block in bodies.iter().map(|body| body.block).filter(|&block| block != NONE) {
-                    ground.mark(block, turn);
+                apply_to_bolt(anchors, bolt.direction * (-step * kick), &mut accumulators);
+                for block in anchors.iter().map(|anchor| anchor.block).filter(|&block| block != NONE) {
+                    accumulators.mark(block, turn);
                 }
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
@@ -263,24 +274,24 @@ impl OpenClose {
     }
 
     /// Writes the velocity increments (m/s) of the covers by their own impulses, and the impulse sums of the blocks.
-    pub fn impulses(&self, metric: &Metric, increment: &mut [Vector], push: &mut [BlockPush]) {
-        for ((increment, own), root) in increment.iter_mut().zip(&self.own).zip(&self.roots) {
-            *increment = own.component_mul(root);
+    pub fn impulses(&self, metric: &Metric, increment: &mut [Vector], block_impulse: &mut [BlockImpulse]) {
+        for ((increment, cover_impulse), root) in increment.iter_mut().zip(&self.cover_impulse).zip(&self.roots) {
+            *increment = cover_impulse.component_mul(root);
         }
-        for ((push, sums), total) in push.iter_mut().zip(&self.push).zip(&metric.total) {
+        for ((block_impulse, sums), total) in block_impulse.iter_mut().zip(&self.block_impulse).zip(&metric.total) {
             let [impulse, weighted, moment] = *sums;
-            *push = BlockPush { impulse, weighted: weighted * *total, moment: moment.x };
+            *block_impulse = BlockImpulse { impulse, weighted: weighted * *total, moment: moment.x };
         }
     }
 }
 
-fn push_bolt(bodies: &[Body; 2], impulse: Vector, ground: &mut Ground) {
-    for (body, impulse) in bodies.iter().zip([impulse, -impulse]) {
-        body.push(impulse, ground);
+fn apply_to_bolt(anchors: &[Anchor; 2], impulse: Vector, accumulators: &mut Accumulators) {
+    for (anchor, impulse) in anchors.iter().zip([impulse, -impulse]) {
+        anchor.push(impulse, accumulators);
     }
 }
 
 /// All blocks.
-fn whole<'a>(own: &'a mut [Vector], push: &'a mut [Push]) -> Ground<'a> {
-    Ground { own, first_cover: 0, push, first_block: 0 }
+fn all_blocks<'a>(cover_impulse: &'a mut [Vector], block_impulse: &'a mut [PackedImpulse]) -> Accumulators<'a> {
+    Accumulators { cover_impulse, first_cover: 0, block_impulse, first_block: 0 }
 }

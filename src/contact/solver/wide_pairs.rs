@@ -1,4 +1,4 @@
-//! Eight manifolds of one colour that are judged abreast: what their blocks have in common, kept in registers.
+//! Eight block pairs of one colour that are solved side by side: what their blocks have in common, kept in registers.
 
 use std::ops::Range;
 
@@ -6,29 +6,29 @@ use enmm_lanes::{First, LANES, Lanes, Places, Values};
 
 use crate::geometry::NONE;
 
-use super::SweepView;
-use super::body::{Ground, common_share};
-use super::row::{Eight, Row, RowView};
+use super::SolverView;
+use super::anchor::{Accumulators, common_share};
+use super::wide_contact::{ContactView, F64x8, WideContact};
 
 /// Change of a force, over what counts as settled, from which its bodies have moved.
 const MOVES: f64 = 0.3;
 
-/// Up to eight manifolds; lanes beyond them repeat the first one without taking part. Numbers begin at lines of the
+/// Up to eight block pairs; lanes beyond them repeat the first one without taking part. Numbers begin at lines of the
 /// cache.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct Abreast {
+pub struct WidePairs {
     /// (1 + S/M)/M (m/kg), C, and 1 for blocks that keep impulses; all 0 for others.
-    common: [Eight; 2],
-    spin: [Eight; 2],
-    unit: [Eight; 2],
+    common: [F64x8; 2],
+    spin: [F64x8; 2],
+    unit: [F64x8; 2],
     /// Turn of the last move that each has answered.
-    answered: Eight,
-    /// The same is `share`·turn + `shift` when it has been judged: a single contact has answered what it did itself,
-    /// manifolds without a free block have always something to answer, lanes without a manifold never.
-    share: Eight,
-    shift: Eight,
-    /// Both blocks of each manifold that keep its impulses, a free one in the place of a held one.
+    answered: F64x8,
+    /// The same is `share`·turn + `shift` when it has been solved: a single contact has answered what it did itself,
+    /// block pairs without a free block have always something to answer, lanes without a block pair never.
+    share: F64x8,
+    shift: F64x8,
+    /// Both blocks of each block pair that keep its impulses, a free one in the place of a held one.
     blocks: [[u32; LANES]; 2],
     /// Block of the first points of its contacts.
     first_block: [u32; LANES],
@@ -36,7 +36,7 @@ pub struct Abreast {
     sums: [Places; 2],
     /// First row.
     pub first_row: u32,
-    /// Number of rows, the contacts of the longest manifold, and of those with more than one contact.
+    /// Number of rows, the contacts of the longest block pair, and of those with more than one contact.
     pub rows: u32,
     wide: u32,
     /// Number of contacts.
@@ -47,15 +47,15 @@ pub struct Abreast {
 
 /// By what changes are measured, and when.
 #[derive(Debug, Clone, Copy)]
-pub struct Measure {
+pub struct ChangeMeasure {
     /// Force (N/m) that counts at least as the size of a force.
     pub floor: f64,
-    /// Turn of the manifolds; turns grow.
+    /// Turn of the block pairs; turns grow.
     pub turn: u32,
 }
 
-/// One block of each manifold under impulses (Eq. 17), and what it answers with.
-pub struct Side<L: Values> {
+/// One block of each block pair under impulses (Eq. 17), and what it answers with.
+pub struct WideBlock<L: Values> {
     /// P (N·s/m).
     pub impulse: [L::F; 2],
     /// Z/M (m/s).
@@ -72,12 +72,12 @@ pub struct Side<L: Values> {
     pub unit: L::F,
 }
 
-impl Abreast {
-    /// Manifolds by their blocks, a free one first when there is one, and numbers of contacts, the longest first; their
+impl WidePairs {
+    /// Block pairs by their blocks, a free one first when there is one, and numbers of contacts, the longest first; their
     /// rows begin at `first_row`.
     #[inline(always)]
-    pub fn new(first_row: u32, manifolds: impl ExactSizeIterator<Item = ([u32; 2], u32)>, view: &SweepView) -> Self {
-        let mut abreast = Self {
+    pub fn new(first_row: u32, block_pairs: impl ExactSizeIterator<Item = ([u32; 2], u32)>, view: &SolverView) -> Self {
+        let mut wide_pairs = Self {
             first_row,
             rows: 0,
             wide: 0,
@@ -93,19 +93,19 @@ impl Abreast {
             shift: [f64::INFINITY; LANES],
             force: 0.0,
         };
-        let count = manifolds.len();
-        for (lane, (blocks, contacts)) in manifolds.enumerate() {
-            abreast.take(lane, blocks, contacts, view);
+        let count = block_pairs.len();
+        for (lane, (blocks, contacts)) in block_pairs.enumerate() {
+            wide_pairs.take(lane, blocks, contacts, view);
         }
-        for blocks in &mut abreast.blocks {
+        for blocks in &mut wide_pairs.blocks {
             let first = blocks[0];
             blocks[count..].fill(first);
         }
-        abreast
+        wide_pairs
     }
 
     #[inline(always)]
-    fn take(&mut self, lane: usize, blocks: [u32; 2], contacts: u32, view: &SweepView) {
+    fn take(&mut self, lane: usize, blocks: [u32; 2], contacts: u32, view: &SolverView) {
         let [a, b] = blocks;
         let free = blocks.map(|block| view.metric.is_free(block as usize));
         self.first_block[lane] = a;
@@ -141,10 +141,10 @@ impl Abreast {
         blocks[0] != self.first_block[lane]
     }
 
-    /// Whether a block has moved since the manifolds were judged.
+    /// Whether a block has moved since the block pairs were solved.
     #[inline(always)]
-    pub fn is_due<L: Lanes>(&self, lanes: L, ground: &Ground) -> bool {
-        let moments = &ground.push.as_flattened()[2..];
+    pub fn is_due<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> bool {
+        let moments = &accumulators.block_impulse.as_flattened()[2..];
         let [a, b] = [lanes.gather_from(moments, &self.sums[0])[1], lanes.gather_from(moments, &self.sums[1])[1]];
         lanes.at_most(lanes.max(a, b), lanes.load(&self.answered)) != u8::MAX
     }
@@ -154,52 +154,52 @@ impl Abreast {
     pub fn load<L: Lanes>(
         &mut self,
         lanes: L,
-        rows: &mut [Row],
+        rows: &mut [WideContact],
         first_turn: &[u32],
-        from: &RowView,
-        ground: &mut Ground,
+        from: &ContactView,
+        accumulators: &mut Accumulators,
     ) {
         for (sums, blocks) in self.sums.iter_mut().zip(&self.blocks) {
-            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - ground.first_block)));
+            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - accumulators.first_block)));
         }
         for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
-            row.load(lanes, [ends[0], ends[1]], self, from, ground.first_cover);
+            row.load(lanes, [ends[0], ends[1]], self, from, accumulators.first_cover);
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
-        let mut all = self.begin(lanes, ground);
+        let mut all = self.begin(lanes, accumulators);
         for row in wide {
-            all.warm(lanes, row, from, ground);
+            all.warm_start(lanes, row, from, accumulators);
         }
         if !narrow.is_empty() {
             let mut first = all.first(lanes);
             for row in narrow {
-                first.warm(First, row, from, ground);
+                first.warm_start(First, row, from, accumulators);
             }
             all.rejoin(lanes, &first);
         }
-        self.leave(lanes, &all.sides, ground);
+        self.leave(lanes, &all.sides, accumulators);
         self.force = lanes.greatest(all.largest);
     }
 
-    /// Judges the manifolds row by row; returns the largest change of a force over its size.
+    /// Solves the block pairs row by row; returns the largest change of a force over its size.
     #[inline(always)]
-    pub fn judge<L: Lanes>(
+    pub fn solve<L: Lanes>(
         &mut self,
         lanes: L,
-        rows: &mut [Row],
-        from: &RowView,
-        Measure { floor, turn }: Measure,
-        ground: &mut Ground,
+        rows: &mut [WideContact],
+        from: &ContactView,
+        ChangeMeasure { floor, turn }: ChangeMeasure,
+        accumulators: &mut Accumulators,
     ) -> f64 {
         let (wide, narrow) = rows.split_at_mut(self.wide as usize);
-        let mut all = self.begin(lanes, ground);
+        let mut all = self.begin(lanes, accumulators);
         for row in wide {
-            all.judge(lanes, row, from, floor, ground);
+            all.solve(lanes, row, from, floor, accumulators);
         }
         if !narrow.is_empty() {
             let mut first = all.first(lanes);
             for row in narrow {
-                first.judge(First, row, from, floor, ground);
+                first.solve(First, row, from, floor, accumulators);
             }
             all.rejoin(lanes, &first);
         }
@@ -208,7 +208,7 @@ impl Abreast {
         for side in &mut all.sides {
             side.moved = lanes.max(moved, side.moved);
         }
-        self.leave(lanes, &all.sides, ground);
+        self.leave(lanes, &all.sides, accumulators);
         let answered = lanes.load(&self.share) * turn + lanes.load(&self.shift);
         lanes.store(answered, &mut self.answered);
         self.force = lanes.greatest(all.largest);
@@ -216,18 +216,18 @@ impl Abreast {
     }
 
     #[inline(always)]
-    fn begin<L: Lanes>(&self, lanes: L, ground: &Ground) -> Visit<L> {
-        let sides = [self.side(lanes, 0, ground), self.side(lanes, 1, ground)];
-        Visit { sides, largest: lanes.splat(0.0), change: lanes.splat(0.0) }
+    fn begin<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> PairsInProgress<L> {
+        let sides = [self.side(lanes, 0, accumulators), self.side(lanes, 1, accumulators)];
+        PairsInProgress { sides, largest: lanes.splat(0.0), change: lanes.splat(0.0) }
     }
 
     #[inline(always)]
-    fn side<L: Lanes>(&self, lanes: L, k: usize, ground: &Ground) -> Side<L> {
-        let (push, at) = (ground.push.as_flattened(), &self.sums[k]);
-        let [moment, moved] = lanes.gather_from(&push[2..], at);
-        Side {
-            impulse: lanes.gather_from(push, at),
-            weighted: lanes.gather_from(&push[1..], at),
+    fn side<L: Lanes>(&self, lanes: L, k: usize, accumulators: &Accumulators) -> WideBlock<L> {
+        let (block_impulse, at) = (accumulators.block_impulse.as_flattened(), &self.sums[k]);
+        let [moment, moved] = lanes.gather_from(&block_impulse[2..], at);
+        WideBlock {
+            impulse: lanes.gather_from(block_impulse, at),
+            weighted: lanes.gather_from(&block_impulse[1..], at),
             moment,
             moved,
             common: lanes.load(&self.common[k]),
@@ -238,50 +238,57 @@ impl Abreast {
 
     /// Leaves the sums with the blocks: the second ones first, since a first one may stand in the place of a held one.
     #[inline(always)]
-    fn leave<L: Lanes>(&self, lanes: L, sides: &[Side<L>; 2], ground: &mut Ground) {
-        let push = ground.push.as_flattened_mut();
+    fn leave<L: Lanes>(&self, lanes: L, sides: &[WideBlock<L>; 2], accumulators: &mut Accumulators) {
+        let block_impulse = accumulators.block_impulse.as_flattened_mut();
         for k in [1, 0] {
             let (side, at) = (&sides[k], &self.sums[k]);
-            lanes.scatter_to(side.impulse, push, at);
-            lanes.scatter_to(side.weighted, &mut push[1..], at);
-            lanes.scatter_to([side.moment, side.moved], &mut push[2..], at);
+            lanes.scatter_to(side.impulse, block_impulse, at);
+            lanes.scatter_to(side.weighted, &mut block_impulse[1..], at);
+            lanes.scatter_to([side.moment, side.moved], &mut block_impulse[2..], at);
         }
     }
 }
 
-/// Manifolds in hand.
-struct Visit<L: Values> {
-    sides: [Side<L>; 2],
+/// Block pairs in hand.
+struct PairsInProgress<L: Values> {
+    sides: [WideBlock<L>; 2],
     /// Largest force (N/m), and largest change of a force over its size.
     largest: L::F,
     change: L::F,
 }
 
-impl<L: Values> Visit<L> {
+impl<L: Values> PairsInProgress<L> {
     #[inline(always)]
-    fn warm(&mut self, lanes: L, row: &Row, from: &RowView, ground: &mut Ground) {
-        let force = row.warm(lanes, from.options.kick, &mut self.sides, ground.own);
+    fn warm_start(&mut self, lanes: L, row: &WideContact, from: &ContactView, accumulators: &mut Accumulators) {
+        let force = row.warm_start(lanes, from.options.kick, &mut self.sides, accumulators.cover_impulse);
         self.largest = lanes.max(force, self.largest);
     }
 
     #[inline(always)]
-    fn judge(&mut self, lanes: L, row: &mut Row, from: &RowView, floor: f64, ground: &mut Ground) {
-        let [step, force] = row.judge(lanes, from, &mut self.sides, ground.own);
+    fn solve(
+        &mut self,
+        lanes: L,
+        row: &mut WideContact,
+        from: &ContactView,
+        floor: f64,
+        accumulators: &mut Accumulators,
+    ) {
+        let [step, force] = row.solve(lanes, from, &mut self.sides, accumulators.cover_impulse);
         self.largest = lanes.max(force, self.largest);
         self.change = lanes.max(step / lanes.max(force, lanes.splat(floor)), self.change);
     }
 
     /// The first lane.
     #[inline(always)]
-    fn first(&self, lanes: L) -> Visit<First> {
+    fn first(&self, lanes: L) -> PairsInProgress<First> {
         let [a, b] = &self.sides;
         let (largest, change) = (first(lanes, self.largest), first(lanes, self.change));
-        Visit { sides: [a.first(lanes), b.first(lanes)], largest, change }
+        PairsInProgress { sides: [a.first(lanes), b.first(lanes)], largest, change }
     }
 
     /// Takes back the first lane.
     #[inline(always)]
-    fn rejoin(&mut self, lanes: L, first: &Visit<First>) {
+    fn rejoin(&mut self, lanes: L, first: &PairsInProgress<First>) {
         for (side, first) in self.sides.iter_mut().zip(&first.sides) {
             for k in 0..2 {
                 put_first(lanes, &mut side.impulse[k], first.impulse[k]);
@@ -294,11 +301,11 @@ impl<L: Values> Visit<L> {
     }
 }
 
-impl<L: Values> Side<L> {
+impl<L: Values> WideBlock<L> {
     /// The first lane.
     #[inline(always)]
-    fn first(&self, lanes: L) -> Side<First> {
-        Side {
+    fn first(&self, lanes: L) -> WideBlock<First> {
+        WideBlock {
             impulse: [first(lanes, self.impulse[0]), first(lanes, self.impulse[1])],
             weighted: [first(lanes, self.weighted[0]), first(lanes, self.weighted[1])],
             moment: first(lanes, self.moment),

@@ -1,13 +1,13 @@
-//! Contacts abreast, one of each of eight manifolds, as the iteration judges them (Eqs. 14, 15, 17).
+//! Contacts side by side, one of each of eight block pairs, as the iteration solves them (Eqs. 14, 15, 17).
 
 use enmm_lanes::{LANES, Lanes, Places, Values, prefetch};
 
-use crate::contact::{Answer, Limits, Pair, VertexEdge};
+use crate::contact::{Limits, Pair, SoftSpring, VertexEdge};
 use crate::geometry::Vector;
 
-use super::abreast::{Abreast, Side};
-use super::body::lever_and_part;
-use super::{SweepOptions, SweepView};
+use super::anchor::lever_and_share;
+use super::wide_pairs::{WideBlock, WidePairs};
+use super::{SolverOptions, SolverView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
@@ -15,18 +15,18 @@ const FAR: usize = 16_384;
 pub const AHEAD: usize = 8;
 
 /// A number of each lane.
-pub type Eight = [f64; LANES];
+pub type F64x8 = [f64; LANES];
 
 /// One material point of each contact. Numbers begin at lines of the cache.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
 struct Points {
     /// w/√m.
-    weights: [Eight; 3],
+    weights: [F64x8; 3],
     /// J90·(arm from the block's centroid) (m).
-    lever: [Eight; 2],
+    lever: [F64x8; 2],
     /// z/M (m/kg).
-    part: Eight,
+    mass_share: F64x8,
     /// Covers, from the first one of the part of the order on.
     covers: [Places; 3],
     /// Lanes, a bit each, whose covers are held along one axis alone, by axis; no weight is on what is held along both.
@@ -35,19 +35,19 @@ struct Points {
     holds: bool,
 }
 
-/// Contacts of eight manifolds. A lane without one bears nothing and repeats the covers of the first lane.
+/// Contacts of eight block pairs. A lane without one bears nothing and repeats the covers of the first lane.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
-pub struct Row {
+pub struct WideContact {
     points: [Points; 2],
-    normal: [Eight; 2],
-    answers: [Answer<Eight>; 2],
+    normal: [F64x8; 2],
+    answers: [SoftSpring<F64x8>; 2],
     /// Forces normal and shear (N/m).
-    force: [Eight; 2],
-    friction: Eight,
-    cohesion: Eight,
+    force: [F64x8; 2],
+    friction: F64x8,
+    cohesion: F64x8,
     /// Normal force (N/m) at or below which each is open.
-    open: Eight,
+    open: F64x8,
     /// First turn and the one after the last.
     turns: [u32; 2],
     /// Lanes, a bit each, that do not bear, and those that push when they are asked for a normal force.
@@ -58,17 +58,17 @@ pub struct Row {
 }
 
 /// What a row is made from.
-pub struct RowView<'a> {
+pub struct ContactView<'a> {
     /// Contacts of the step, and the one of each turn.
     pub contacts: &'a [VertexEdge],
     pub turns: &'a [u32],
     /// Masses.
-    pub view: SweepView<'a>,
+    pub view: SolverView<'a>,
     /// Choices.
-    pub options: &'a SweepOptions,
+    pub options: &'a SolverOptions,
 }
 
-impl RowView<'_> {
+impl ContactView<'_> {
     /// Asks the memory for the contacts of the turns from the first to the one after the last.
     #[inline(always)]
     fn fetch(&self, [first, end]: [usize; 2]) {
@@ -79,10 +79,17 @@ impl RowView<'_> {
     }
 }
 
-impl Row {
+impl WideContact {
     /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected.
     #[inline(always)]
-    pub fn load<L: Lanes>(&mut self, lanes: L, turns: [u32; 2], abreast: &Abreast, from: &RowView, first_cover: u32) {
+    pub fn load<L: Lanes>(
+        &mut self,
+        lanes: L,
+        turns: [u32; 2],
+        wide_pairs: &WidePairs,
+        from: &ContactView,
+        first_cover: u32,
+    ) {
         self.turns = turns;
         for points in &mut self.points {
             (points.covers, points.held, points.holds) = ([Places::default(); 3], [[0; 2]; 3], false);
@@ -93,7 +100,7 @@ impl Row {
             from.fetch(turns.map(|turn| turn as usize + AHEAD));
         }
         for (lane, &contact) in contacts.iter().enumerate() {
-            self.take(lane, &from.contacts[contact as usize], abreast, from, first_cover);
+            self.take(lane, &from.contacts[contact as usize], wide_pairs, from, first_cover);
         }
         (contacts.len()..LANES).for_each(|lane| self.leave_out(lane));
         self.divide(lanes);
@@ -119,11 +126,18 @@ impl Row {
     }
 
     #[inline(always)]
-    fn take(&mut self, lane: usize, contact: &VertexEdge, abreast: &Abreast, from: &RowView, first_cover: u32) {
+    fn take(
+        &mut self,
+        lane: usize,
+        contact: &VertexEdge,
+        wide_pairs: &WidePairs,
+        from: &ContactView,
+        first_cover: u32,
+    ) {
         for (answers, answer) in self.answers.iter_mut().zip(&contact.answers) {
             answers.take(lane, answer);
         }
-        let turned = abreast.is_turned(lane, contact.pair.blocks);
+        let turned = wide_pairs.is_turned(lane, contact.pair.blocks);
         let [first, second] = if turned { [1, 0] } else { [0, 1] };
         self.points[0].take(lane, &contact.pair, first, &from.view, first_cover);
         self.points[1].take(lane, &contact.pair, second, &from.view, first_cover);
@@ -146,7 +160,7 @@ impl Row {
     #[inline(always)]
     fn divide<L: Lanes>(&mut self, lanes: L) {
         let one = lanes.splat(1.0);
-        for Answer { rest, rate, kept } in &mut self.answers {
+        for SoftSpring { rest, rate, kept } in &mut self.answers {
             let share = one / (one + lanes.load(kept));
             lanes.store(lanes.load(rest) * share, rest);
             lanes.store(lanes.load(rate) * share, rate);
@@ -157,7 +171,7 @@ impl Row {
     /// Takes again what curved springs ask for, which is no force.
     #[cold]
     #[inline(never)]
-    fn take_curved(&mut self, from: &RowView) {
+    fn take_curved(&mut self, from: &ContactView) {
         let contacts = self.of(from.turns).iter().map(|&contact| &from.contacts[contact as usize]);
         for (lane, contact) in contacts.enumerate().filter(|(_, contact)| contact.closes_on_a_curve()) {
             self.answers[0].take(lane, &contact.answers[0]);
@@ -169,7 +183,7 @@ impl Row {
     fn leave_out(&mut self, lane: usize) {
         for k in 0..2 {
             self.points[k].leave_out(lane);
-            self.answers[k].take(lane, &Answer::default());
+            self.answers[k].take(lane, &SoftSpring::default());
             (self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0);
         }
         (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
@@ -184,7 +198,7 @@ impl Row {
         for k in 0..2 {
             a.lever[k][lane] -= std::mem::take(&mut b.lever[k][lane]);
         }
-        a.part[lane] -= std::mem::take(&mut b.part[lane]);
+        a.mass_share[lane] -= std::mem::take(&mut b.mass_share[lane]);
         for (i, j) in
             (0..9).map(|k| (k / 3, k % 3)).filter(|&(i, j)| a.covers[i].index(lane) == b.covers[j].index(lane))
         {
@@ -203,25 +217,33 @@ impl Row {
     /// Pushes with the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
     /// bear shear alone.
     #[inline(always)]
-    pub fn warm<L: Values>(&self, lanes: L, kick: f64, sides: &mut [Side<L>; 2], own: &mut [Vector]) -> L::F {
+    pub fn warm_start<L: Values>(
+        &self,
+        lanes: L,
+        kick: f64,
+        sides: &mut [WideBlock<L>; 2],
+        cover_impulse: &mut [Vector],
+    ) -> L::F {
         let force = [lanes.load(&self.force[0]), lanes.load(&self.force[1])];
         let [x, y] = [lanes.load(&self.normal[0]), lanes.load(&self.normal[1])];
         let impulse = turned(lanes, [x, y], force, kick);
-        let velocities = [self.points[0].own(lanes, own), self.points[1].own(lanes, own)];
-        self.push(lanes, impulse, &velocities, sides, own);
+        let velocities =
+            [self.points[0].cover_impulse(lanes, cover_impulse), self.points[1].cover_impulse(lanes, cover_impulse)];
+        self.push(lanes, impulse, &velocities, sides, cover_impulse);
         larger_size(lanes, force)
     }
 
-    /// Judges open, slip or lock; returns the changes of the forces and the forces (N/m), the larger of each contact's.
+    /// Solves open, slip or lock; returns the changes of the forces and the forces (N/m), the larger of each contact's.
     #[inline(always)]
-    pub fn judge<L: Values>(
+    pub fn solve<L: Values>(
         &mut self,
         lanes: L,
-        from: &RowView,
-        sides: &mut [Side<L>; 2],
-        own: &mut [Vector],
+        from: &ContactView,
+        sides: &mut [WideBlock<L>; 2],
+        cover_impulse: &mut [Vector],
     ) -> [L::F; 2] {
-        let before = [self.points[0].own(lanes, own), self.points[1].own(lanes, own)];
+        let before =
+            [self.points[0].cover_impulse(lanes, cover_impulse), self.points[1].cover_impulse(lanes, cover_impulse)];
         let a = self.points[0].velocity(lanes, &before[0], &sides[0]);
         let b = self.points[1].velocity(lanes, &before[1], &sides[1]);
         let velocity = [a[0] - b[0], a[1] - b[1]];
@@ -245,7 +267,7 @@ impl Row {
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
         let impulse = turned(lanes, [x, y], step, from.options.kick);
-        self.push(lanes, impulse, &before, sides, own);
+        self.push(lanes, impulse, &before, sides, cover_impulse);
         lanes.store(force[0], &mut self.force[0]);
         lanes.store(force[1], &mut self.force[1]);
         [larger_size(lanes, step), larger_size(lanes, force)]
@@ -259,18 +281,18 @@ impl Row {
         lanes: L,
         impulse: [L::F; 2],
         before: &[[[L::F; 2]; 3]; 2],
-        sides: &mut [Side<L>; 2],
-        own: &mut [Vector],
+        sides: &mut [WideBlock<L>; 2],
+        cover_impulse: &mut [Vector],
     ) {
         let [x, y] = impulse;
-        self.points[1].push(lanes, [-x, -y], &before[1], &mut sides[1], own);
-        self.points[0].push(lanes, impulse, &before[0], &mut sides[0], own);
+        self.points[1].push(lanes, [-x, -y], &before[1], &mut sides[1], cover_impulse);
+        self.points[0].push(lanes, impulse, &before[0], &mut sides[0], cover_impulse);
     }
 
     /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.
     #[cold]
     #[inline(never)]
-    fn follow(&self, from: &RowView, asked: &mut Eight, limits: &mut Eight) {
+    fn follow(&self, from: &ContactView, asked: &mut F64x8, limits: &mut F64x8) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
             let contact = &from.contacts[contact as usize];
             if contact.closes_on_a_curve() {
@@ -285,7 +307,7 @@ impl Row {
 
 impl Points {
     #[inline(always)]
-    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SweepView, first_cover: u32) {
+    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SolverView, first_cover: u32) {
         for (j, &cover) in pair.covers[k].iter().enumerate() {
             let root = view.roots[cover as usize];
             self.covers[j].set(lane, cover - first_cover);
@@ -296,8 +318,8 @@ impl Points {
                 self.holds = true;
             }
         }
-        let (lever, part) = lever_and_part(pair, k, view);
-        (self.lever[0][lane], self.lever[1][lane], self.part[lane]) = (lever.x, lever.y, part);
+        let (lever, mass_share) = lever_and_share(pair, k, view);
+        (self.lever[0][lane], self.lever[1][lane], self.mass_share[lane]) = (lever.x, lever.y, mass_share);
     }
 
     #[inline(always)]
@@ -306,16 +328,16 @@ impl Points {
             self.covers[k].set(lane, self.covers[k].index(0));
             self.weights[k][lane] = 0.0;
         }
-        (self.lever[0][lane], self.lever[1][lane], self.part[lane]) = (0.0, 0.0, 0.0);
+        (self.lever[0][lane], self.lever[1][lane], self.mass_share[lane]) = (0.0, 0.0, 0.0);
     }
 
     /// What their covers have of their own: nothing where they are held, whatever was pushed there.
     #[inline(always)]
-    fn own<L: Values>(&self, lanes: L, own: &[Vector]) -> [[L::F; 2]; 3] {
+    fn cover_impulse<L: Values>(&self, lanes: L, cover_impulse: &[Vector]) -> [[L::F; 2]; 3] {
         let mut found = [
-            lanes.gather_from(own, &self.covers[0]),
-            lanes.gather_from(own, &self.covers[1]),
-            lanes.gather_from(own, &self.covers[2]),
+            lanes.gather_from(cover_impulse, &self.covers[0]),
+            lanes.gather_from(cover_impulse, &self.covers[1]),
+            lanes.gather_from(cover_impulse, &self.covers[2]),
         ];
         if self.holds {
             for (found, held) in found.iter_mut().zip(&self.held) {
@@ -332,13 +354,13 @@ impl Points {
 
     /// Velocities (m/s) that all impulses so far give them.
     #[inline(always)]
-    fn velocity<L: Values>(&self, lanes: L, own: &[[L::F; 2]; 3], side: &Side<L>) -> [L::F; 2] {
+    fn velocity<L: Values>(&self, lanes: L, cover_impulse: &[[L::F; 2]; 3], side: &WideBlock<L>) -> [L::F; 2] {
         let [w, u, v] = [lanes.load(&self.weights[0]), lanes.load(&self.weights[1]), lanes.load(&self.weights[2])];
-        let share = side.common - lanes.load(&self.part);
+        let share = side.common - lanes.load(&self.mass_share);
         let turn = side.spin * side.moment;
         let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
-        let x = (w * own[0][0] + u * own[1][0]) + v * own[2][0];
-        let y = (w * own[0][1] + u * own[1][1]) + v * own[2][1];
+        let x = (w * cover_impulse[0][0] + u * cover_impulse[1][0]) + v * cover_impulse[2][0];
+        let y = (w * cover_impulse[0][1] + u * cover_impulse[1][1]) + v * cover_impulse[2][1];
         let common = [
             side.impulse[0] * share - side.unit * side.weighted[0] + lever[0] * turn,
             side.impulse[1] * share - side.unit * side.weighted[1] + lever[1] * turn,
@@ -353,24 +375,24 @@ impl Points {
         lanes: L,
         [x, y]: [L::F; 2],
         before: &[[L::F; 2]; 3],
-        side: &mut Side<L>,
-        own: &mut [Vector],
+        side: &mut WideBlock<L>,
+        cover_impulse: &mut [Vector],
     ) {
         for (k, before) in before.iter().enumerate() {
             let w = lanes.load(&self.weights[k]);
-            lanes.scatter_to([before[0] + w * x, before[1] + w * y], own, &self.covers[k]);
+            lanes.scatter_to([before[0] + w * x, before[1] + w * y], cover_impulse, &self.covers[k]);
         }
-        let part = lanes.load(&self.part);
+        let mass_share = lanes.load(&self.mass_share);
         let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
         side.impulse = [side.impulse[0] + side.unit * x, side.impulse[1] + side.unit * y];
-        side.weighted = [side.weighted[0] + part * x, side.weighted[1] + part * y];
+        side.weighted = [side.weighted[0] + mass_share * x, side.weighted[1] + mass_share * y];
         side.moment = side.moment + (lever[0] * x + lever[1] * y);
     }
 }
 
-impl Answer<Eight> {
+impl SoftSpring<F64x8> {
     #[inline(always)]
-    fn take(&mut self, lane: usize, answer: &Answer) {
+    fn take(&mut self, lane: usize, answer: &SoftSpring) {
         (self.rest[lane], self.rate[lane], self.kept[lane]) = (answer.rest, answer.rate, answer.kept);
     }
 
@@ -384,7 +406,7 @@ impl Answer<Eight> {
 /// Leaves nothing in lanes with a bit.
 #[cold]
 #[inline(never)]
-fn hold(values: &mut Eight, held: u8) {
+fn hold(values: &mut F64x8, held: u8) {
     for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
         values[lane] = 0.0;
     }

@@ -1,9 +1,9 @@
-//! The order in which contacts are judged: a function of the near pairs, hence of the state, never of the threads.
+//! The order in which contacts are solved: a function of the near pairs, hence of the state, never of the threads.
 //!
-//! All contacts of two blocks are a manifold. Blocks are cut into runs of like work, which are the leaves of a binary
-//! tree. What lies within a run is judged before what lies between two runs, so that both halves of any part of the
-//! tree can be swept at once. Within a part manifolds come by colour: no two of a colour share a free block, or a cover
-//! of a held one, so that eight of them are judged abreast.
+//! All contacts of two blocks are a block pair. Blocks are cut into runs of like work, which are the leaves of a binary
+//! tree. What lies within a run is solved before what lies between two runs, so that both halves of any part of the
+//! tree can be swept at once. Within a part block pairs come by colour: no two of a colour share a free block, or a cover
+//! of a held one, so that eight of them are solved side by side.
 
 use std::cmp::Reverse;
 
@@ -11,49 +11,49 @@ use enmm_lanes::{LANES, prefetch};
 
 use crate::contact::{Boundary, NearPair, VertexEdge};
 
-use super::SweepView;
-use super::abreast::Abreast;
-use super::row::AHEAD;
+use super::SolverView;
+use super::wide_contact::AHEAD;
+use super::wide_pairs::WidePairs;
 
 /// Near pairs of nodes and sides above which a run of blocks is cut.
 const LEAF: usize = 4096;
 /// Most runs of blocks.
 const LEAVES_MAX: usize = 4096;
-/// The last colour: its manifolds may share what they push, and are judged one by one.
-const SHARED: u32 = u64::BITS - 1;
+/// The last colour: its block pairs may share what they push, and are solved one by one.
+const OVERFLOW: u32 = u64::BITS - 1;
 
-/// In what manifold every near pair of a node and a side is.
+/// In what block pair every near pair of a node and a side is.
 #[derive(Debug, Clone, Default)]
-pub struct SweepOrder {
-    /// Near nodes and sides, sorted, the first near pair of each, and its manifold.
+pub struct SolverOrder {
+    /// Near nodes and sides, sorted, the first near pair of each, and its block pair.
     keys: Vec<u64>,
     first_near_pair: Vec<u32>,
-    manifold: Vec<u32>,
-    /// Manifolds in the order in which they are judged.
-    manifolds: Vec<Manifold>,
+    block_pair: Vec<u32>,
+    /// Block pairs in the order in which they are solved.
+    block_pairs: Vec<BlockPair>,
     /// First block of each run of blocks, and the number of blocks.
     leaf_block: Vec<u32>,
     entries: Vec<Entry>,
     leaf: Vec<u32>,
     colours: Colours,
-    /// Of a step: the number of contacts of each manifold, then the place of its next.
+    /// Of a step: the number of contacts of each block pair, then the place of its next.
     count: Vec<u32>,
-    /// Manifolds of a colour that have contacts.
+    /// Block pairs of a colour that have contacts.
     touching: Vec<u32>,
 }
 
 /// A near node and side, by the blocks that they belong to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
-    part: u32,
+    subdomain: u32,
     blocks: [u32; 2],
     key: u32,
 }
 
 /// All near nodes and sides of two blocks, a free one first when there is one: a range of the entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Manifold {
-    part: u32,
+struct BlockPair {
+    subdomain: u32,
     colour: u32,
     first: u32,
     end: u32,
@@ -65,19 +65,19 @@ struct Manifold {
 struct Colours {
     of_block: Vec<u64>,
     of_cover: Vec<u64>,
-    /// Covers of held blocks of the manifold in hand, and all that have a colour.
+    /// Covers of held blocks of the block pair in hand, and all that have a colour.
     covers: Vec<u32>,
     seen: Vec<u32>,
 }
 
-/// Manifolds of a step in the order in which they are judged.
+/// Block pairs of a step in the order in which they are solved.
 #[derive(Debug, Clone, Default)]
 pub struct Sequence {
-    /// Eight abreast.
-    pub abreast: Vec<Abreast>,
+    /// Eight side by side.
+    pub wide_pairs: Vec<WidePairs>,
     /// The number of them up to the end of each part.
     pub ends: Vec<u32>,
-    /// First turn of each row, and the number of turns. A row has as many contacts as there are manifolds with so many,
+    /// First turn of each row, and the number of turns. A row has as many contacts as there are block pairs with so many,
     /// in the first lanes.
     pub first_turn: Vec<u32>,
     /// Contact of each turn.
@@ -86,12 +86,12 @@ pub struct Sequence {
     pub places: Vec<u32>,
 }
 
-impl SweepOrder {
+impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { first_near_pair, manifold, leaf, count, touching, leaf_block, .. } = self;
-        let lists = [first_near_pair, manifold, leaf, count, touching, leaf_block];
-        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.manifolds.as_slice());
+        let Self { first_near_pair, block_pair, leaf, count, touching, leaf_block, .. } = self;
+        let lists = [first_near_pair, block_pair, leaf, count, touching, leaf_block];
+        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.block_pairs.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
         order + lists + colours + size_of_val(self.entries.as_slice())
@@ -113,37 +113,41 @@ impl SweepOrder {
     }
 
     /// Orders near pairs, sorted by node and side.
-    pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SweepView) {
+    pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SolverView) {
         self.keys.clear();
         self.first_near_pair.clear();
         self.entries.clear();
         let mut first = 0;
         for run in near_pairs.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
             let point = boundary.node_point[run[0].node as usize] as usize;
-            let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
+            let (cover_impulse, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
             self.first_near_pair.push(first);
-            self.entries.push(Entry { part: 0, blocks: [own.min(other), own.max(other)], key });
+            self.entries.push(Entry {
+                subdomain: 0,
+                blocks: [cover_impulse.min(other), cover_impulse.max(other)],
+                key,
+            });
             first += run.len() as u32;
         }
         self.first_near_pair.push(first);
         self.cut(view);
         for entry in &mut self.entries {
-            entry.part = part_of(entry.blocks.map(|b| self.leaf[b as usize]));
+            entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b as usize]));
         }
         self.entries.sort_unstable();
         self.colour(boundary, near_pairs, view);
-        self.manifold.resize(self.keys.len(), 0);
-        for (index, manifold) in (0u32..).zip(&self.manifolds) {
-            for entry in &self.entries[manifold.first as usize..manifold.end as usize] {
-                self.manifold[entry.key as usize] = index;
+        self.block_pair.resize(self.keys.len(), 0);
+        for (index, block_pair) in (0u32..).zip(&self.block_pairs) {
+            for entry in &self.entries[block_pair.first as usize..block_pair.end as usize] {
+                self.block_pair[entry.key as usize] = index;
             }
         }
     }
 
     /// Cuts the blocks into runs of like work.
-    fn cut(&mut self, view: &SweepView) {
+    fn cut(&mut self, view: &SolverView) {
         let metric = view.metric;
         let blocks = metric.total.len();
         self.leaf.clear();
@@ -157,24 +161,24 @@ impl SweepOrder {
         let mut before = 0;
         self.leaf_block.clear();
         for (block, leaf) in self.leaf.iter_mut().enumerate() {
-            let work = *leaf as usize;
+            let kind = *leaf as usize;
             *leaf = (before * leaves / total).min(leaves - 1) as u32;
             self.leaf_block.resize((*leaf as usize + 1).max(self.leaf_block.len()), block as u32);
-            before += work;
+            before += kind;
         }
         self.leaf_block.resize(leaves + 1, blocks as u32);
     }
 
-    /// Gives every manifold the first colour that no earlier one of its part has given to what they both push.
-    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SweepView) {
-        self.manifolds.clear();
+    /// Gives every block pair the first colour that no earlier one of its part has given to what they both push.
+    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SolverView) {
+        self.block_pairs.clear();
         self.colours.begin(view);
-        let (mut first, mut part_first) = (0, 0);
-        for run in self.entries.chunk_by(|a, b| (a.part, a.blocks) == (b.part, b.blocks)) {
-            let part = run[0].part;
-            if self.manifolds.last().is_some_and(|m| m.part != part) {
-                self.colours.forget(&self.entries[part_first as usize..first as usize]);
-                part_first = first;
+        let (mut first, mut subdomain_first) = (0, 0);
+        for run in self.entries.chunk_by(|a, b| (a.subdomain, a.blocks) == (b.subdomain, b.blocks)) {
+            let subdomain = run[0].subdomain;
+            if self.block_pairs.last().is_some_and(|m| m.subdomain != subdomain) {
+                self.colours.forget(&self.entries[subdomain_first as usize..first as usize]);
+                subdomain_first = first;
             }
             let [a, b] = run[0].blocks;
             let blocks = if view.metric.is_free(a as usize) { [a, b] } else { [b, a] };
@@ -185,42 +189,42 @@ impl SweepOrder {
             }
             let colour = self.colours.give(blocks, view);
             let end = first + run.len() as u32;
-            self.manifolds.push(Manifold { part, colour, first, end, blocks });
+            self.block_pairs.push(BlockPair { subdomain, colour, first, end, blocks });
             first = end;
         }
-        self.manifolds.sort_unstable();
+        self.block_pairs.sort_unstable();
     }
 
-    /// Puts the manifolds and the contacts of a step in the order of their turns.
-    pub fn arrange(&mut self, touching: &[VertexEdge], view: &SweepView, sequence: &mut Sequence) {
-        let Sequence { abreast, ends, first_turn, contacts, places } = sequence;
+    /// Puts the block pairs and the contacts of a step in the order of their turns.
+    pub fn arrange(&mut self, touching: &[VertexEdge], view: &SolverView, sequence: &mut Sequence) {
+        let Sequence { wide_pairs, ends, first_turn, contacts, places } = sequence;
         self.count_contacts(touching, places);
-        abreast.clear();
+        wide_pairs.clear();
         ends.clear();
         first_turn.clear();
         let (mut first, mut turns) = (0, 0);
-        for class in self.manifolds.chunk_by(|a, b| (a.part, a.colour) == (b.part, b.colour)) {
-            ends.resize(class[0].part as usize, abreast.len() as u32);
+        for class in self.block_pairs.chunk_by(|a, b| (a.subdomain, a.colour) == (b.subdomain, b.colour)) {
+            ends.resize(class[0].subdomain as usize, wide_pairs.len() as u32);
             let all = first..first + class.len() as u32;
             first = all.end;
             self.touching.clear();
             self.touching.extend(all.filter(|&m| self.count[m as usize] > 0));
             self.touching.sort_unstable_by_key(|&m| (Reverse(self.count[m as usize]), m));
-            for some in self.touching.chunks(if class[0].colour == SHARED { 1 } else { LANES }) {
+            for some in self.touching.chunks(if class[0].colour == OVERFLOW { 1 } else { LANES }) {
                 let first_row = first_turn.len() as u32;
                 let counts = some.iter().map(|&m| self.count[m as usize]);
                 for row in 0..self.count[some[0] as usize] {
                     first_turn.push(turns);
                     turns += counts.clone().filter(|&count| count > row).count() as u32;
                 }
-                let manifolds = some.iter().map(|&m| (self.manifolds[m as usize].blocks, self.count[m as usize]));
-                abreast.push(Abreast::new(first_row, manifolds, view));
+                let block_pairs = some.iter().map(|&m| (self.block_pairs[m as usize].blocks, self.count[m as usize]));
+                wide_pairs.push(WidePairs::new(first_row, block_pairs, view));
                 for (&m, lane) in some.iter().zip(0..) {
                     self.count[m as usize] = first_row * LANES as u32 + lane;
                 }
             }
         }
-        ends.resize(2 * (self.leaf_block.len() - 1) - 1, abreast.len() as u32);
+        ends.resize(2 * (self.leaf_block.len() - 1) - 1, wide_pairs.len() as u32);
         first_turn.push(turns);
         contacts.resize(turns as usize, 0);
         for (place, contact) in places.iter_mut().zip(0..) {
@@ -232,11 +236,11 @@ impl SweepOrder {
         }
     }
 
-    /// Finds the manifold of each contact, and the number of contacts of each manifold.
-    fn count_contacts(&mut self, contacts: &[VertexEdge], manifolds: &mut Vec<u32>) {
+    /// Finds the block pair of each contact, and the number of contacts of each block pair.
+    fn count_contacts(&mut self, contacts: &[VertexEdge], block_pairs: &mut Vec<u32>) {
         self.count.clear();
-        self.count.resize(self.manifolds.len(), 0);
-        manifolds.clear();
+        self.count.resize(self.block_pairs.len(), 0);
+        block_pairs.clear();
         let mut k = 0;
         for (index, contact) in contacts.iter().enumerate() {
             let later = &contacts[(index + AHEAD).min(contacts.len() - 1)];
@@ -245,15 +249,15 @@ impl SweepOrder {
             while self.keys[k] < key {
                 k += 1;
             }
-            manifolds.push(self.manifold[k]);
-            self.count[self.manifold[k] as usize] += 1;
+            block_pairs.push(self.block_pair[k]);
+            self.count[self.block_pair[k] as usize] += 1;
         }
     }
 }
 
 impl Colours {
     /// No colours yet.
-    fn begin(&mut self, view: &SweepView) {
+    fn begin(&mut self, view: &SolverView) {
         self.seen.clear();
         self.of_block.clear();
         self.of_block.resize(view.metric.total.len(), 0);
@@ -268,7 +272,7 @@ impl Colours {
     }
 
     /// Covers of held blocks that a node and the near edges of a side may push.
-    fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SweepView) {
+    fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SolverView) {
         let is_held = |point: usize| !view.metric.is_free(boundary.block[point] as usize);
         let node = boundary.node_point[edges[0].node as usize] as usize;
         if is_held(node) {
@@ -279,13 +283,13 @@ impl Colours {
         }
     }
 
-    /// The first colour that a manifold in hand may have.
-    fn give(&mut self, blocks: [u32; 2], view: &SweepView) -> u32 {
+    /// The first colour that a block pair in hand may have.
+    fn give(&mut self, blocks: [u32; 2], view: &SolverView) -> u32 {
         let free = blocks.map(|block| view.metric.is_free(block as usize));
         let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k] as usize]);
         let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover as usize]);
         let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);
-        let colour = (!used).trailing_zeros().min(SHARED);
+        let colour = (!used).trailing_zeros().min(OVERFLOW);
         (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k] as usize] |= 1 << colour);
         self.covers.iter().for_each(|&cover| self.of_cover[cover as usize] |= 1 << colour);
         self.seen.extend_from_slice(&self.covers);
@@ -300,7 +304,7 @@ fn key_of(node: u32, side: u32) -> u64 {
 
 /// The smallest part of the tree that holds two leaves, by its place in the order in which parts are swept: both halves
 /// before the whole.
-fn part_of([a, b]: [u32; 2]) -> u32 {
+fn subdomain_of([a, b]: [u32; 2]) -> u32 {
     let level = u32::BITS - (a ^ b).leading_zeros();
     let last = (((a >> level) + 1) << level) - 1;
     2 * last - last.count_ones() + level
@@ -313,8 +317,8 @@ mod tests {
     #[test]
     fn halves_come_before_the_whole() {
         let places: Vec<u32> =
-            [[0, 0], [1, 1], [0, 1], [2, 2], [3, 3], [2, 3], [1, 2]].into_iter().map(part_of).collect();
+            [[0, 0], [1, 1], [0, 1], [2, 2], [3, 3], [2, 3], [1, 2]].into_iter().map(subdomain_of).collect();
         assert_eq!(places, [0, 1, 2, 3, 4, 5, 6]);
-        assert_eq!(part_of([0, 7]), 14);
+        assert_eq!(subdomain_of([0, 7]), 14);
     }
 }

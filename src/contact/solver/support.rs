@@ -5,7 +5,7 @@ use crate::geometry::{NONE, Vector};
 
 /// A support as the iteration sees it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Bearing {
+struct SupportEquation {
     /// Index among the rows of the step.
     row: u32,
     covers: [u32; 3],
@@ -22,8 +22,8 @@ struct Bearing {
 /// All supports of a stage with the factor L·D·Lᵀ of δᵢⱼ/aᵢ + kick·Gᵢⱼ, G being the velocities by each other's unit
 /// impulses. Neighbours along a boundary are neighbours in the order, so that the factor has a narrow band.
 #[derive(Debug, Clone, Default)]
-pub struct Bearings {
-    rows: Vec<Bearing>,
+pub struct SupportSystem {
+    rows: Vec<SupportEquation>,
     /// First column of each row of the factor, and where its columns up to the diagonal end.
     first: Vec<u32>,
     end: Vec<u32>,
@@ -35,21 +35,21 @@ pub struct Bearings {
     viscosity: Vec<f64>,
 }
 
-impl Bearings {
+impl SupportSystem {
     /// Bytes of rows and factor.
     pub fn bytes(&self) -> usize {
         size_of_val(self.rows.as_slice()) + size_of_val(self.factor.as_slice())
     }
 }
 
-impl Bearing {
-    fn along(&self, own: &[Vector]) -> f64 {
-        (0..3).map(|k| self.weights[k].dot(&own[self.covers[k] as usize])).sum()
+impl SupportEquation {
+    fn along(&self, cover_impulse: &[Vector]) -> f64 {
+        (0..3).map(|k| self.weights[k].dot(&cover_impulse[self.covers[k] as usize])).sum()
     }
 
-    fn push(&self, impulse: f64, own: &mut [Vector]) {
+    fn push(&self, impulse: f64, cover_impulse: &mut [Vector]) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            own[*cover as usize] += weight * impulse;
+            cover_impulse[*cover as usize] += weight * impulse;
         }
     }
 
@@ -60,7 +60,7 @@ impl Bearing {
     }
 }
 
-impl Bearings {
+impl SupportSystem {
     /// Takes the supports of a stage; `roots` are 1/√m of the covers along each axis.
     pub fn prepare(&mut self, supports: &[Support], rows: &[SupportRow], roots: &[Vector]) {
         self.rows.clear();
@@ -68,18 +68,18 @@ impl Bearings {
             let support = &supports[row.support as usize];
             let along = |j: usize| roots[support.covers[j] as usize].component_mul(&support.direction);
             let weights = [0, 1, 2].map(|j| along(j) * support.weights[j]);
-            Bearing { row: k, covers: support.covers, weights, ..Bearing::default() }
+            SupportEquation { row: k, covers: support.covers, weights, ..SupportEquation::default() }
         }));
-        let order = along_boundary(&self.rows, roots.len());
-        let sorted: Vec<Bearing> = order.iter().map(|&k| self.rows[k as usize]).collect();
+        let order = order_along_boundary(&self.rows, roots.len());
+        let sorted: Vec<SupportEquation> = order.iter().map(|&k| self.rows[k as usize]).collect();
         self.rows = sorted;
         let mut seen = vec![NONE; roots.len()];
         self.first.clear();
         self.end.clear();
         let mut end = 0;
-        for (k, bearing) in (0u32..).zip(&self.rows) {
-            bearing.covers.iter().for_each(|&i| seen[i as usize] = seen[i as usize].min(k));
-            let first = bearing.covers.iter().map(|&i| seen[i as usize]).min().unwrap_or(k);
+        for (k, equation) in (0u32..).zip(&self.rows) {
+            equation.covers.iter().for_each(|&i| seen[i as usize] = seen[i as usize].min(k));
+            let first = equation.covers.iter().map(|&i| seen[i as usize]).min().unwrap_or(k);
             end += k + 1 - first;
             self.first.push(first);
             self.end.push(end);
@@ -93,15 +93,15 @@ impl Bearings {
     }
 
     /// Takes what the supports answer to in a step, and pushes with their forces so far.
-    pub fn load(&mut self, rows: &[SupportRow], kick: f64, own: &mut [Vector]) {
-        for bearing in &mut self.rows {
-            let row = &rows[bearing.row as usize];
-            bearing.rest = row.target - row.viscosity * row.approach;
-            (bearing.viscosity, bearing.force) = (row.viscosity, row.force);
-            bearing.push(bearing.force * kick, own);
+    pub fn load(&mut self, rows: &[SupportRow], kick: f64, cover_impulse: &mut [Vector]) {
+        for equation in &mut self.rows {
+            let row = &rows[equation.row as usize];
+            equation.rest = row.target - row.viscosity * row.approach;
+            (equation.viscosity, equation.force) = (row.viscosity, row.force);
+            equation.push(equation.force * kick, cover_impulse);
         }
         let known = self.kick == kick && self.viscosity.len() == self.rows.len();
-        if !(known && self.viscosity.iter().zip(&self.rows).all(|(a, bearing)| *a == bearing.viscosity)) {
+        if !(known && self.viscosity.iter().zip(&self.rows).all(|(a, equation)| *a == equation.viscosity)) {
             self.factorise(kick);
         }
     }
@@ -109,7 +109,7 @@ impl Bearings {
     fn factorise(&mut self, kick: f64) {
         self.kick = kick;
         self.viscosity.clear();
-        self.viscosity.extend(self.rows.iter().map(|bearing| bearing.viscosity));
+        self.viscosity.extend(self.rows.iter().map(|equation| equation.viscosity));
         self.factor.clear();
         for (i, row) in self.rows.iter().enumerate() {
             let (first, start) = (self.first[i] as usize, self.factor.len());
@@ -134,12 +134,12 @@ impl Bearings {
     }
 
     /// All supports answer; returns their largest change over the largest force.
-    pub fn sweep(&mut self, own: &mut [Vector]) -> f64 {
+    pub fn sweep(&mut self, cover_impulse: &mut [Vector]) -> f64 {
         self.change.clear();
         for (i, row) in self.rows.iter().enumerate() {
             let first = self.first[i] as usize;
             let columns = &self.factor[self.end[i] as usize - 1 - (i - first)..self.end[i] as usize - 1];
-            let mut value = (row.rest - row.force) / row.viscosity - row.along(own);
+            let mut value = (row.rest - row.force) / row.viscosity - row.along(cover_impulse);
             for (entry, known) in columns.iter().zip(&self.change[first..i]) {
                 value -= entry * known;
             }
@@ -158,7 +158,7 @@ impl Bearings {
         }
         let (mut change, mut largest) = (0.0, f64::MIN_POSITIVE);
         for (row, step) in self.rows.iter_mut().zip(&self.change) {
-            row.push(step * self.kick, own);
+            row.push(step * self.kick, cover_impulse);
             row.force += step;
             change = step.abs().max(change);
             largest = row.force.abs().max(largest);
@@ -168,13 +168,13 @@ impl Bearings {
 
     /// Leaves the forces in the rows of the step.
     pub fn finish(&self, rows: &mut [SupportRow]) {
-        self.rows.iter().for_each(|bearing| rows[bearing.row as usize].force = bearing.force);
+        self.rows.iter().for_each(|equation| rows[equation.row as usize].force = equation.force);
     }
 }
 
 /// Supports one after the other along the boundaries: each before those that share a cover with it and have not had
 /// their turn.
-fn along_boundary(rows: &[Bearing], covers: usize) -> Vec<u32> {
+fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<u32> {
     let mut last = vec![NONE; covers];
     // Rows of each cover as chains: the row before that has the cover as its k-th.
     let mut before = vec![[NONE; 3]; rows.len()];

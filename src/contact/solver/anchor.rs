@@ -3,11 +3,11 @@
 use crate::contact::Pair;
 use crate::geometry::{NONE, Vector};
 
-use super::SweepView;
+use super::SolverView;
 
 /// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time (Eq. 17).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BlockPush {
+pub struct BlockImpulse {
     /// P = Σ impulses (N·s/m).
     pub impulse: Vector,
     /// Z = Σ z·impulse (N·s/m).
@@ -18,40 +18,49 @@ pub struct BlockPush {
 
 /// The same within the iteration: P, Z/M (m/s), and L beside the turn in which the block last moved by more than what
 /// has settled.
-pub type Push = [Vector; 3];
+pub type PackedImpulse = [Vector; 3];
 
 /// A run of blocks under impulses.
-pub struct Ground<'a> {
+pub struct Accumulators<'a> {
     /// √m times the velocity increment of each cover by its own impulses (kg½·m½/s).
-    pub own: &'a mut [Vector],
+    pub cover_impulse: &'a mut [Vector],
     /// First cover of the run.
     pub first_cover: u32,
     /// Impulse sums of the blocks.
-    pub push: &'a mut [Push],
+    pub block_impulse: &'a mut [PackedImpulse],
     /// First block of the run.
     pub first_block: u32,
 }
 
-impl Ground<'_> {
+impl Accumulators<'_> {
     /// Notes the turn in which a block of the run moves. Turns grow.
     pub fn mark(&mut self, block: u32, turn: u32) {
-        self.push[(block - self.first_block) as usize][2].y = f64::from(turn);
+        self.block_impulse[(block - self.first_block) as usize][2].y = f64::from(turn);
     }
 
     /// The runs before and from a block whose first cover is `cover` on.
-    pub fn split(&mut self, block: u32, cover: u32) -> (Ground<'_>, Ground<'_>) {
-        let (own, own_rest) = self.own.split_at_mut((cover - self.first_cover) as usize);
-        let (push, push_rest) = self.push.split_at_mut((block - self.first_block) as usize);
-        let first = Ground { own, push, first_cover: self.first_cover, first_block: self.first_block };
+    pub fn split(&mut self, block: u32, cover: u32) -> (Accumulators<'_>, Accumulators<'_>) {
+        let (cover_impulse, cover_impulse_rest) = self.cover_impulse.split_at_mut((cover - self.first_cover) as usize);
+        let (block_impulse, block_impulse_rest) = self.block_impulse.split_at_mut((block - self.first_block) as usize);
+        let first =
+            Accumulators { cover_impulse, block_impulse, first_cover: self.first_cover, first_block: self.first_block };
         let (first_cover, first_block) = (cover, block);
-        (first, Ground { own: own_rest, push: push_rest, first_cover, first_block })
+        (
+            first,
+            Accumulators {
+                cover_impulse: cover_impulse_rest,
+                block_impulse: block_impulse_rest,
+                first_cover,
+                first_block,
+            },
+        )
     }
 }
 
 /// A material point of a block. Weights are divided by the roots of the covers' masses, so that the same ones give and
 /// take.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Body {
+pub struct Anchor {
     /// Covers.
     pub covers: [u32; 3],
     /// w/√m along each axis, 0 where held.
@@ -61,18 +70,18 @@ pub struct Body {
     /// J90·(arm from the block's centroid) (m).
     pub lever: Vector,
     /// z/M (m/kg).
-    pub part: f64,
+    pub mass_share: f64,
     /// (1 + S/M)/M (m/kg).
     pub common: f64,
     /// C of the block.
     pub spin: f64,
 }
 
-impl Body {
+impl Anchor {
     /// Body `k` of a pair.
     #[inline(always)]
-    pub fn new(pair: &Pair, k: usize, view: &SweepView) -> Self {
-        let SweepView { metric, roots } = view;
+    pub fn new(pair: &Pair, k: usize, view: &SolverView) -> Self {
+        let SolverView { metric, roots } = view;
         let (block, covers) = (pair.blocks[k] as usize, pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
@@ -81,46 +90,49 @@ impl Body {
         if !metric.is_free(block) {
             return Self { covers, weights, block: NONE, ..Self::default() };
         }
-        let (lever, part) = lever_and_part(pair, k, view);
+        let (lever, mass_share) = lever_and_share(pair, k, view);
         Self {
             covers,
             weights,
             block: block as u32,
             lever,
-            part,
+            mass_share,
             common: common_share(view, block),
             spin: metric.spin[block],
         }
     }
 
     /// Velocity (m/s) that all impulses so far give it.
-    pub fn velocity(&self, ground: &Ground) -> Vector {
-        let own = |j: usize| self.weights[j].component_mul(&ground.own[(self.covers[j] - ground.first_cover) as usize]);
-        let velocity = own(0) + own(1) + own(2);
+    pub fn velocity(&self, accumulators: &Accumulators) -> Vector {
+        let cover_impulse = |j: usize| {
+            self.weights[j]
+                .component_mul(&accumulators.cover_impulse[(self.covers[j] - accumulators.first_cover) as usize])
+        };
+        let velocity = cover_impulse(0) + cover_impulse(1) + cover_impulse(2);
         if self.block == NONE {
             return velocity;
         }
-        let [impulse, weighted, moment] = ground.push[(self.block - ground.first_block) as usize];
-        velocity + impulse * (self.common - self.part) - weighted + self.lever * (self.spin * moment.x)
+        let [impulse, weighted, moment] = accumulators.block_impulse[(self.block - accumulators.first_block) as usize];
+        velocity + impulse * (self.common - self.mass_share) - weighted + self.lever * (self.spin * moment.x)
     }
 
     /// Takes an impulse (N·s/m).
-    pub fn push(&self, impulse: Vector, ground: &mut Ground) {
+    pub fn push(&self, impulse: Vector, accumulators: &mut Accumulators) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            ground.own[(cover - ground.first_cover) as usize] += weight.component_mul(&impulse);
+            accumulators.cover_impulse[(cover - accumulators.first_cover) as usize] += weight.component_mul(&impulse);
         }
         if self.block != NONE {
-            let push = &mut ground.push[(self.block - ground.first_block) as usize];
-            push[0] += impulse;
-            push[1] += impulse * self.part;
-            push[2].x += self.lever.dot(&impulse);
+            let block_impulse = &mut accumulators.block_impulse[(self.block - accumulators.first_block) as usize];
+            block_impulse[0] += impulse;
+            block_impulse[1] += impulse * self.mass_share;
+            block_impulse[2].x += self.lever.dot(&impulse);
         }
     }
 }
 
 /// J90·(arm from the block's centroid) (m) and z/M (m/kg) of point `k` of a pair; 0 on a held block.
 #[inline(always)]
-pub fn lever_and_part(pair: &Pair, k: usize, view: &SweepView) -> (Vector, f64) {
+pub fn lever_and_share(pair: &Pair, k: usize, view: &SolverView) -> (Vector, f64) {
     let (block, arm) = (pair.blocks[k] as usize, pair.arms[k]);
     if !view.metric.is_free(block) {
         return (Vector::zeros(), 0.0);
@@ -130,7 +142,7 @@ pub fn lever_and_part(pair: &Pair, k: usize, view: &SweepView) -> (Vector, f64) 
 
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.
 #[inline(always)]
-pub fn common_share(view: &SweepView, block: usize) -> f64 {
+pub fn common_share(view: &SolverView, block: usize) -> f64 {
     let inverse = view.metric.inverse_total[block];
     (1.0 + view.metric.square[block] * inverse) * inverse
 }
