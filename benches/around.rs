@@ -41,7 +41,7 @@ fn search(criterion: &mut Criterion) {
             place: &scratch.place,
             cutoff: 0.25 * slope.covers.mesh.size,
             removed: &simulation.state().removed,
-            fixed: &scratch.metric.fixed,
+            fixed: &scratch.mass_matrix.fixed,
             serial: true,
         };
         let (mut grid, mut neighbours) = (SearchGrid::default(), NeighbourList::default());

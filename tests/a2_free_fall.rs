@@ -44,7 +44,8 @@ fn every_point_falls_by_half_g_t_squared() {
         for point in [[0.5, 0.6], [8.0, 1.0], [6.4, 6.4], [2.5, 6.05]] {
             let block = block_at(&simulation, point);
             let slope = simulation.slope();
-            let (_, velocity, spin, _) = block_motion(slope, simulation.state(), &simulation.scratch().metric, block);
+            let (_, velocity, spin, _) =
+                block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block);
             // Rounding of v over the size of a block (0.4 m and more).
             assert!(spin.abs() <= 1e-11 * velocity.norm(), "spin {spin:e} at {point:?}");
         }

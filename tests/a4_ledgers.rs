@@ -52,7 +52,7 @@ fn collisions_keep_linear_and_angular_momentum() {
     ] {
         let text = format!("{}[solver]\ndt_max = {dt_max:e}\n", collision(seed, friction, damping, young));
         let mut simulation = simulation(&text);
-        let mass: f64 = simulation.slope().metric.total.iter().sum();
+        let mass: f64 = simulation.slope().mass_matrix.total.iter().sum();
         assert!(simulation.slope().covers.block_count() > 12);
         let [linear, angular] = momentum_drift(&mut simulation, steps, mass * 0.5);
         println!("seed {seed}: linear {linear:e}, angular {angular:e}");

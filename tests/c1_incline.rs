@@ -60,7 +60,7 @@ impl Incline {
             let block = common::claims::block_at(&simulation, middle(self.slope));
             let kick = self.down() * speed;
             simulation.slope().covers.covers_of(block).for_each(|i| state.velocity[i] += kick);
-            let mass = simulation.slope().metric.total[block];
+            let mass = simulation.slope().mass_matrix.total[block];
             state.ledger.baseline += 0.5 * mass * speed * speed;
             simulation.restore(state);
         }

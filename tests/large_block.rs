@@ -16,28 +16,28 @@ const STILL: f64 = 10.0;
 fn every_part_has_the_elements_of_its_covers_once() {
     let simulation = simulation(&continuum_case(12_000));
     let slope = simulation.slope();
-    let (covers, patches) = (&slope.covers, &slope.patches);
+    let (covers, chunks) = (&slope.covers, &slope.chunks);
     let (mut in_rows, mut all) = (0, 0);
-    for patch in patches.iter() {
-        let ids: Vec<u32> = patch.covers.clone().map(|i| i as u32).chain(patches.halo(patch).iter().copied()).collect();
-        let is_own = |i: &u32| patch.covers.contains(&(*i as usize));
+    for chunk in chunks.iter() {
+        let ids: Vec<u32> = chunk.covers.clone().map(|i| i as u32).chain(chunks.halo(chunk).iter().copied()).collect();
+        let is_own = |i: &u32| chunk.covers.contains(&(*i as usize));
         let wanted = covers.element_covers.iter().filter(|c| c.iter().any(is_own)).count();
         let mut found = Vec::new();
-        for batch in patches.batches(patch) {
-            for (e, slots) in patches.elements(batch) {
+        for batch in chunks.batches(chunk) {
+            for (e, slots) in chunks.elements(batch) {
                 assert_eq!(slots.map(|slot| ids[slot.index()]), covers.element_covers[e]);
                 assert_eq!(covers.element_triangle[e].set, batch.set);
                 found.push(e);
             }
             in_rows +=
-                patches.rows(batch).0.iter().map(|row| row.area.iter().filter(|a| **a > 0.0).count()).sum::<usize>();
+                chunks.rows(batch).0.iter().map(|row| row.area.iter().filter(|a| **a > 0.0).count()).sum::<usize>();
         }
         found.sort_unstable();
         found.dedup();
         assert_eq!(found.len(), wanted);
         all += wanted;
     }
-    assert!(patches.len() > 4 && 10 * in_rows > 7 * all, "{in_rows} of {all} in rows");
+    assert!(chunks.len() > 4 && 10 * in_rows > 7 * all, "{in_rows} of {all} in rows");
 }
 
 /// Velocities after one step from displacements at rest.
@@ -74,7 +74,7 @@ fn forces_are_those_of_the_elements_one_by_one() {
     let largest = force.iter().map(Vector::norm).fold(0.0, f64::max);
     assert!(largest > 0.0);
     for i in (0..force.len()).filter(|&i| place(i).y > STILL) {
-        let found = (bent[i] - still[i]) * (slope.metric.mass[i] / kick);
+        let found = (bent[i] - still[i]) * (slope.mass_matrix.mass[i] / kick);
         assert!((found - force[i]).norm() < 1e-9 * largest, "{found} instead of {} at {}", force[i], place(i));
     }
 }

@@ -55,7 +55,7 @@ fn the_search_finds_what_all_against_all_find() {
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
     let boundary = &simulation.slope().boundary;
     assert!(boundary.partial.contains(&true), "there must be partial cuts");
-    let fixed = &simulation.scratch().metric.fixed;
+    let fixed = &simulation.scratch().mass_matrix.fixed;
     let removed: Vec<bool> = (0..fixed.len()).map(|block| block % 40 == 3).collect();
     let cutoff = 0.25 * simulation.slope().covers.mesh.size;
     let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();

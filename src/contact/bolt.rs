@@ -2,7 +2,7 @@
 
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 
 use super::Pair;
 
@@ -104,7 +104,7 @@ impl BoltSegment {
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
         let arms = [0, 1].map(|k| places[k] - view.motion[self.blocks[k] as usize].centre);
         let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
-        let [compliance] = pair.weigh(view.metric, [direction]);
+        let [compliance] = pair.weigh(view.mass_matrix, [direction]);
         BoltRow {
             segment: index,
             approach: pair.difference(view.predicted).dot(&direction),
@@ -136,7 +136,7 @@ pub struct BoltView<'a> {
     /// Velocities without contact forces (m/s).
     pub predicted: &'a [Vector],
     /// Masses.
-    pub metric: &'a Metric,
+    pub mass_matrix: &'a MassMatrix,
     /// Centroids of the blocks.
     pub motion: &'a [crate::mechanics::BlockMotion],
 }

@@ -2,7 +2,7 @@
 
 use crate::cover::{self, Weights};
 use crate::geometry::Vector;
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 
 /// Two material points of two blocks (or of one), as the open–close iteration needs them (Eq. 17).
 #[derive(Debug, Clone, Copy, Default)]
@@ -29,24 +29,26 @@ impl Pair {
 
     /// Sets z; returns the inverse effective mass (m/kg) of both bodies along each axis (Eq. 4).
     #[inline(always)]
-    pub fn weigh<const N: usize>(&mut self, metric: &Metric, axes: [Vector; N]) -> [f64; N] {
+    pub fn weigh<const N: usize>(&mut self, mass_matrix: &MassMatrix, axes: [Vector; N]) -> [f64; N] {
         let mut compliance = [0.0; N];
         for body in 0..2 {
             let block = self.blocks[body] as usize;
-            let share = metric.inverse_total[block];
+            let share = mass_matrix.inverse_total[block];
             let mut own = Vector::zeros();
             let mut z = 0.0;
             for (&i, w) in self.covers[body].iter().zip(self.weights[body]) {
-                let inverse = metric.inverse[i as usize];
+                let inverse = mass_matrix.inverse[i as usize];
                 own += inverse * (w * w);
-                z += w * metric.inertial[i as usize] * inverse.x;
+                z += w * mass_matrix.inertial[i as usize] * inverse.x;
             }
             self.z[body] = z;
-            let common = share * (1.0 - 2.0 * z + metric.square[block] * share);
+            let common = share * (1.0 - 2.0 * z + mass_matrix.square[block] * share);
             for (compliance, axis) in compliance.iter_mut().zip(&axes) {
                 let lever = self.arms[body].perp(axis);
-                *compliance +=
-                    own.x * axis.x * axis.x + own.y * axis.y * axis.y + common + metric.spin[block] * lever * lever;
+                *compliance += own.x * axis.x * axis.x
+                    + own.y * axis.y * axis.y
+                    + common
+                    + mass_matrix.spin[block] * lever * lever;
             }
         }
         compliance

@@ -13,7 +13,7 @@ use enmm_lanes::LANES;
 use rayon::prelude::*;
 
 use crate::geometry::{NONE, Vector};
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 
 use self::anchor::{Accumulators, Anchor, PackedImpulse};
 use self::order::{Sequence, SolverOrder};
@@ -59,7 +59,7 @@ pub struct SolverReport {
 #[derive(Clone, Copy)]
 struct SolverView<'a> {
     /// Masses.
-    metric: &'a Metric,
+    mass_matrix: &'a MassMatrix,
     /// 1/√m of the covers along each axis, 0 where held.
     roots: &'a [Vector],
 }
@@ -110,10 +110,10 @@ impl OpenClose {
     }
 
     /// Forgets the order, and takes the masses of a stage.
-    pub fn prepare(&mut self, metric: &Metric, supports: &[Support], rows: &[SupportRow]) {
+    pub fn prepare(&mut self, mass_matrix: &MassMatrix, supports: &[Support], rows: &[SupportRow]) {
         self.order.clear();
         self.roots.clear();
-        self.roots.extend(metric.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
+        self.roots.extend(mass_matrix.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
         self.supports.prepare(supports, rows, &self.roots);
     }
 
@@ -127,11 +127,11 @@ impl OpenClose {
         &mut self,
         boundary: &Boundary,
         near_pairs: &[NearPair],
-        metric: &Metric,
+        mass_matrix: &MassMatrix,
         block_covers: &[u32],
         contacts: &[VertexEdge],
     ) {
-        let view = SolverView { metric, roots: &self.roots };
+        let view = SolverView { mass_matrix, roots: &self.roots };
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, &view);
             self.cuts.clear();
@@ -143,31 +143,31 @@ impl OpenClose {
     /// Sweeps until forces settle, from those that are expected, over contacts that have been arranged.
     pub fn run(
         &mut self,
-        metric: &Metric,
+        mass_matrix: &MassMatrix,
         options: &SolverOptions,
         contacts: &mut [VertexEdge],
         others: &mut OtherConstraints,
     ) -> SolverReport {
-        self.begin(metric, options, others);
-        self.pass(metric, contacts, options, PassKind::Prepare);
+        self.begin(mass_matrix, options, others);
+        self.pass(mass_matrix, contacts, options, PassKind::Prepare);
         for (bolt, anchors) in others.bolts.iter().zip(&self.bolts) {
             let mut accumulators = all_blocks(&mut self.cover_impulse, &mut self.block_impulse);
             apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
-        let report = self.sweeps(metric, options, contacts, others);
+        let report = self.sweeps(mass_matrix, options, contacts, others);
         self.finish(contacts, options.serial);
         self.supports.finish(others.rows);
         report
     }
 
     /// Nothing has moved but by supports.
-    fn begin(&mut self, metric: &Metric, options: &SolverOptions, others: &OtherConstraints) {
-        let view = SolverView { metric, roots: &self.roots };
+    fn begin(&mut self, mass_matrix: &MassMatrix, options: &SolverOptions, others: &OtherConstraints) {
+        let view = SolverView { mass_matrix, roots: &self.roots };
         self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
         self.cover_impulse.clear();
         self.cover_impulse.resize(self.roots.len(), Vector::zeros());
         self.block_impulse.clear();
-        self.block_impulse.resize(metric.total.len(), PackedImpulse::default());
+        self.block_impulse.resize(mass_matrix.total.len(), PackedImpulse::default());
         self.bolts.clear();
         self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, &view))));
         self.supports.load(others.rows, options.kick, &mut self.cover_impulse);
@@ -176,7 +176,7 @@ impl OpenClose {
     /// One pass over the rows, part by part.
     fn pass(
         &mut self,
-        metric: &Metric,
+        mass_matrix: &MassMatrix,
         contacts: &[VertexEdge],
         options: &SolverOptions,
         kind: PassKind,
@@ -184,7 +184,7 @@ impl OpenClose {
         let from = ContactView {
             contacts,
             turns: &self.sequence.contacts,
-            view: SolverView { metric, roots: &self.roots },
+            view: SolverView { mass_matrix, roots: &self.roots },
             options,
         };
         Subdomain {
@@ -202,7 +202,7 @@ impl OpenClose {
     /// answer, until none has.
     fn sweeps(
         &mut self,
-        metric: &Metric,
+        mass_matrix: &MassMatrix,
         options: &SolverOptions,
         contacts: &[VertexEdge],
         others: &mut OtherConstraints,
@@ -216,7 +216,8 @@ impl OpenClose {
             let largest = block_pairs.map(|wide_pairs| wide_pairs.force).fold(f64::MIN_POSITIVE, f64::max);
             let turns = subdomain::ROUNDS * self.sequence.wide_pairs.len() as u32;
             let turn = report.sweeps * (turns + 1) + 1;
-            let outcome = self.pass(metric, contacts, options, PassKind::Sweep { all, floor: LIGHT * largest, turn });
+            let outcome =
+                self.pass(mass_matrix, contacts, options, PassKind::Sweep { all, floor: LIGHT * largest, turn });
             let support_change = self.supports.sweep(&mut self.cover_impulse);
             let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
             let change = outcome.change.max(support_change).max(bolt_change);
@@ -274,11 +275,12 @@ impl OpenClose {
     }
 
     /// Writes the velocity increments (m/s) of the covers by their own impulses, and the impulse sums of the blocks.
-    pub fn impulses(&self, metric: &Metric, increment: &mut [Vector], block_impulse: &mut [BlockImpulse]) {
+    pub fn impulses(&self, mass_matrix: &MassMatrix, increment: &mut [Vector], block_impulse: &mut [BlockImpulse]) {
         for ((increment, cover_impulse), root) in increment.iter_mut().zip(&self.cover_impulse).zip(&self.roots) {
             *increment = cover_impulse.component_mul(root);
         }
-        for ((block_impulse, sums), total) in block_impulse.iter_mut().zip(&self.block_impulse).zip(&metric.total) {
+        for ((block_impulse, sums), total) in block_impulse.iter_mut().zip(&self.block_impulse).zip(&mass_matrix.total)
+        {
             let [impulse, weighted, moment] = *sums;
             *block_impulse = BlockImpulse { impulse, weighted: weighted * *total, moment: moment.x };
         }

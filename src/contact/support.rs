@@ -3,7 +3,7 @@
 
 use crate::cover::{self, Weights};
 use crate::geometry::Vector;
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 
 /// What a support answers to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,15 +66,15 @@ impl Support {
     }
 
     /// Inverse effective mass of the point along the direction (m/kg); its block has the plain lumped metric.
-    pub fn compliance(&self, metric: &Metric) -> f64 {
+    pub fn compliance(&self, mass_matrix: &MassMatrix) -> f64 {
         let square = self.direction.component_mul(&self.direction);
-        self.covers.iter().zip(self.weights).map(|(&i, w)| metric.inverse[i as usize].dot(&square) * w * w).sum()
+        self.covers.iter().zip(self.weights).map(|(&i, w)| mass_matrix.inverse[i as usize].dot(&square) * w * w).sum()
     }
 
     /// Adds an impulse (N·s/m) along the direction to the velocity increments of the covers.
-    pub fn push(&self, impulse: f64, metric: &Metric, increment: &mut [Vector]) {
+    pub fn push(&self, impulse: f64, mass_matrix: &MassMatrix, increment: &mut [Vector]) {
         for (&i, w) in self.covers.iter().zip(self.weights) {
-            increment[i as usize] += metric.inverse[i as usize].component_mul(&self.direction) * (w * impulse);
+            increment[i as usize] += mass_matrix.inverse[i as usize].component_mul(&self.direction) * (w * impulse);
         }
     }
 }

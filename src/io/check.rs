@@ -75,7 +75,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         physical_covers: covers.cover_count(),
         stars: stars_by_cover_count.values().sum(),
         stars_by_cover_count,
-        cover_masses: sorted(slope.metric.row_sum.clone()),
+        cover_masses: sorted(slope.mass_matrix.row_sum.clone()),
         vertices: distinct(&covers.polygon_points),
         boundary_edges: built.boundary_pieces,
         initial_contacts: scratch.contacts.len(),
@@ -130,6 +130,6 @@ fn small_covers(simulation: &Simulation, third: f64) -> usize {
         let of_element = slope.rocks[slope.element_rock[e] as usize].density;
         ids.iter().for_each(|&i| density[i as usize] = density[i as usize].max(of_element));
     }
-    let masses = slope.metric.row_sum.iter().zip(density);
+    let masses = slope.mass_matrix.row_sum.iter().zip(density);
     masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()
 }

@@ -71,7 +71,7 @@ impl AddAssign for BlockSums {
     }
 }
 
-/// Covers of a block, or of the part of it in one patch: slices of equal length.
+/// Covers of a block, or of the part of it in one chunk: slices of equal length.
 #[derive(Clone, Copy)]
 pub struct Span<'a> {
     /// Star positions (m).
@@ -459,7 +459,7 @@ impl AddAssign for WorkSums {
     }
 }
 
-/// Covers of a block, or of the part of it in one patch, at the end of a step: slices of equal length.
+/// Covers of a block, or of the part of it in one chunk, at the end of a step: slices of equal length.
 pub struct End<'a> {
     /// Star positions (m).
     pub star: &'a [Point],

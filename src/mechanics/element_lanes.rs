@@ -5,7 +5,7 @@ use enmm_lanes::{LANES, Lanes, Table};
 use crate::geometry::Vector;
 
 use super::Elasticity;
-use super::patch::{Group, PreStresses, Row};
+use super::chunk::{Group, PreStresses, Row};
 
 /// Eight elements: where their displacements come from and their forces go to.
 pub trait Elements: Sized {

@@ -3,7 +3,7 @@
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
-use super::Metric;
+use super::MassMatrix;
 use super::pressure::{inward, part};
 
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
@@ -78,7 +78,7 @@ impl Load {
         t: f64,
         place: impl Fn(usize) -> Point,
         block: impl Fn(u32) -> std::ops::Range<usize>,
-        metric: &Metric,
+        mass_matrix: &MassMatrix,
         force: &mut [Vector],
     ) {
         let factor = self.table.at(t);
@@ -105,7 +105,7 @@ impl Load {
             }
             LoadAction::Body(_) => {}
             LoadAction::Block(id, f, moment) => {
-                push_block(block(*id), &place, metric, f * factor, moment * factor, force);
+                push_block(block(*id), &place, mass_matrix, f * factor, moment * factor, force);
             }
         }
     }
@@ -122,18 +122,18 @@ pub fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vect
 pub fn push_block(
     covers: std::ops::Range<usize>,
     place: &impl Fn(usize) -> Point,
-    metric: &Metric,
+    mass_matrix: &MassMatrix,
     f: Vector,
     moment: f64,
     force: &mut [Vector],
 ) {
-    let total: f64 = metric.row_sum[covers.clone()].iter().sum();
-    let centre = covers.clone().map(|i| place(i) * metric.mass[i]).sum::<Point>() / total;
-    let polar: f64 = covers.clone().map(|i| metric.mass[i] * (place(i) - centre).norm_squared()).sum();
+    let total: f64 = mass_matrix.row_sum[covers.clone()].iter().sum();
+    let centre = covers.clone().map(|i| place(i) * mass_matrix.mass[i]).sum::<Point>() / total;
+    let polar: f64 = covers.clone().map(|i| mass_matrix.mass[i] * (place(i) - centre).norm_squared()).sum();
     for i in covers {
         let arm = place(i) - centre;
-        let spin = Vector::new(-arm.y, arm.x) * (metric.mass[i] * moment / polar);
-        force[i] += f * (metric.row_sum[i] / total) + spin;
+        let spin = Vector::new(-arm.y, arm.x) * (mass_matrix.mass[i] * moment / polar);
+        force[i] += f * (mass_matrix.row_sum[i] / total) + spin;
     }
 }
 
@@ -153,8 +153,8 @@ mod tests {
         let places = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
         let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
-        let metric = Metric { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..Metric::default() };
-        load.push(0.0, |i| places[i], |_| 0..3, &metric, &mut force);
+        let mass_matrix = MassMatrix { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..MassMatrix::default() };
+        load.push(0.0, |i| places[i], |_| 0..3, &mass_matrix, &mut force);
         let torque: f64 = places.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
         assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
     }

@@ -10,7 +10,7 @@ use super::Elasticity;
 /// A free block has the rigid-exact metric; a block that is held anywhere has the plain lumped one, in which the
 /// block terms vanish (`inverse_total` = `spin` = 0).
 #[derive(Debug, Clone, Default)]
-pub struct Metric {
+pub struct MassMatrix {
     /// Lumped mass m of each cover (kg/m).
     pub mass: Vec<f64>,
     /// Row-sum mass ∫ρw of each cover (kg/m): the weight that gravity acts on.
@@ -38,26 +38,26 @@ pub struct Metric {
     pub fixed: Vec<bool>,
 }
 
-impl Metric {
+impl MassMatrix {
     /// Masses of all blocks as if free.
     pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
-        let mut metric =
+        let mut mass_matrix =
             Self { mass: vec![0.0; covers.cover_count()], row_sum: vec![0.0; covers.cover_count()], ..Self::default() };
         for e in 0..covers.element_count() {
             let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
             let weights = covers.weights(e, covers.element_centroid[e]);
             for (k, &cover) in covers.element_covers[e].iter().enumerate() {
-                metric.mass[cover as usize] += mass / 3.0;
-                metric.row_sum[cover as usize] += mass * weights[k];
+                mass_matrix.mass[cover as usize] += mass / 3.0;
+                mass_matrix.row_sum[cover as usize] += mass * weights[k];
             }
         }
-        metric.lightness = 1.0;
-        metric.inertial.clone_from(&metric.row_sum);
-        metric.inverse = metric.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
+        mass_matrix.lightness = 1.0;
+        mass_matrix.inertial.clone_from(&mass_matrix.row_sum);
+        mass_matrix.inverse = mass_matrix.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
         for block in 0..covers.block_count() {
-            metric.push_block(covers, rocks, element_rock, block);
+            mass_matrix.push_block(covers, rocks, element_rock, block);
         }
-        metric
+        mass_matrix
     }
 
     fn push_block(&mut self, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16], block: usize) {

@@ -2,6 +2,7 @@
 //! Knows nothing of contact or files.
 
 pub mod block_lanes;
+pub mod chunk;
 mod column;
 mod consistent;
 mod cover_matrix;
@@ -11,21 +12,20 @@ mod internal;
 mod load;
 mod mass;
 mod motion;
-pub mod patch;
 mod plasticity;
 pub mod pressure;
 mod record;
 
+pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPlace, ColumnState, Foot};
 pub use consistent::{PAIRS, element_mass, push_mass, stiffness_block};
 pub use cover_matrix::{CoverMatrix, NotPositive, UNCOUPLED};
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
-pub use mass::Metric;
+pub use mass::MassMatrix;
 pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
 };
-pub use patch::{Patch, Patches};
 pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
 pub use record::Record;

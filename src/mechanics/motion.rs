@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Vector};
 
-use super::Metric;
+use super::MassMatrix;
 use super::block_lanes::{BlockSums, Common, Reference, WorkSums};
 
 /// J90·v: turned by +90°.
@@ -40,7 +40,7 @@ struct Sums {
 /// One block's slices of the cover arrays, and the block's place in the metric.
 pub struct BlockCovers<'a> {
     /// Masses of all covers and blocks.
-    pub metric: &'a Metric,
+    pub mass_matrix: &'a MassMatrix,
     /// Block.
     pub block: usize,
     /// Covers of the block in the arrays of the metric.
@@ -60,18 +60,18 @@ impl BlockCovers<'_> {
 
     /// Centroid of the block in its metric.
     fn centre(&self) -> Point {
-        let first: Point = self.range.clone().map(|i| self.place(i) * self.metric.inertial[i]).sum();
-        first / self.metric.total[self.block]
+        let first: Point = self.range.clone().map(|i| self.place(i) * self.mass_matrix.inertial[i]).sum();
+        first / self.mass_matrix.total[self.block]
     }
 
     /// Rigid velocity of a field and the sums of what is left (Eq. 5).
     fn sums(&self, field: &[Vector], centre: Point) -> Sums {
-        let metric = self.metric;
-        let total = metric.total[self.block];
-        let velocity = self.range.clone().map(|i| field[i] * metric.inertial[i]).sum::<Vector>() / total;
+        let mass_matrix = self.mass_matrix;
+        let total = mass_matrix.total[self.block];
+        let velocity = self.range.clone().map(|i| field[i] * mass_matrix.inertial[i]).sum::<Vector>() / total;
         let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
         for i in self.range.clone() {
-            let (m, d, u) = (metric.mass[i], self.place(i) - centre, field[i] - velocity);
+            let (m, d, u) = (mass_matrix.mass[i], self.place(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
@@ -84,22 +84,25 @@ impl BlockCovers<'_> {
 
     /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
     fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
-        let sum: f64 =
-            self.range.clone().map(|i| self.metric.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity))).sum();
-        sum - of.linear.dot(&with.linear) / self.metric.total[self.block]
+        let sum: f64 = self
+            .range
+            .clone()
+            .map(|i| self.mass_matrix.mass[i] * (a[i] - of.velocity).dot(&(b[i] - with.velocity)))
+            .sum();
+        sum - of.linear.dot(&with.linear) / self.mass_matrix.total[self.block]
     }
 
     fn spin(&self, sums: &Sums) -> f64 {
-        sums.moment / self.metric.polar_lumped[self.block]
+        sums.moment / self.mass_matrix.polar_lumped[self.block]
     }
 }
 
 /// Kinetic energy (J/m) of a block in its metric (Eq. 5).
 pub fn kinetic_energy(covers: &BlockCovers) -> f64 {
-    let (metric, block) = (covers.metric, covers.block);
+    let (mass_matrix, block) = (covers.mass_matrix, covers.block);
     let sums = covers.sums(covers.velocity, covers.centre());
-    let (polar, lumped) = (metric.polar[block], metric.polar_lumped[block]);
-    0.5 * metric.rigid_mass(block) * sums.velocity.norm_squared()
+    let (polar, lumped) = (mass_matrix.polar[block], mass_matrix.polar_lumped[block]);
+    0.5 * mass_matrix.rigid_mass(block) * sums.velocity.norm_squared()
         + 0.5 * covers.product(covers.velocity, covers.velocity, &sums, &sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
@@ -129,7 +132,7 @@ pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
             let spin = sums.moment / sums.polar;
             for (k, i) in covers.range.clone().enumerate() {
                 let rigid = sums.velocity + turned(covers.place(i) - centre) * spin;
-                let held = covers.metric.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
+                let held = covers.mass_matrix.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
                 damped[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
         }
@@ -162,8 +165,8 @@ pub struct BlockStart {
 
 impl BlockStart {
     /// The start of a block from its sums.
-    pub fn new(metric: &Metric, block: usize, from: Reference, sums: &BlockSums) -> Self {
-        let total = metric.total[block];
+    pub fn new(mass_matrix: &MassMatrix, block: usize, from: Reference, sums: &BlockSums) -> Self {
+        let total = mass_matrix.total[block];
         Self {
             from,
             centre: sums.inertial_place / total,
@@ -176,16 +179,16 @@ impl BlockStart {
     }
 
     /// What contacts see of the block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
-    pub fn motion(&self, metric: &Metric, block: usize) -> BlockMotion {
+    pub fn motion(&self, mass_matrix: &MassMatrix, block: usize) -> BlockMotion {
         let centre = self.from.place + self.centre;
-        if !metric.is_free(block) {
+        if !mass_matrix.is_free(block) {
             return BlockMotion { centre, spin: 0.0 };
         }
-        BlockMotion { centre, spin: (metric.polar_lumped[block] / metric.polar[block] - 1.0) / self.polar }
+        BlockMotion { centre, spin: (mass_matrix.polar_lumped[block] / mass_matrix.polar[block] - 1.0) / self.polar }
     }
 
     /// What damping and the forces on a block give to all its covers in common (Eqs. 3, 11).
-    pub fn common(&self, metric: &Metric, block: usize, sums: &BlockSums, step: &KickStep) -> Common {
+    pub fn common(&self, mass_matrix: &MassMatrix, block: usize, sums: &BlockSums, step: &KickStep) -> Common {
         let mut common = Common::default();
         if let Damping::Deformation(factor) = step.damping
             && factor < 1.0
@@ -194,12 +197,12 @@ impl BlockStart {
             let rigid = self.from.velocity + self.velocity;
             common = Common::about(rigid * share, self.moment / self.polar * share, self.centre);
         }
-        if metric.is_free(block) {
-            let share = metric.inverse_total[block];
+        if mass_matrix.is_free(block) {
+            let share = mass_matrix.inverse_total[block];
             let torque = sums.torque - self.centre.perp(&sums.force);
-            let mean = (sums.weighted - sums.force * (metric.square[block] * share)) * share;
-            let pushed = sums.force * share - mean + step.acceleration * metric.lightness;
-            let spin = self.motion(metric, block).spin * torque;
+            let mean = (sums.weighted - sums.force * (mass_matrix.square[block] * share)) * share;
+            let pushed = sums.force * share - mean + step.acceleration * mass_matrix.lightness;
+            let spin = self.motion(mass_matrix, block).spin * torque;
             let by_force = Common::about(pushed * step.dt, spin * step.dt, self.centre);
             common.velocity += by_force.velocity;
             common.spin += by_force.spin;
@@ -210,19 +213,19 @@ impl BlockStart {
 
     /// Work (J/m) that damping took in the step: the lost momentum times the mean of the velocities before and after
     /// it (Eq. 18).
-    pub fn damping_work(&self, metric: &Metric, block: usize, sums: &WorkSums, damping: Damping) -> f64 {
+    pub fn damping_work(&self, mass_matrix: &MassMatrix, block: usize, sums: &WorkSums, damping: Damping) -> f64 {
         let (factor, whole) = match damping {
             Damping::Deformation(factor) => (factor, 0.0),
             Damping::Mass(factor) => (factor, 1.0),
         };
-        let total = metric.total[block];
+        let total = mass_matrix.total[block];
         let moment = sums.moment - self.first.perp(&sums.momentum) / total;
         let turning = self.moment * moment / self.polar;
         let deforming = sums.product - self.momentum.dot(&sums.momentum) / total - turning;
         let own = self.from.velocity + self.velocity;
         let both = self.from.velocity * 2.0 + sums.inertial / total;
-        let share = metric.polar[block] / metric.polar_lumped[block];
-        let rigid = metric.rigid_mass(block) * own.dot(&both) + share * turning;
+        let share = mass_matrix.polar[block] / mass_matrix.polar_lumped[block];
+        let rigid = mass_matrix.rigid_mass(block) * own.dot(&both) + share * turning;
         0.5 * (1.0 - factor) * (deforming + whole * rigid)
     }
 }

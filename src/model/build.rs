@@ -17,7 +17,7 @@ use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLa
 use crate::cover::{self, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
-    ColumnState, Elasticity, Load, LoadAction, Metric, Patches, PreStress, StressField, TimeTable, critical_dt,
+    Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
@@ -118,14 +118,14 @@ fn slope(
     let loads = loads(case, &places, &faces)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
     let slope = Slope {
-        patches: Patches::new(&covers, &element_rock, &pre_stresses(case, &covers)),
+        chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
         strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
-        metric: Metric::free(&covers, &rocks, &element_rock),
+        mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
         laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,

@@ -197,7 +197,7 @@ fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse
             spin: motions[b].1 / fastest,
             speed: speed(b) / fastest,
             area: slope.covers.block_area(b),
-            mass: slope.metric.total[b],
+            mass: slope.mass_matrix.total[b],
         })
         .collect();
     mechanism.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));

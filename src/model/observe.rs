@@ -101,7 +101,7 @@ impl Simulation {
                 loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
                 Boundary {
                     block,
-                    fixed: self.scratch().metric.fixed[block as usize],
+                    fixed: self.scratch().mass_matrix.fixed[block as usize],
                     displacement: mean(slope, &state.displacement, block as usize),
                     loops: polygons(&loops),
                 }
@@ -134,15 +134,15 @@ impl Simulation {
     pub fn motion_of(&self, block: usize) -> BlockState {
         let (slope, state) = (self.slope(), self.state());
         let covers = &slope.covers;
-        let metric = &self.scratch().metric;
-        let (_, velocity, spin, kinetic) = step::block_motion(slope, state, metric, block);
+        let mass_matrix = &self.scratch().mass_matrix;
+        let (_, velocity, spin, kinetic) = step::block_motion(slope, state, mass_matrix, block);
         let displacement = mean(slope, &state.displacement, block);
         let area = covers.block_area(block);
         let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
         BlockState {
             id: block as u32,
-            fixed: metric.fixed[block],
+            fixed: mass_matrix.fixed[block],
             removed,
             centroid: mean(slope, &covers.star_position, block) + displacement,
             displacement,
@@ -151,7 +151,7 @@ impl Simulation {
             angular_velocity: spin,
             mean_stress,
             area,
-            mass: slope.metric.total[block],
+            mass: slope.mass_matrix.total[block],
             kinetic_energy: if removed { 0.0 } else { kinetic },
             strain_energy,
             ..BlockState::default()
@@ -216,8 +216,8 @@ fn places(slope: &Slope, state: &State) -> Vec<Point> {
 
 /// Mean of a cover field over a block's mass.
 fn mean(slope: &Slope, field: &[Vector], block: usize) -> Vector {
-    let sum: Vector = slope.covers.covers_of(block).map(|i| field[i] * slope.metric.row_sum[i]).sum();
-    sum / slope.metric.total[block]
+    let sum: Vector = slope.covers.covers_of(block).map(|i| field[i] * slope.mass_matrix.row_sum[i]).sum();
+    sum / slope.mass_matrix.total[block]
 }
 
 /// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
@@ -228,8 +228,8 @@ fn rotation(slope: &Slope, state: &State, block: usize) -> f64 {
     for i in slope.covers.covers_of(block) {
         let before = slope.covers.star_position[i] - centre;
         let after = before + state.displacement[i] - shift;
-        cosine += slope.metric.row_sum[i] * before.dot(&after);
-        sine += slope.metric.row_sum[i] * before.perp(&after);
+        cosine += slope.mass_matrix.row_sum[i] * before.dot(&after);
+        sine += slope.mass_matrix.row_sum[i] * before.perp(&after);
     }
     sine.atan2(cosine)
 }

@@ -274,10 +274,10 @@ impl Simulation {
     }
 
     fn energies(&self) -> Ledger {
-        if self.scratch.metric.mass.is_empty() {
+        if self.scratch.mass_matrix.mass.is_empty() {
             return Ledger::default();
         }
-        step::energies(self.slope(), self.state(), &self.scratch.metric)
+        step::energies(self.slope(), self.state(), &self.scratch.mass_matrix)
     }
 
     fn excavate(&mut self, stage: usize) -> Result<(), Invalid> {
@@ -366,7 +366,7 @@ impl Simulation {
 
     /// Linear and angular momentum of the free blocks, see [`step::momentum`].
     pub fn momentum(&self) -> (Vector, f64) {
-        step::momentum(self.slope(), self.state(), &self.scratch.metric)
+        step::momentum(self.slope(), self.state(), &self.scratch.mass_matrix)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::contact::Boundary;
 use crate::cover::Covers;
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 
 use super::{Events, ImplicitScratch, Inputs, Scratch, Slope, State};
 
@@ -41,10 +41,10 @@ impl Slope {
         vec![
             ("elements", elements(&self.covers) + self.element_rock.bytes()),
             ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
-            ("patches", self.patches.bytes()),
+            ("patches", self.chunks.bytes()),
             ("covers", covers(&self.covers)),
             ("boundary", boundary(&self.boundary)),
-            ("masses", metric(&self.metric)),
+            ("masses", mass_matrix(&self.mass_matrix)),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
             ("supports and ports", sum(&[&self.supports, &self.free_field, &self.bolts]) + held + ports),
         ]
@@ -83,7 +83,7 @@ impl Scratch {
         let fields: [&dyn Array; 5] = [&self.load_force, &self.predicted, &self.damped, &self.increment, &self.exposed];
         vec![
             ("fields on covers", sum(&fields)),
-            ("masses", metric(&self.metric)),
+            ("masses", mass_matrix(&self.mass_matrix)),
             ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
             ("places", self.place.bytes() + self.frames.bytes()),
             ("judged pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
@@ -120,9 +120,9 @@ fn boundary(boundary: &Boundary) -> usize {
         + sum(&[side_first, side_last, side_corner, side_previous, side_next, side_ends, block_thickness])
 }
 
-fn metric(metric: &Metric) -> usize {
-    let Metric { mass, row_sum, inertial, inverse, total, inverse_total, square, polar, .. } = metric;
-    let Metric { polar_lumped, spin, fixed, .. } = metric;
+fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
+    let MassMatrix { mass, row_sum, inertial, inverse, total, inverse_total, square, polar, .. } = mass_matrix;
+    let MassMatrix { polar_lumped, spin, fixed, .. } = mass_matrix;
     sum(&[mass, row_sum, inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
 }
 

@@ -6,7 +6,7 @@ use crate::contact::{
 };
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
-use crate::mechanics::{BlockMotion, BlockStart, Damping, Metric, YieldSurface};
+use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
 
 use super::ImplicitScratch;
 
@@ -14,7 +14,7 @@ use super::ImplicitScratch;
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     /// Masses with the fixities of the stage.
-    pub metric: Metric,
+    pub mass_matrix: MassMatrix,
     /// Forces of loads on covers (N/m).
     pub load_force: Vec<Vector>,
     /// Whether anything pushes on covers; otherwise `load_force` is zero.
@@ -31,11 +31,11 @@ pub struct Scratch {
     pub damping: Vec<Damping>,
     /// What the damping of all blocks follows from; none when it must be found anew.
     pub damping_of: Option<Damping>,
-    /// Whether all covers of each patch can move along both axes.
+    /// Whether all covers of each chunk can move along both axes.
     pub movable: Vec<bool>,
     /// Whether contacts, supports or bolts may ask for the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
-    /// Sums over patches.
+    /// Sums over chunks.
     pub sums: Vec<PatchSums>,
     /// Current places of boundary points (m).
     pub place: Vec<Point>,
@@ -98,7 +98,7 @@ pub struct ContactOutcome {
     pub deepest: f64,
 }
 
-/// Sums over the covers of a patch.
+/// Sums over the covers of a chunk.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PatchSums {
     /// Part of a block: at the start of the step.

@@ -4,7 +4,7 @@ use crate::contact::{BoltSegment, Boundary, EntranceRule, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
-    Column, ColumnPlace, Elasticity, Load, Metric, MohrCoulomb, Patches, PreStress, Record, StressField,
+    Chunks, Column, ColumnPlace, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
 use super::Implicit;
@@ -122,7 +122,7 @@ pub struct Slope {
     /// Covers, elements and blocks.
     pub covers: Covers,
     /// Covers and elements as a step passes over them.
-    pub patches: Patches,
+    pub chunks: Chunks,
     /// Rocks.
     pub rocks: Vec<Elasticity>,
     /// Rock of each element.
@@ -134,7 +134,7 @@ pub struct Slope {
     /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
     pub pre_stress_out: Vec<f64>,
     /// Masses of all blocks as if free.
-    pub metric: Metric,
+    pub mass_matrix: MassMatrix,
     /// 2π·cs/max(√A, h) of each block (1/s): what the damping ratio multiplies.
     pub block_frequency: Vec<f64>,
     /// Boundary as contact sees it.

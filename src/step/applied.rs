@@ -73,7 +73,7 @@ pub fn push_forces(slope: &Slope, state: &State, t: f64, ramp: f64, force: &mut 
     for load in &slope.loads {
         let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
         let covers = |b: u32| slope.covers.covers_of(b as usize);
-        load.push(t, place, covers, &slope.metric, force);
+        load.push(t, place, covers, &slope.mass_matrix, force);
     }
     let faces = Faces { slope, state };
     let share = state.drive.share(t);
@@ -94,7 +94,7 @@ fn push_blocks(slope: &Slope, state: &State, share: f64, ramp: f64, force: &mut 
         if f != Vector::zeros() || moment != 0.0 {
             let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
             let covers = slope.covers.covers_of(block);
-            mechanics::push_block(covers, &place, &slope.metric, f * ramp, moment * ramp, force);
+            mechanics::push_block(covers, &place, &slope.mass_matrix, f * ramp, moment * ramp, force);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Passes over patches: forces and kick of every block while its patch is in the cache, and the end of a step; in
-//! parallel over runs of patches. No sum goes over more than a patch, or over the parts of one block in their order.
+//! Passes over chunks: forces and kick of every block while its chunk is in the cache, and the end of a step; in
+//! parallel over runs of chunks. No sum goes over more than a chunk, or over the parts of one block in their order.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -10,31 +10,31 @@ use crate::contact::BlockImpulse;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
 use crate::mechanics::{
-    BlockCovers, BlockMotion, BlockStart, Damping, KickStep, Metric, Patch, Patches, element_lanes,
+    BlockCovers, BlockMotion, BlockStart, Chunk, Chunks, Damping, KickStep, MassMatrix, element_lanes,
 };
 use crate::state::{PatchSums, Slope, State};
 
 use super::DECAY_MAX;
 
-/// Covers below which a run of patches is not split between threads.
+/// Covers below which a run of chunks is not split between threads.
 const GRAIN: usize = 4096;
-/// Covers from which on a step does not find them in the caches, and the next patch is asked for in advance.
+/// Covers from which on a step does not find them in the caches, and the next chunk is asked for in advance.
 const ASKED: usize = 1 << 17;
 
-/// Covers below which a run of patches is not split between threads.
+/// Covers below which a run of chunks is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
     if serial || rayon::current_num_threads() == 1 { usize::MAX } else { GRAIN }
 }
 
 thread_local! {
-    /// Displacements and forces of the patch in hand.
+    /// Displacements and forces of the chunk in hand.
     static TABLES: RefCell<[Table; 2]> = RefCell::default();
 }
 
-/// Output slices that can be cut between patches.
+/// Output slices that can be cut between chunks.
 trait Cut: Sized + Send {
-    /// The outputs of some covers, blocks and patches, and the rest.
-    fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self);
+    /// The outputs of some covers, blocks and chunks, and the rest.
+    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self);
 
     /// Outputs on covers that are asked for before they are written.
     fn asked(&self) -> &[Vector] {
@@ -42,35 +42,35 @@ trait Cut: Sized + Send {
     }
 }
 
-/// Work on a run of patches with its outputs.
+/// Work on a run of chunks with its outputs.
 trait Work: Sync {
     type Out<'o>: Cut;
-    /// Does the work on a patch; `next` is what of the outputs behind it is asked for before it is written.
-    fn patch<L: Lanes>(&self, lanes: L, patch: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
+    /// Does the work on a chunk; `next` is what of the outputs behind it is asked for before it is written.
+    fn chunk<L: Lanes>(&self, lanes: L, chunk: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
 }
 
-/// A run of patches in the hands of one thread.
+/// A run of chunks in the hands of one thread.
 struct Run<'a, 'o, W: Work> {
     work: &'a W,
-    patches: &'a Patches,
+    chunks: &'a Chunks,
     range: Range<usize>,
     out: W::Out<'o>,
 }
 
 impl<W: Work> Run<'_, '_, W> {
     fn cut(self, at: usize) -> (Self, Self) {
-        let Self { work, patches, range, out } = self;
-        let (start, end) = (patches.get(range.start), patches.get(at));
+        let Self { work, chunks, range, out } = self;
+        let (start, end) = (chunks.get(range.start), chunks.get(at));
         let covers = end.covers.start - start.covers.start;
         let (left, right) = out.cut(covers, end.blocks.start - start.blocks.start, at - range.start);
-        let run = |range, out| Self { work, patches, range, out };
+        let run = |range, out| Self { work, chunks, range, out };
         (run(range.start..at, left), run(at..range.end, right))
     }
 
     /// Splits the run between threads down to `grain` covers.
     fn share(self, grain: usize) {
         let Range { start, end } = self.range;
-        let covers = self.patches.get(end - 1).covers.end - self.patches.get(start).covers.start;
+        let covers = self.chunks.get(end - 1).covers.end - self.chunks.get(start).covers.start;
         if covers > grain && end - start > 1 {
             let (left, right) = self.cut(start + (end - start) / 2);
             rayon::join(|| left.share(grain), || right.share(grain));
@@ -95,10 +95,10 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
         while rest.range.len() > 1 {
             let next = rest.range.start + 1;
             let (first, others) = rest.cut(next);
-            first.work.patch(lanes, first.range.start, first.out, others.out.asked(), tables);
+            first.work.chunk(lanes, first.range.start, first.out, others.out.asked(), tables);
             rest = others;
         }
-        rest.work.patch(lanes, rest.range.start, rest.out, &[], tables);
+        rest.work.chunk(lanes, rest.range.start, rest.out, &[], tables);
     }
 }
 
@@ -106,13 +106,13 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
 pub(super) struct Pass<'a> {
     pub slope: &'a Slope,
     pub state: &'a State,
-    pub metric: &'a Metric,
+    pub mass_matrix: &'a MassMatrix,
     pub acceleration: Vector,
-    /// Covers below which a run of patches is not split between threads.
+    /// Covers below which a run of chunks is not split between threads.
     pub grain: usize,
     /// Damping of each block.
     pub damping: &'a [Damping],
-    /// Whether all covers of each patch can move along both axes.
+    /// Whether all covers of each chunk can move along both axes.
     pub movable: &'a [bool],
     /// Whether contacts, supports or bolts may ask for each cover.
     pub exposed: &'a [bool],
@@ -132,8 +132,8 @@ impl Pass<'_> {
             star: &self.slope.covers.star_position[covers.clone()],
             displacement: &self.state.displacement[covers.clone()],
             velocity: &self.state.velocity[covers.clone()],
-            mass: &self.metric.mass[covers.clone()],
-            inertial: &inertial(self.metric, block)[covers],
+            mass: &self.mass_matrix.mass[covers.clone()],
+            inertial: &inertial(self.mass_matrix, block)[covers],
         }
     }
 
@@ -141,9 +141,9 @@ impl Pass<'_> {
         self.span(block, self.slope.covers.covers_of(block)).reference()
     }
 
-    /// How the covers of a block in a patch are written.
-    fn own(&self, patch: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
-        let held = !self.metric.is_free(block);
+    /// How the covers of a block in a chunk are written.
+    fn own(&self, chunk: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+        let held = !self.mass_matrix.is_free(block);
         let (factor, masked) = match step.damping {
             Damping::Deformation(factor) => (factor, factor < 1.0),
             Damping::Mass(factor) => (factor, false),
@@ -152,59 +152,60 @@ impl Pass<'_> {
             factor,
             dt: self.dt,
             acceleration: self.acceleration,
-            held: held
-                .then(|| (&self.metric.row_sum[covers.clone()], inverse(self.metric, self.movable[patch], covers))),
+            held: held.then(|| {
+                (&self.mass_matrix.row_sum[covers.clone()], inverse(self.mass_matrix, self.movable[chunk], covers))
+            }),
             masked,
         }
     }
 
-    /// What the patch after this one will read.
-    fn ahead<'a>(&'a self, patch: &Patch, next: &'a [Vector]) -> Ahead<'a> {
-        let (start, count) = (patch.covers.end, self.state.displacement.len());
-        let end = if count < ASKED { start } else { (start + patch.covers.len()).min(count) };
-        let times = self.slope.patches.eights(patch).div_ceil(element_lanes::TOGETHER).max(1);
+    /// What the chunk after this one will read.
+    fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
+        let (start, count) = (chunk.covers.end, self.state.displacement.len());
+        let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
+        let times = self.slope.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
         Ahead { pass: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
     }
 
-    /// Adds the element forces of a patch to the table of its covers (Eq. 7).
+    /// Adds the element forces of a chunk to the table of its covers (Eq. 7).
     #[inline(always)]
-    fn push_elements<L: Lanes>(&self, lanes: L, patch: &Patch, next: &[Vector], tables: &mut [Table; 2]) {
+    fn push_elements<L: Lanes>(&self, lanes: L, chunk: &Chunk, next: &[Vector], tables: &mut [Table; 2]) {
         let (slope, u) = (self.slope, &self.state.displacement);
-        let patches = &slope.patches;
+        let chunks = &slope.chunks;
         let [displacement, force] = &mut *tables;
-        let (own, halo) = (patch.covers.len(), patches.halo(patch));
+        let (own, halo) = (chunk.covers.len(), chunks.halo(chunk));
         let local = displacement.first_mut(own + halo.len() + LANES);
         let (local, behind) = local.split_at_mut(own + halo.len());
-        local[..own].copy_from_slice(&u[patch.covers.clone()]);
+        local[..own].copy_from_slice(&u[chunk.covers.clone()]);
         for (pair, &cover) in local[own..].iter_mut().zip(halo) {
             *pair = u[cover as usize];
         }
         // Missing elements of a row may reach beyond the last slot.
         behind.fill(Vector::zeros());
         lanes.clear(force, own + halo.len() + LANES);
-        if let Some(load) = self.load_force.get(patch.covers.clone()) {
+        if let Some(load) = self.load_force.get(chunk.covers.clone()) {
             force.first_mut(own).copy_from_slice(load);
         }
-        let mut ahead = self.ahead(patch, next);
-        for batch in patches.batches(patch) {
+        let mut ahead = self.ahead(chunk, next);
+        for batch in chunks.batches(chunk) {
             let rock = &slope.rocks[batch.rock as usize];
-            let [in_row, in_group] = patches.gradients(batch, &slope.covers.gradients[batch.set as usize]);
-            element_lanes::push_forces(lanes, patches.rows(batch), (rock, in_row), tables, || ahead.ask());
-            element_lanes::push_forces(lanes, patches.groups(batch), (rock, in_group), tables, || ahead.ask());
+            let [in_row, in_group] = chunks.gradients(batch, &slope.covers.gradients[batch.set as usize]);
+            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, || ahead.ask());
+            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, || ahead.ask());
         }
         if !self.state.plastic.is_empty() {
-            self.relieve(patch, &mut tables[1]);
+            self.relieve(chunk, &mut tables[1]);
         }
     }
 
-    /// Adds what plastic strain takes from the forces of the elements of a patch.
+    /// Adds what plastic strain takes from the forces of the elements of a chunk.
     #[inline(never)]
-    fn relieve(&self, patch: &Patch, force: &mut Table) {
-        let (slope, patches) = (self.slope, &self.slope.patches);
-        for batch in patches.batches(patch) {
+    fn relieve(&self, chunk: &Chunk, force: &mut Table) {
+        let (slope, chunks) = (self.slope, &self.slope.chunks);
+        for batch in chunks.batches(chunk) {
             let Some(strength) = &slope.strengths[batch.rock as usize] else { continue };
             let g = &slope.covers.gradients[batch.set as usize];
-            for (e, slots) in patches.elements(batch) {
+            for (e, slots) in chunks.elements(batch) {
                 let plastic = &self.state.plastic[e];
                 if *plastic == [0.0; 4] {
                     continue;
@@ -218,7 +219,7 @@ impl Pass<'_> {
 }
 
 /// Covers whose values will be read soon, and are asked for piece by piece: memory is slow to come, and idle while a
-/// patch is in hand.
+/// chunk is in hand.
 struct Ahead<'a> {
     pass: &'a Pass<'a>,
     covers: Range<usize>,
@@ -239,12 +240,12 @@ impl Ahead<'_> {
         let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
         self.next = later;
         prefetch(now);
-        let Pass { slope, state, metric, .. } = self.pass;
+        let Pass { slope, state, mass_matrix, .. } = self.pass;
         prefetch(&state.displacement[covers.clone()]);
         prefetch(&state.velocity[covers.clone()]);
         prefetch(&slope.covers.star_position[covers.clone()]);
-        prefetch(&metric.mass[covers.clone()]);
-        prefetch(&metric.row_sum[covers]);
+        prefetch(&mass_matrix.mass[covers.clone()]);
+        prefetch(&mass_matrix.row_sum[covers]);
     }
 }
 
@@ -257,11 +258,11 @@ struct Kicked<'o> {
 }
 
 impl Cut for Kicked<'_> {
-    fn cut(self, covers: usize, blocks: usize, patches: usize) -> (Self, Self) {
+    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self) {
         let (predicted, predicted_rest) = self.predicted.split_at_mut(covers);
         let (motion, motion_rest) = self.motion.split_at_mut(blocks);
         let (start, start_rest) = self.start.split_at_mut(blocks);
-        let (sums, sums_rest) = self.sums.split_at_mut(patches);
+        let (sums, sums_rest) = self.sums.split_at_mut(chunks);
         let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
         (Kicked { predicted, motion, start, sums }, rest)
     }
@@ -274,32 +275,32 @@ impl Cut for Kicked<'_> {
 impl Work for Pass<'_> {
     type Out<'o> = Kicked<'o>;
 
-    /// Forces and kick of the blocks of a patch; of a part of a block all but what is common to the block.
+    /// Forces and kick of the blocks of a chunk; of a part of a block all but what is common to the block.
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
-        let patch = self.slope.patches.get(number);
+    fn chunk<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
+        let chunk = self.slope.chunks.get(number);
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
-        let fixed = match patch.part_of {
-            Some(block) => self.metric.fixed[block as usize],
-            None => patch.blocks.clone().all(|b| self.metric.fixed[b]),
+        let fixed = match chunk.part_of {
+            Some(block) => self.mass_matrix.fixed[block as usize],
+            None => chunk.blocks.clone().all(|b| self.mass_matrix.fixed[b]),
         };
         if fixed {
-            let squares = self.state.velocity[patch.covers.clone()].iter().map(|v| v.norm_squared());
+            let squares = self.state.velocity[chunk.covers.clone()].iter().map(|v| v.norm_squared());
             sums.fastest = squares.fold(0.0, f64::max);
             predicted.fill(Vector::zeros());
             motion.fill(BlockMotion::default());
             return;
         }
-        self.push_elements(lanes, patch, next, tables);
-        let force = tables[1].first(patch.covers.len());
-        if let Some(block) = patch.part_of {
+        self.push_elements(lanes, chunk, next, tables);
+        let force = tables[1].first(chunk.covers.len());
+        if let Some(block) = chunk.part_of {
             self.kick_part(lanes, (number, block as usize), force, predicted, sums);
             return;
         }
-        for (k, block) in patch.blocks.clone().enumerate() {
+        for (k, block) in chunk.blocks.clone().enumerate() {
             let covers = self.slope.covers.covers_of(block);
-            let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
+            let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
             (motion[k], start[k]) = self.kick_block(lanes, (number, block), force, predicted, &mut sums.fastest);
         }
@@ -311,13 +312,13 @@ impl Pass<'_> {
     fn kick_block<L: Lanes>(
         &self,
         lanes: L,
-        (patch, block): (usize, usize),
+        (chunk, block): (usize, usize),
         force: &[Vector],
         predicted: &mut [Vector],
         fastest: &mut f64,
     ) -> (BlockMotion, BlockStart) {
         let covers = self.slope.covers.covers_of(block);
-        if self.metric.fixed[block] {
+        if self.mass_matrix.fixed[block] {
             let squares = self.state.velocity[covers].iter().map(|v| v.norm_squared());
             *fastest = squares.fold(*fastest, f64::max);
             predicted.fill(Vector::zeros());
@@ -325,58 +326,58 @@ impl Pass<'_> {
         }
         let (span, step) = (self.span(block, covers.clone()), self.step(block));
         let from = span.reference();
-        let sums = span.sums(lanes, &from, self.metric.is_free(block).then_some(force));
-        let start = BlockStart::new(self.metric, block, from, &sums);
-        let common = start.common(self.metric, block, &sums, &step);
-        let own = self.own(patch, block, covers, &step);
+        let sums = span.sums(lanes, &from, self.mass_matrix.is_free(block).then_some(force));
+        let start = BlockStart::new(self.mass_matrix, block, from, &sums);
+        let common = start.common(self.mass_matrix, block, &sums, &step);
+        let own = self.own(chunk, block, covers, &step);
         *fastest = fastest.max(span.kick(lanes, &from, &own, &common, (force, predicted)));
-        (start.motion(self.metric, block), start)
+        (start.motion(self.mass_matrix, block), start)
     }
 
     #[inline(always)]
     fn kick_part<L: Lanes>(
         &self,
         lanes: L,
-        (patch, block): (usize, usize),
+        (chunk, block): (usize, usize),
         force: &[Vector],
         predicted: &mut [Vector],
         sums: &mut PatchSums,
     ) {
-        let covers = self.slope.patches.get(patch).covers.clone();
+        let covers = self.slope.chunks.get(chunk).covers.clone();
         let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
-        let own = self.own(patch, block, covers, &step);
+        let own = self.own(chunk, block, covers, &step);
         (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
     }
 
     /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
     pub fn kick(&self, out: &mut KickOut) {
-        let patches = &self.slope.patches;
+        let chunks = &self.slope.chunks;
         let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };
-        Run { work: self, patches, range: 0..patches.len(), out: kicked }.share(self.grain);
+        Run { work: self, chunks, range: 0..chunks.len(), out: kicked }.share(self.grain);
         let mut is_cut = false;
-        for first in patches.cut_blocks() {
+        for first in chunks.cut_blocks() {
             is_cut |= self.join_parts(first, out);
         }
         if is_cut {
             let exposed = Exposed { pass: self, sums: out.sums, start: out.start };
-            Run { work: &exposed, patches, range: 0..patches.len(), out: Predicted(out.predicted) }.share(self.grain);
+            Run { work: &exposed, chunks, range: 0..chunks.len(), out: Predicted(out.predicted) }.share(self.grain);
         }
     }
 
     /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
     fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
-        let patches = &self.slope.patches;
-        let block = patches.get(first).blocks.start;
-        if self.metric.fixed[block] {
+        let chunks = &self.slope.chunks;
+        let block = chunks.get(first).blocks.start;
+        if self.mass_matrix.fixed[block] {
             return false;
         }
         let mut sums = out.sums[first].block;
-        let parts = patches.parts(first);
+        let parts = chunks.parts(first);
         parts.clone().skip(1).for_each(|part| sums += out.sums[part].block);
-        let start = BlockStart::new(self.metric, block, self.reference(block), &sums);
-        let common = start.common(self.metric, block, &sums, &self.step(block));
+        let start = BlockStart::new(self.mass_matrix, block, self.reference(block), &sums);
+        let common = start.common(self.mass_matrix, block, &sums, &self.step(block));
         parts.for_each(|part| out.sums[part].common = common);
-        (out.motion[block], out.start[block]) = (start.motion(self.metric, block), start);
+        (out.motion[block], out.start[block]) = (start.motion(self.mass_matrix, block), start);
         common != Common::default()
     }
 }
@@ -409,33 +410,33 @@ impl Work for Exposed<'_> {
     type Out<'o> = Predicted<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
-        let Pass { slope, metric, movable, exposed, .. } = *self.pass;
-        let patch = slope.patches.get(k);
-        let Some(block) = patch.part_of.map(|b| b as usize).filter(|b| !metric.fixed[*b]) else { return };
-        if let Some(spread) = spread(metric, (patch, block), movable[k], exposed, &self.sums[k].common) {
+    fn chunk<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
+        let Pass { slope, mass_matrix, movable, exposed, .. } = *self.pass;
+        let chunk = slope.chunks.get(k);
+        let Some(block) = chunk.part_of.map(|b| b as usize).filter(|b| !mass_matrix.fixed[*b]) else { return };
+        if let Some(spread) = spread(mass_matrix, (chunk, block), movable[k], exposed, &self.sums[k].common) {
             let from = &self.start[block].from;
-            self.pass.span(block, patch.covers.clone()).spread(lanes, from, &spread, predicted);
+            self.pass.span(block, chunk.covers.clone()).spread(lanes, from, &spread, predicted);
         }
     }
 }
 
 /// What covers of a part of a block that can move have in common with the others of the block.
 fn spread<'a>(
-    metric: &'a Metric,
-    (part, block): (&Patch, usize),
+    mass_matrix: &'a MassMatrix,
+    (part, block): (&Chunk, usize),
     movable: bool,
     exposed: &'a [bool],
     common: &'a Common,
 ) -> Option<Spread<'a>> {
     let covers = part.covers.clone();
-    let inverse = inverse(metric, movable || metric.is_free(block), covers.clone());
+    let inverse = inverse(mass_matrix, movable || mass_matrix.is_free(block), covers.clone());
     (*common != Common::default()).then(|| Spread { common, inverse, exposed: &exposed[covers] })
 }
 
 /// 1/m of covers unless they can all move.
-fn inverse(metric: &Metric, movable: bool, covers: Range<usize>) -> Option<&[Vector]> {
-    (!movable).then(|| &metric.inverse[covers])
+fn inverse(mass_matrix: &MassMatrix, movable: bool, covers: Range<usize>) -> Option<&[Vector]> {
+    (!movable).then(|| &mass_matrix.inverse[covers])
 }
 
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
@@ -444,7 +445,7 @@ const NEAR: f64 = 0.99;
 /// The end of a step: contacts' part of the velocities, new places, sums for the works.
 pub(super) struct Finish<'a> {
     pub slope: &'a Slope,
-    pub metric: &'a Metric,
+    pub mass_matrix: &'a MassMatrix,
     /// Velocities before the step (m/s).
     pub before: &'a [Vector],
     pub motion: &'a [BlockMotion],
@@ -454,7 +455,7 @@ pub(super) struct Finish<'a> {
     pub increment: &'a [Vector],
     /// Damping of each block.
     pub damping: &'a [Damping],
-    /// Whether all covers of each patch can move along both axes.
+    /// Whether all covers of each chunk can move along both axes.
     pub movable: &'a [bool],
     /// Whether contacts, supports or bolts may ask for each cover.
     pub exposed: &'a [bool],
@@ -473,10 +474,10 @@ pub(super) struct Finished<'o> {
 }
 
 impl Cut for Finished<'_> {
-    fn cut(self, covers: usize, _: usize, patches: usize) -> (Self, Self) {
+    fn cut(self, covers: usize, _: usize, chunks: usize) -> (Self, Self) {
         let (velocity, velocity_rest) = self.velocity.split_at_mut(covers);
         let (displacement, displacement_rest) = self.displacement.split_at_mut(covers);
-        let (sums, sums_rest) = self.sums.split_at_mut(patches);
+        let (sums, sums_rest) = self.sums.split_at_mut(chunks);
         let rest = Finished { velocity: velocity_rest, displacement: displacement_rest, sums: sums_rest };
         (Finished { velocity, displacement, sums }, rest)
     }
@@ -486,26 +487,27 @@ impl Work for Finish<'_> {
     type Out<'o> = Finished<'o>;
 
     #[inline(always)]
-    fn patch<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
-        let patch = self.slope.patches.get(k);
+    fn chunk<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
+        let chunk = self.slope.chunks.get(k);
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
         let common = sums.common;
-        let blocks = patch.part_of.map_or(patch.blocks.clone(), |b| b as usize..b as usize + 1);
-        for block in blocks.filter(|b| !self.metric.fixed[*b]) {
+        let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b as usize..b as usize + 1);
+        for block in blocks.filter(|b| !self.mass_matrix.fixed[*b]) {
             let own = self.slope.covers.covers_of(block);
-            let covers = own.start.max(patch.covers.start)..own.end.min(patch.covers.end);
-            let local = covers.start - patch.covers.start..covers.end - patch.covers.start;
-            let of_part =
-                patch.part_of.and_then(|_| spread(self.metric, (patch, block), self.movable[k], self.exposed, &common));
+            let covers = own.start.max(chunk.covers.start)..own.end.min(chunk.covers.end);
+            let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
+            let of_part = chunk
+                .part_of
+                .and_then(|_| spread(self.mass_matrix, (chunk, block), self.movable[k], self.exposed, &common));
             let mut end = End {
                 spread: of_part,
                 star: &self.slope.covers.star_position[covers.clone()],
-                mass: &self.metric.mass[covers.clone()],
-                inertial: &inertial(self.metric, block)[covers.clone()],
-                row_sum: &self.metric.row_sum[covers.clone()],
+                mass: &self.mass_matrix.mass[covers.clone()],
+                inertial: &inertial(self.mass_matrix, block)[covers.clone()],
+                row_sum: &self.mass_matrix.row_sum[covers.clone()],
                 before: &self.before[covers.clone()],
                 increment: &self.increment[covers],
                 velocity: &mut velocity[local.clone()],
@@ -515,7 +517,7 @@ impl Work for Finish<'_> {
             (sums.fastest, sums.squares) = (sums.fastest.max(speeds[0]), sums.squares + speeds[1]);
             farthest = f64::max(farthest, distance);
             sums.row_sum += works.row_sum;
-            if patch.part_of.is_some() {
+            if chunk.part_of.is_some() {
                 sums.works = works;
             } else {
                 sums.damping += self.damping_work(block, &works);
@@ -528,14 +530,14 @@ impl Work for Finish<'_> {
 impl Finish<'_> {
     #[inline(always)]
     fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2], f64) {
-        let (metric, push, from) = (self.metric, &self.push[block], &self.start[block].from);
-        let is_pushed = *push != BlockImpulse::default() && metric.is_free(block);
+        let (mass_matrix, push, from) = (self.mass_matrix, &self.push[block], &self.start[block].from);
+        let is_pushed = *push != BlockImpulse::default() && mass_matrix.is_free(block);
         let mut common = Common::default();
         if is_pushed {
-            let share = metric.inverse_total[block];
-            let velocity = (push.impulse * (1.0 + metric.square[block] * share) - push.weighted) * share;
+            let share = mass_matrix.inverse_total[block];
+            let velocity = (push.impulse * (1.0 + mass_matrix.square[block] * share) - push.weighted) * share;
             let centre = self.motion[block].centre - from.place;
-            common = Common::about(velocity, metric.spin[block] * push.moment, centre);
+            common = Common::about(velocity, mass_matrix.spin[block] * push.moment, centre);
             common.weighted = push.impulse * -share;
         }
         let is_damped = is_damping(self.damping[block]);
@@ -549,15 +551,15 @@ impl Finish<'_> {
         if !is_damping(damping) {
             return 0.0;
         }
-        self.start[block].damping_work(self.metric, block, works, damping)
+        self.start[block].damping_work(self.mass_matrix, block, works, damping)
     }
 
     /// Ends the step of all blocks.
     pub fn run(&self, out: Finished) -> Totals {
-        let patches = &self.slope.patches;
+        let chunks = &self.slope.chunks;
         let Finished { velocity, displacement, sums } = out;
         let out = Finished { velocity, displacement, sums: &mut *sums };
-        Run { work: self, patches, range: 0..patches.len(), out }.share(self.grain);
+        Run { work: self, chunks, range: 0..chunks.len(), out }.share(self.grain);
         let mut totals = Totals::default();
         for sums in &*sums {
             totals.damping += sums.damping;
@@ -565,11 +567,11 @@ impl Finish<'_> {
             totals.fastest = totals.fastest.max(sums.fastest);
             totals.squares += sums.squares;
         }
-        for first in patches.cut_blocks() {
+        for first in chunks.cut_blocks() {
             let mut works = WorkSums::default();
-            patches.parts(first).for_each(|part| works += sums[part].works);
-            let block = patches.get(first).blocks.start;
-            if !self.metric.fixed[block] {
+            chunks.parts(first).for_each(|part| works += sums[part].works);
+            let block = chunks.get(first).blocks.start;
+            if !self.mass_matrix.fixed[block] {
                 totals.damping += self.damping_work(block, &works);
             }
         }
@@ -591,8 +593,8 @@ pub(super) struct Totals {
 }
 
 /// Masses by which covers count in the centroid of a block: those of a held one are its lumped ones, read once.
-fn inertial(metric: &Metric, block: usize) -> &[f64] {
-    if metric.is_free(block) { &metric.inertial } else { &metric.mass }
+fn inertial(mass_matrix: &MassMatrix, block: usize) -> &[f64] {
+    if mass_matrix.is_free(block) { &mass_matrix.inertial } else { &mass_matrix.mass }
 }
 
 /// Whether damping takes anything.
@@ -603,14 +605,14 @@ fn is_damping(damping: Damping) -> bool {
 
 /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
 /// lighter by the root of that faster (Eq. 76).
-pub(super) fn block_damping(slope: &Slope, metric: &Metric, damping: Damping, block: usize) -> Damping {
+pub(super) fn block_damping(slope: &Slope, mass_matrix: &MassMatrix, damping: Damping, block: usize) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
             Damping::Deformation((-(ratio_dt * slope.block_frequency[block]).min(DECAY_MAX)).exp())
         }
         Damping::Deformation(_) => Damping::Deformation(1.0),
-        Damping::Mass(factor) if metric.lightness > 1.0 && metric.is_free(block) => {
-            Damping::Mass(factor.powf(metric.lightness.sqrt()).max((-DECAY_MAX).exp()))
+        Damping::Mass(factor) if mass_matrix.lightness > 1.0 && mass_matrix.is_free(block) => {
+            Damping::Mass(factor.powf(mass_matrix.lightness.sqrt()).max((-DECAY_MAX).exp()))
         }
         mass => mass,
     }
@@ -619,11 +621,11 @@ pub(super) fn block_damping(slope: &Slope, metric: &Metric, damping: Damping, bl
 /// One block's slices: for its energy, momentum and damping.
 pub(super) fn block_covers<'a>(
     slope: &'a Slope,
-    metric: &'a Metric,
+    mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
     block: usize,
 ) -> BlockCovers<'a> {
     let range = slope.covers.covers_of(block);
-    BlockCovers { metric, block, range, star: &slope.covers.star_position, displacement, velocity }
+    BlockCovers { mass_matrix, block, range, star: &slope.covers.star_position, displacement, velocity }
 }

@@ -44,11 +44,22 @@ impl Step<'_> {
         let is_loaded = self.extra(dt) != Vector::zeros();
         let (slope, state) = (self.slope, &mut *self.state);
         let Scratch {
-            metric, predicted, increment, motion, start, push, sums, serial, damping, movable, exposed, ..
+            mass_matrix,
+            predicted,
+            increment,
+            motion,
+            start,
+            push,
+            sums,
+            serial,
+            damping,
+            movable,
+            exposed,
+            ..
         } = &mut *self.scratch;
         let finish = Finish {
             slope,
-            metric,
+            mass_matrix,
             before: &state.velocity,
             motion,
             start,
@@ -78,14 +89,14 @@ impl Step<'_> {
     /// Velocities after damping and before any force.
     fn fill_damped(&mut self) {
         let (slope, state) = (self.slope, &*self.state);
-        let Scratch { metric, damped, .. } = &mut *self.scratch;
+        let Scratch { mass_matrix, damped, .. } = &mut *self.scratch;
         for block in 0..slope.covers.block_count() {
-            let covers = blocks::block_covers(slope, metric, &state.displacement, &state.velocity, block);
+            let covers = blocks::block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
             let out = &mut damped[slope.covers.covers_of(block)];
-            if metric.fixed[block] {
+            if mass_matrix.fixed[block] {
                 out.fill(Vector::zeros());
             } else {
-                mechanics::damp(&covers, blocks::block_damping(slope, metric, self.damping, block), out);
+                mechanics::damp(&covers, blocks::block_damping(slope, mass_matrix, self.damping, block), out);
             }
         }
     }
@@ -94,7 +105,7 @@ impl Step<'_> {
     fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
         self.fill_damped();
         let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.metric, &state.displacement, velocity);
+        let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.mass_matrix, &state.displacement, velocity);
         let mut ledger = state.ledger;
         ledger.add_works(works, 0.5);
         ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
@@ -118,13 +129,13 @@ impl Step<'_> {
 
     /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
     fn unbalanced(&self, dt: f64) -> f64 {
-        let (metric, scratch) = (&self.slope.metric, &*self.scratch);
+        let (mass_matrix, scratch) = (&self.slope.mass_matrix, &*self.scratch);
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let acceleration = self.acceleration(dt);
         let (mut net, mut applied) = (0.0, 0.0);
-        for i in 0..metric.mass.len() {
-            net += ((scratch.predicted[i] - scratch.damped[i]) * (metric.mass[i] / kick_dt)).norm_squared();
-            applied += (scratch.load_force[i] + acceleration * metric.row_sum[i]).norm_squared();
+        for i in 0..mass_matrix.mass.len() {
+            net += ((scratch.predicted[i] - scratch.damped[i]) * (mass_matrix.mass[i] / kick_dt)).norm_squared();
+            applied += (scratch.load_force[i] + acceleration * mass_matrix.row_sum[i]).norm_squared();
         }
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
         report::unbalanced(net, applied.max(stage)).sqrt()
@@ -139,7 +150,7 @@ impl Step<'_> {
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let scratch = &*self.scratch;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {
-            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.slope.metric.mass[i] / kick_dt);
+            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.slope.mass_matrix.mass[i] / kick_dt);
         }
     }
 }

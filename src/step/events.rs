@@ -30,7 +30,7 @@ pub fn note(slope: &Slope, regime: Regime, state: &mut State, scratch: &mut Scra
 fn note_detached(state: &mut State, scratch: &Scratch, time: f64) {
     let events = &mut state.events;
     for block in 0..scratch.touching.len() {
-        let free = !scratch.metric.fixed[block] && !state.removed[block];
+        let free = !scratch.mass_matrix.fixed[block] && !state.removed[block];
         let left = events.touching[block] && !scratch.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
@@ -56,18 +56,18 @@ fn note_slipped(slope: &Slope, state: &mut State, time: f64) {
 
 fn note_failed(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64) {
     let limit = slope.failure_displacement;
-    for (first, patch) in slope.patches.iter().enumerate().filter(|(_, patch)| !patch.blocks.is_empty()) {
-        let parts = first..first + slope.patches.parts(first).len().max(1);
+    for (first, chunk) in slope.chunks.iter().enumerate().filter(|(_, chunk)| !chunk.blocks.is_empty()) {
+        let parts = first..first + slope.chunks.parts(first).len().max(1);
         if scratch.sums[parts].iter().all(|sums| sums.is_near) {
             continue;
         }
-        for block in patch.blocks.clone().filter(|&b| !scratch.metric.fixed[b] && !state.removed[b]) {
+        for block in chunk.blocks.clone().filter(|&b| !scratch.mass_matrix.fixed[b] && !state.removed[b]) {
             if state.events.failed[block] {
                 continue;
             }
             let covers = slope.covers.covers_of(block);
-            let sum: Vector = covers.map(|i| state.displacement[i] * slope.metric.row_sum[i]).sum();
-            if sum.norm() > limit * slope.metric.total[block] {
+            let sum: Vector = covers.map(|i| state.displacement[i] * slope.mass_matrix.row_sum[i]).sum();
+            if sum.norm() > limit * slope.mass_matrix.total[block] {
                 state.events.failed[block] = true;
                 state.events.list.push(Event { kind: EventKind::Failed, subject: block as u32, time });
             }

@@ -26,12 +26,12 @@ impl Step<'_> {
         let (acceleration, grain, is_loaded) =
             (self.acceleration(dt), blocks::grain(self.scratch.serial), self.scratch.is_loaded);
         self.damp_blocks();
-        let Scratch { metric, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
+        let Scratch { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
             &mut *self.scratch;
         let pass = blocks::Pass {
             slope: self.slope,
             state: &*self.state,
-            metric,
+            mass_matrix,
             acceleration,
             damping,
             movable,
@@ -43,7 +43,7 @@ impl Step<'_> {
         pass.kick(&mut KickOut { predicted, motion, start, sums });
         self.scratch.speed_max = self.scratch.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
         self.kick_columns(dt);
-        for (spin, motion) in self.scratch.metric.spin.iter_mut().zip(&self.scratch.motion) {
+        for (spin, motion) in self.scratch.mass_matrix.spin.iter_mut().zip(&self.scratch.motion) {
             *spin = motion.spin;
         }
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
@@ -52,12 +52,12 @@ impl Step<'_> {
     /// Damping of every block, when the step or the masses are no longer those of the step before.
     fn damp_blocks(&mut self) {
         let (slope, damping) = (self.slope, self.damping);
-        let Scratch { metric, damping: of_blocks, damping_of, .. } = &mut *self.scratch;
+        let Scratch { mass_matrix, damping: of_blocks, damping_of, .. } = &mut *self.scratch;
         if *damping_of != Some(damping) {
             *damping_of = Some(damping);
             let blocks = 0..slope.covers.block_count();
             of_blocks.clear();
-            of_blocks.extend(blocks.map(|block| blocks::block_damping(slope, metric, damping, block)));
+            of_blocks.extend(blocks.map(|block| blocks::block_damping(slope, mass_matrix, damping, block)));
         }
     }
 
@@ -95,7 +95,7 @@ impl Step<'_> {
                 for i in 0..state.displacement.len() {
                     let moved = state.displacement[i] - state.stage_displacement[i];
                     work += state.stage_force[i].dot(&moved);
-                    inertia += self.slope.metric.mass[i] * moved.norm_squared();
+                    inertia += self.slope.mass_matrix.mass[i] * moved.norm_squared();
                 }
                 let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
                 Damping::Mass((-(rate * dt).min(DECAY_MAX)).exp())

@@ -16,7 +16,7 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     }
     scratch.motion.resize(slope.covers.block_count(), Default::default());
     scratch.start.resize(slope.covers.block_count(), Default::default());
-    scratch.sums.resize(slope.patches.len(), Default::default());
+    scratch.sums.resize(slope.chunks.len(), Default::default());
     scratch.push.resize(slope.covers.block_count(), Default::default());
     scratch.columns.clear();
     scratch.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
@@ -24,8 +24,8 @@ pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
     scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
     hold(slope, state, scratch);
     expose(slope, &mut scratch.exposed);
-    scratch.open_close.prepare(&scratch.metric, &slope.supports, &scratch.rows);
-    implicit::prepare(slope, &scratch.metric, &mut scratch.implicit);
+    scratch.open_close.prepare(&scratch.mass_matrix, &slope.supports, &scratch.rows);
+    implicit::prepare(slope, &scratch.mass_matrix, &mut scratch.implicit);
 }
 
 /// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
@@ -42,22 +42,22 @@ fn expose(slope: &Slope, exposed: &mut Vec<bool>) {
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
 fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
-    scratch.metric.clone_from(&slope.metric);
-    let metric = &mut scratch.metric;
+    scratch.mass_matrix.clone_from(&slope.mass_matrix);
+    let mass_matrix = &mut scratch.mass_matrix;
     for (fixity, _) in slope.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
-            metric.hold_block(&slope.covers, slope.covers.cover_block[cover as usize] as usize);
-            metric.hold_cover(cover as usize, axes);
+            mass_matrix.hold_block(&slope.covers, slope.covers.cover_block[cover as usize] as usize);
+            mass_matrix.hold_cover(cover as usize, axes);
         }
     }
     for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
-        metric.hold_block(&slope.covers, block);
-        slope.covers.covers_of(block).for_each(|i| metric.hold_cover(i, [true, true]));
+        mass_matrix.hold_block(&slope.covers, block);
+        slope.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
     scratch.rows.clear();
     let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
     for (_, support) in slope.supports.iter().enumerate().filter(holds) {
-        metric.hold_block(&slope.covers, support.block as usize);
+        mass_matrix.hold_block(&slope.covers, support.block as usize);
     }
     scratch.rows.extend(slope.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
@@ -65,18 +65,18 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
         target: 0.0,
         viscosity: 0.0,
         approach: 0.0,
-        compliance: support.compliance(metric),
+        compliance: support.compliance(mass_matrix),
         force: state.support_force[k],
     }));
     let is_static = !state.stage_displacement.is_empty();
     if is_static && slope.implicit.is_none() && slope.mass_scaling > 1.0 {
-        metric.lighten(slope.mass_scaling);
+        mass_matrix.lighten(slope.mass_scaling);
     }
-    metric.mark_fixed(&slope.covers);
+    mass_matrix.mark_fixed(&slope.covers);
     scratch.damping_of = None;
-    let is_movable = |i: usize| metric.inverse[i].x > 0.0 && metric.inverse[i].y > 0.0;
+    let is_movable = |i: usize| mass_matrix.inverse[i].x > 0.0 && mass_matrix.inverse[i].y > 0.0;
     scratch.movable.clear();
-    scratch.movable.extend(slope.patches.iter().map(|patch| patch.covers.clone().all(is_movable)));
+    scratch.movable.extend(slope.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.
@@ -105,7 +105,7 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     if let Regime::Static { .. } = regime {
         state.stage_displacement.clone_from(&state.displacement);
         let acceleration = applied::acceleration(slope, state, start);
-        let mut force: Vec<Vector> = slope.metric.row_sum.iter().map(|m| acceleration * *m).collect();
+        let mut force: Vec<Vector> = slope.mass_matrix.row_sum.iter().map(|m| acceleration * *m).collect();
         applied::push_forces(slope, state, start, 1.0, &mut force);
         state.stage_force = force;
     }

@@ -2,7 +2,7 @@
 
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, Metric};
+use crate::mechanics::{self, MassMatrix};
 use crate::state::{Ledger, Scratch, Slope, State};
 
 use super::blocks::block_covers;
@@ -43,13 +43,13 @@ pub(super) fn speed_max(slope: &Slope, state: &State) -> f64 {
 }
 
 /// Kinetic energy (J/m) of all blocks that can move.
-pub(super) fn kinetic(slope: &Slope, metric: &Metric, displacement: &[Vector], velocity: &[Vector]) -> f64 {
+pub(super) fn kinetic(slope: &Slope, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
     if let Some(implicit) = &slope.implicit {
-        return implicit::kinetic_energy(slope, implicit, metric, velocity);
+        return implicit::kinetic_energy(slope, implicit, mass_matrix, velocity);
     }
     (0..slope.covers.block_count())
-        .filter(|&b| !metric.fixed[b])
-        .map(|b| mechanics::kinetic_energy(&block_covers(slope, metric, displacement, velocity, b)))
+        .filter(|&b| !mass_matrix.fixed[b])
+        .map(|b| mechanics::kinetic_energy(&block_covers(slope, mass_matrix, displacement, velocity, b)))
         .sum()
 }
 
@@ -65,7 +65,7 @@ pub(super) fn potential(slope: &Slope, state: &State) -> f64 {
     let covers = &slope.covers;
     (0..covers.cover_count())
         .filter(|&i| !state.removed[covers.cover_block[i] as usize])
-        .map(|i| -slope.metric.row_sum[i] * slope.gravity.dot(&state.displacement[i]))
+        .map(|i| -slope.mass_matrix.row_sum[i] * slope.gravity.dot(&state.displacement[i]))
         .sum()
 }
 
@@ -94,9 +94,9 @@ pub(super) fn bolt_stored(slope: &Slope, state: &State) -> f64 {
 }
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
-pub fn energies(slope: &Slope, state: &State, metric: &Metric) -> Ledger {
+pub fn energies(slope: &Slope, state: &State, mass_matrix: &MassMatrix) -> Ledger {
     Ledger {
-        kinetic: kinetic(slope, metric, &state.displacement, &state.velocity),
+        kinetic: kinetic(slope, mass_matrix, &state.displacement, &state.velocity),
         strain: strain(slope, state),
         potential: potential(slope, state),
         ..state.ledger
@@ -104,21 +104,21 @@ pub fn energies(slope: &Slope, state: &State, metric: &Metric) -> Ledger {
 }
 
 /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
-pub fn momentum(slope: &Slope, state: &State, metric: &Metric) -> (Vector, f64) {
+pub fn momentum(slope: &Slope, state: &State, mass_matrix: &MassMatrix) -> (Vector, f64) {
     let (mut linear, mut angular) = (Vector::zeros(), 0.0);
-    for block in (0..slope.covers.block_count()).filter(|&b| metric.is_free(b)) {
-        let covers = block_covers(slope, metric, &state.displacement, &state.velocity, block);
+    for block in (0..slope.covers.block_count()).filter(|&b| mass_matrix.is_free(b)) {
+        let covers = block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
         let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&covers);
-        linear += velocity * metric.total[block];
-        angular += metric.total[block] * centre.perp(&velocity) + metric.polar[block] * spin;
+        linear += velocity * mass_matrix.total[block];
+        angular += mass_matrix.total[block] * centre.perp(&velocity) + mass_matrix.polar[block] * spin;
     }
     (linear, angular)
 }
 
 /// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
-pub fn block_motion(slope: &Slope, state: &State, metric: &Metric, block: usize) -> (Point, Vector, f64, f64) {
-    let covers = block_covers(slope, metric, &state.displacement, &state.velocity, block);
+pub fn block_motion(slope: &Slope, state: &State, mass_matrix: &MassMatrix, block: usize) -> (Point, Vector, f64, f64) {
+    let covers = block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
     let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
-    let kinetic = if metric.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
+    let kinetic = if mass_matrix.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
     (centre, velocity, spin, kinetic)
 }

@@ -57,7 +57,7 @@ impl Step<'_> {
                 place: &scratch.place,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
-                fixed: &scratch.metric.fixed,
+                fixed: &scratch.mass_matrix.fixed,
                 serial: scratch.serial,
             };
             scratch.search.search(&view, &mut self.state.neighbours);
@@ -96,7 +96,7 @@ impl Step<'_> {
             frames: &scratch.frames,
             star: &slope.covers.star_position,
             displacement: &state.displacement,
-            metric: &scratch.metric,
+            mass_matrix: &scratch.mass_matrix,
             motion: &scratch.motion,
             laws: &state.laws,
             trace_law: &scratch.trace_law,
@@ -137,7 +137,7 @@ impl Step<'_> {
             star: &slope.covers.star_position,
             displacement: &state.displacement,
             predicted: &scratch.predicted,
-            metric: &scratch.metric,
+            mass_matrix: &scratch.mass_matrix,
             motion: &scratch.motion,
         };
         let rows = slope.bolts.iter().zip(&state.bolts).enumerate();
@@ -151,13 +151,13 @@ impl Step<'_> {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
         let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let Scratch { open_close, contacts, rows, bolts, increment, push, metric, serial, .. } = scratch;
+        let Scratch { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = scratch;
         let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
         let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
         let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &slope.covers.block_covers);
-        open_close.arrange(&slope.boundary, near_pairs, metric, block_covers, contacts);
-        let swept = open_close.run(metric, &options, contacts, &mut OtherConstraints { rows, bolts });
-        open_close.impulses(metric, increment, push);
+        open_close.arrange(&slope.boundary, near_pairs, mass_matrix, block_covers, contacts);
+        let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
+        open_close.impulses(mass_matrix, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
     }

@@ -65,7 +65,7 @@ impl NarrowPhase<'_> {
         let history = ContactHistory { edge: candidate.edge, share, ..history };
         let gap = candidate.gap + history.offset;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
-        let compliance = pair.weigh(self.metric, [normal, candidate.tangent]);
+        let compliance = pair.weigh(self.mass_matrix, [normal, candidate.tangent]);
         if self.laws[law as usize].penalty[0] {
             stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
         }
@@ -114,7 +114,7 @@ impl NarrowPhase<'_> {
             && physical != [false; 2]
         {
             let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
-            let inverse: f64 = contact.pair.blocks.map(|b| self.metric.inverse_total[b as usize]).iter().sum();
+            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b as usize]).iter().sum();
             let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
             let centre =
                 |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };

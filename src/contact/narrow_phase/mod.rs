@@ -10,7 +10,7 @@ mod vertex_rule;
 use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector, segment};
-use crate::mechanics::{BlockMotion, Metric, StressField};
+use crate::mechanics::{BlockMotion, MassMatrix, StressField};
 
 use frame::{EdgeFrame, Over};
 
@@ -45,7 +45,7 @@ pub struct NarrowPhase<'a> {
     /// Displacements of the covers (m).
     pub displacement: &'a [Vector],
     /// Masses.
-    pub metric: &'a Metric,
+    pub mass_matrix: &'a MassMatrix,
     /// Centroids of the blocks.
     pub motion: &'a [BlockMotion],
     /// Joint laws.

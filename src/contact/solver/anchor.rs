@@ -81,13 +81,13 @@ impl Anchor {
     /// Body `k` of a pair.
     #[inline(always)]
     pub fn new(pair: &Pair, k: usize, view: &SolverView) -> Self {
-        let SolverView { metric, roots } = view;
+        let SolverView { mass_matrix, roots } = view;
         let (block, covers) = (pair.blocks[k] as usize, pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
             weights[j] = roots[covers[j] as usize] * pair.weights[k][j];
         }
-        if !metric.is_free(block) {
+        if !mass_matrix.is_free(block) {
             return Self { covers, weights, block: NONE, ..Self::default() };
         }
         let (lever, mass_share) = lever_and_share(pair, k, view);
@@ -98,7 +98,7 @@ impl Anchor {
             lever,
             mass_share,
             common: common_share(view, block),
-            spin: metric.spin[block],
+            spin: mass_matrix.spin[block],
         }
     }
 
@@ -134,15 +134,15 @@ impl Anchor {
 #[inline(always)]
 pub fn lever_and_share(pair: &Pair, k: usize, view: &SolverView) -> (Vector, f64) {
     let (block, arm) = (pair.blocks[k] as usize, pair.arms[k]);
-    if !view.metric.is_free(block) {
+    if !view.mass_matrix.is_free(block) {
         return (Vector::zeros(), 0.0);
     }
-    (Vector::new(-arm.y, arm.x), pair.z[k] * view.metric.inverse_total[block])
+    (Vector::new(-arm.y, arm.x), pair.z[k] * view.mass_matrix.inverse_total[block])
 }
 
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.
 #[inline(always)]
 pub fn common_share(view: &SolverView, block: usize) -> f64 {
-    let inverse = view.metric.inverse_total[block];
-    (1.0 + view.metric.square[block] * inverse) * inverse
+    let inverse = view.mass_matrix.inverse_total[block];
+    (1.0 + view.mass_matrix.square[block] * inverse) * inverse
 }

@@ -148,13 +148,13 @@ impl SolverOrder {
 
     /// Cuts the blocks into runs of like work.
     fn cut(&mut self, view: &SolverView) {
-        let metric = view.metric;
-        let blocks = metric.total.len();
+        let mass_matrix = view.mass_matrix;
+        let blocks = mass_matrix.total.len();
         self.leaf.clear();
         self.leaf.resize(blocks, 0);
         for entry in &self.entries {
             let [a, b] = entry.blocks.map(|b| b as usize);
-            self.leaf[if metric.is_free(a) { a } else { b }] += 1;
+            self.leaf[if mass_matrix.is_free(a) { a } else { b }] += 1;
         }
         let leaves = self.entries.len().div_ceil(LEAF).next_power_of_two().min(LEAVES_MAX);
         let total = self.entries.len().max(1);
@@ -181,7 +181,7 @@ impl SolverOrder {
                 subdomain_first = first;
             }
             let [a, b] = run[0].blocks;
-            let blocks = if view.metric.is_free(a as usize) { [a, b] } else { [b, a] };
+            let blocks = if view.mass_matrix.is_free(a as usize) { [a, b] } else { [b, a] };
             self.colours.covers.clear();
             for entry in run {
                 let range = [0, 1].map(|k| self.first_near_pair[entry.key as usize + k] as usize);
@@ -260,7 +260,7 @@ impl Colours {
     fn begin(&mut self, view: &SolverView) {
         self.seen.clear();
         self.of_block.clear();
-        self.of_block.resize(view.metric.total.len(), 0);
+        self.of_block.resize(view.mass_matrix.total.len(), 0);
         self.of_cover.clear();
         self.of_cover.resize(view.roots.len(), 0);
     }
@@ -273,7 +273,7 @@ impl Colours {
 
     /// Covers of held blocks that a node and the near edges of a side may push.
     fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SolverView) {
-        let is_held = |point: usize| !view.metric.is_free(boundary.block[point] as usize);
+        let is_held = |point: usize| !view.mass_matrix.is_free(boundary.block[point] as usize);
         let node = boundary.node_point[edges[0].node as usize] as usize;
         if is_held(node) {
             self.covers.extend(boundary.covers[node]);
@@ -285,7 +285,7 @@ impl Colours {
 
     /// The first colour that a block pair in hand may have.
     fn give(&mut self, blocks: [u32; 2], view: &SolverView) -> u32 {
-        let free = blocks.map(|block| view.metric.is_free(block as usize));
+        let free = blocks.map(|block| view.mass_matrix.is_free(block as usize));
         let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k] as usize]);
         let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover as usize]);
         let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);

@@ -107,7 +107,7 @@ impl WidePairs {
     #[inline(always)]
     fn take(&mut self, lane: usize, blocks: [u32; 2], contacts: u32, view: &SolverView) {
         let [a, b] = blocks;
-        let free = blocks.map(|block| view.metric.is_free(block as usize));
+        let free = blocks.map(|block| view.mass_matrix.is_free(block as usize));
         self.first_block[lane] = a;
         self.contacts += contacts;
         if lane == 1 {
@@ -120,7 +120,7 @@ impl WidePairs {
         for k in 0..2 {
             self.blocks[k][lane] = keepers[k];
             if k == 0 || a != b {
-                self.spin[k][lane] = view.metric.spin[blocks[k] as usize];
+                self.spin[k][lane] = view.mass_matrix.spin[blocks[k] as usize];
             }
             if free[k] && a != b {
                 (self.common[k][lane], self.unit[k][lane]) = (common_share(view, blocks[k] as usize), 1.0);

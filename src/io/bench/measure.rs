@@ -25,7 +25,7 @@ const WINDOWS_MIN: usize = 2;
 const PROCESSOR_TICK: f64 = 0.004;
 /// Floating-point operations of one element: gradient 22, rotation 8, stretch 4, stress 12, forces 22, their sum 6.
 const OPERATIONS_PER_ELEMENT: f64 = 74.0;
-/// Bytes of an element that its stage must read: the slots of three covers in its patch, and its cut area.
+/// Bytes of an element that its stage must read: the slots of three covers in its chunk, and its cut area.
 const ELEMENT_BYTES: f64 = 3.0 * 2.0 + 8.0;
 /// Bytes of a cover that the stage of the elements must move: place, displacement, velocity and two masses read,
 /// predicted velocity fetched and written.
@@ -229,9 +229,9 @@ fn first_second(model: &Model) -> Result<f64, BenchError> {
 }
 
 fn sizes(simulation: &Simulation) -> Measured {
-    let (slope, metric) = (simulation.slope(), &simulation.scratch().metric);
+    let (slope, mass_matrix) = (simulation.slope(), &simulation.scratch().mass_matrix);
     let covers = &slope.covers;
-    let free = (0..covers.block_count()).filter(|&block| !metric.fixed[block]);
+    let free = (0..covers.block_count()).filter(|&block| !mass_matrix.fixed[block]);
     let (mut blocks, mut elements) = (0, 0);
     free.for_each(|block| (blocks, elements) = (blocks + 1, elements + covers.elements_of(block).len()));
     let moved = covers.cover_count() as f64 * COVER_BYTES / covers.element_count() as f64;

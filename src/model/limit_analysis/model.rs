@@ -82,8 +82,8 @@ pub fn bodies(simulation: &Simulation) -> Vec<Body> {
     let mut pushes = vec![Vector::zeros(); covers.cover_count()];
     step::push_forces(slope, state, time, 1.0, &mut pushes);
     let body = |b: usize| {
-        let mass = slope.metric.total[b];
-        let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * slope.metric.row_sum[i]).sum();
+        let mass = slope.mass_matrix.total[b];
+        let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * slope.mass_matrix.row_sum[i]).sum();
         let centre = sum / mass;
         // Weights of covers reproduce rigid motion, so that their forces have the resultant of what acts.
         let force: Vector = covers.covers_of(b).map(|i| pushes[i]).sum();

@@ -176,16 +176,16 @@ impl Base {
     /// Motion of all free blocks since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
         let (slope, state) = (simulation.slope(), simulation.state());
-        let metric = &simulation.scratch().metric;
+        let mass_matrix = &simulation.scratch().mass_matrix;
         self.moving()
             .map(|b| {
-                let (_, velocity, spin, _) = block_motion(slope, state, metric, b);
+                let (_, velocity, spin, _) = block_motion(slope, state, mass_matrix, b);
                 let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
                     block: b as u32,
                     place: slope.covers.block_centroid(b),
                     area: slope.covers.block_area(b),
-                    mass: slope.metric.total[b],
+                    mass: slope.mass_matrix.total[b],
                     displacement: self.moved(simulation, b),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
                     speed: velocity.norm().hypot(spin * radius),
@@ -213,7 +213,7 @@ impl Base {
 
 /// Which blocks can move.
 fn free(simulation: &Simulation) -> Vec<bool> {
-    let (fixed, removed) = (&simulation.scratch().metric.fixed, &simulation.state().removed);
+    let (fixed, removed) = (&simulation.scratch().mass_matrix.fixed, &simulation.state().removed);
     fixed.iter().zip(removed).map(|(fixed, removed)| !fixed && !removed).collect()
 }
 
@@ -254,8 +254,8 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let fall = (height / gravity).sqrt();
     let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
     let still_speed = STILL * tolerance * gravity * window;
-    let free = (0..slope.covers.block_count()).filter(|&b| !simulation.scratch().metric.fixed[b]);
-    let mass: f64 = free.map(|b| slope.metric.total[b]).sum();
+    let free = (0..slope.covers.block_count()).filter(|&b| !simulation.scratch().mass_matrix.fixed[b]);
+    let mass: f64 = free.map(|b| slope.mass_matrix.total[b]).sum();
     let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
     let elastic = (ELASTIC * height).max(given_way);
     Scales {

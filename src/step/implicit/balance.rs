@@ -76,7 +76,8 @@ impl Step<'_> {
                 push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
             }
             if !inertia.rests {
-                let momentum = buffers.field.iter().zip(&slope.metric.row_sum).map(|(a, m)| (a * *m).norm_squared());
+                let momentum =
+                    buffers.field.iter().zip(&slope.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
                 scale = scale.max(momentum.sum::<f64>().sqrt());
             }
         }

@@ -99,7 +99,7 @@ impl Step<'_> {
             if inertia.end < 1.0 {
                 force += buffers.applied_before[i] * (1.0 - inertia.end);
             }
-            work += (force - slope.gravity * slope.metric.row_sum[i]).dot(moved);
+            work += (force - slope.gravity * slope.mass_matrix.row_sum[i]).dot(moved);
         }
         work
     }
@@ -111,7 +111,7 @@ impl Step<'_> {
         let unbalanced = self.implicit_unbalanced();
         let (state, scratch) = (&*self.state, &*self.scratch);
         let mut ledger = state.ledger;
-        ledger.kinetic = kinetic_energy(slope, implicit, &scratch.metric, &state.velocity);
+        ledger.kinetic = kinetic_energy(slope, implicit, &scratch.mass_matrix, &state.velocity);
         if let Regime::Static { .. } = self.regime {
             ledger.damping -= ledger.kinetic;
         }

@@ -13,7 +13,7 @@ pub(super) use motion::stop;
 use std::time::Instant;
 
 use crate::geometry::Vector;
-use crate::mechanics::Metric;
+use crate::mechanics::MassMatrix;
 use crate::state::{Implicit, Rule, Scratch, Slope};
 
 use super::touch::{CUTOFF, REACH};
@@ -26,7 +26,7 @@ const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
 /// Sizes the buffers; the matrix gets its pattern in the next step.
-pub(super) fn prepare(slope: &Slope, metric: &Metric, scratch: &mut crate::state::ImplicitScratch) {
+pub(super) fn prepare(slope: &Slope, mass_matrix: &MassMatrix, scratch: &mut crate::state::ImplicitScratch) {
     if slope.implicit.is_none() {
         return;
     }
@@ -46,7 +46,7 @@ pub(super) fn prepare(slope: &Slope, metric: &Metric, scratch: &mut crate::state
     }
     scratch.unknowns.resize(2 * covers, 0.0);
     scratch.held.clear();
-    scratch.held.extend(metric.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
+    scratch.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
     scratch.any_held = scratch.held.contains(&true);
     scratch.matrix.clear();
 }
@@ -178,7 +178,7 @@ impl Step<'_> {
             let whole = applied::Kick { from: self.time, to: self.time + dt };
             let base = applied::base_motion(self.slope, self.regime, self.state, whole);
             let acceleration = applied::acceleration(self.slope, self.state, time) * share - base;
-            for (force, mass) in force.iter_mut().zip(&self.slope.metric.row_sum) {
+            for (force, mass) in force.iter_mut().zip(&self.slope.mass_matrix.row_sum) {
                 *force = acceleration * *mass;
             }
             applied::push_forces(self.slope, self.state, time, share, force);

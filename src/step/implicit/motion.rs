@@ -1,15 +1,15 @@
 //! Velocities with the consistent mass: energy, damping of deformation, the first acceleration of the trapezoidal rule.
 
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Metric, push_mass};
+use crate::mechanics::{MassMatrix, push_mass};
 use crate::state::{Implicit, Slope, State};
 
 use super::{Inertia, Step};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
-pub fn kinetic_energy(slope: &Slope, implicit: &Implicit, metric: &Metric, velocity: &[Vector]) -> f64 {
+pub fn kinetic_energy(slope: &Slope, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {
     (0..slope.covers.block_count())
-        .filter(|&b| !metric.fixed[b])
+        .filter(|&b| !mass_matrix.fixed[b])
         .map(|b| block_energy(slope, implicit, velocity, b))
         .sum()
 }
@@ -63,7 +63,7 @@ impl Step<'_> {
         let slope = self.slope;
         let mut taken = 0.0;
         for block in 0..slope.covers.block_count() {
-            if self.scratch.metric.fixed[block] {
+            if self.scratch.mass_matrix.fixed[block] {
                 continue;
             }
             let before = block_energy(slope, implicit, &self.state.velocity, block);
@@ -78,8 +78,8 @@ impl Step<'_> {
         let slope = self.slope;
         let (state, buffers) = (&mut *self.state, &mut self.scratch.implicit);
         let range = slope.covers.covers_of(block);
-        let mass = &slope.metric.row_sum;
-        let total: f64 = slope.metric.total[block];
+        let mass = &slope.mass_matrix.row_sum;
+        let total: f64 = slope.mass_matrix.total[block];
         let place = |u: &[Vector], i: usize| slope.covers.star_position[i] + u[i];
         let centre: Point = range.clone().map(|i| place(&state.displacement, i) * mass[i]).sum::<Point>() / total;
         let mean: Vector = range.clone().map(|i| state.velocity[i] * mass[i]).sum::<Vector>() / total;

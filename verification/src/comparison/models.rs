@@ -133,9 +133,9 @@ impl Totals {
     }
 
     fn now(simulation: &Simulation, places: &[Vector]) -> Self {
-        let ledger = energies(simulation.slope(), simulation.state(), &simulation.scratch().metric);
+        let ledger = energies(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix);
         let moved = block_displacements(simulation);
-        let mass = &simulation.slope().metric.total;
+        let mass = &simulation.slope().mass_matrix.total;
         let way: f64 = moved.iter().zip(places).zip(mass).map(|((now, then), mass)| mass * (now - then).norm()).sum();
         Self {
             released: -ledger.potential,
@@ -189,8 +189,8 @@ pub(crate) fn block_displacements(simulation: &Simulation) -> Vec<Vector> {
     let slope = simulation.slope();
     let of = |b: usize| {
         let covers = slope.covers.covers_of(b);
-        let sum: Vector = covers.map(|i| simulation.state().displacement[i] * slope.metric.row_sum[i]).sum();
-        sum / slope.metric.total[b]
+        let sum: Vector = covers.map(|i| simulation.state().displacement[i] * slope.mass_matrix.row_sum[i]).sum();
+        sum / slope.mass_matrix.total[b]
     };
     (0..slope.covers.block_count()).map(of).collect()
 }

@@ -108,7 +108,7 @@ impl Incline {
             let mut state = simulation.state().clone();
             let kick = self.down() * speed;
             covers.covers_of(block).for_each(|i| state.velocity[i] += kick);
-            state.ledger.baseline += 0.5 * simulation.slope().metric.total[block] * speed * speed;
+            state.ledger.baseline += 0.5 * simulation.slope().mass_matrix.total[block] * speed * speed;
             simulation.restore(state);
         }
         let mut slide = Slide { simulation, block, down: self.down(), start: 0.0, report: StepReport::default() };
@@ -129,7 +129,7 @@ struct Slide {
 impl Slide {
     fn place(&self) -> f64 {
         let (slope, state) = (self.simulation.slope(), self.simulation.state());
-        block_motion(slope, state, &self.simulation.scratch().metric, self.block).0.dot(&self.down)
+        block_motion(slope, state, &self.simulation.scratch().mass_matrix, self.block).0.dot(&self.down)
     }
 
     /// Way since the start (m).

@@ -110,7 +110,7 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     let blocks: Vec<u32> = middles.iter().filter_map(|p| block(*p)).collect();
     let along = |simulation: &Simulation, k: usize| {
         let motion =
-            block_motion(simulation.slope(), simulation.state(), &simulation.scratch().metric, blocks[k] as usize);
+            block_motion(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix, blocks[k] as usize);
         motion.0.dot(&Vector::new(c, -s))
     };
     let start = [0, 1].map(|k| along(simulation, k));

@@ -64,7 +64,8 @@ fn motion(simulation: &Simulation, height: f64) -> Result<(f64, f64), Trouble> {
     let slope = simulation.slope();
     let element = slope.covers.element_at(Point::new(0.51, height + 0.48));
     let block = slope.covers.element_block[element.ok_or_else(|| Trouble("D5: there is no mass".to_owned()))?];
-    let (centre, velocity, ..) = block_motion(slope, simulation.state(), &simulation.scratch().metric, block as usize);
+    let (centre, velocity, ..) =
+        block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block as usize);
     Ok((centre.y - height - 0.5, velocity.y))
 }
 

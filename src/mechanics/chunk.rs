@@ -16,9 +16,9 @@ use crate::geometry::Vector;
 
 use super::PreStress;
 
-/// Covers after which a patch of whole blocks takes no further one.
+/// Covers after which a chunk of whole blocks takes no further one.
 const PATCH: usize = 512;
-/// Most covers of a patch; a larger block is cut into parts.
+/// Most covers of a chunk; a larger block is cut into parts.
 const PART: usize = Covers::TILE;
 /// Fewest elements of a row of eight: fewer are quicker by gather and scatter.
 const ROW_MIN: usize = 4;
@@ -27,7 +27,7 @@ const NO_ELEMENT: u32 = u32::MAX;
 
 /// Whole blocks, or a part of one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Patch {
+pub struct Chunk {
     /// Blocks: those that begin here.
     pub blocks: Range<usize>,
     /// The large block of which this is a part.
@@ -111,25 +111,25 @@ impl<E> Eights<E> {
     }
 }
 
-/// All patches of a model.
+/// All chunks of a model.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Patches {
-    list: Vec<Patch>,
+pub struct Chunks {
+    list: Vec<Chunk>,
     halo: Vec<u32>,
     batches: Vec<Batch>,
     rows: Eights<Row>,
     groups: Eights<Group>,
 }
 
-impl Patches {
-    /// Cuts the blocks of a model into patches.
+impl Chunks {
+    /// Cuts the blocks of a model into chunks.
     pub fn new(covers: &Covers, element_rock: &[u16], pre_stress: &[PreStress]) -> Self {
         let mut cutter = Cutter {
             covers,
             element_rock,
             pre_stress,
             slot_of: vec![NO_ELEMENT; covers.cover_count()],
-            patches: Self::default(),
+            chunks: Self::default(),
         };
         let (mut first, count) = (0, covers.block_count());
         while first < count {
@@ -144,10 +144,10 @@ impl Patches {
             cutter.push_blocks(first..end);
             first = end;
         }
-        cutter.patches
+        cutter.chunks
     }
 
-    /// Number of patches.
+    /// Number of chunks.
     pub fn len(&self) -> usize {
         self.list.len()
     }
@@ -166,29 +166,29 @@ impl Patches {
             + self.groups.bytes()
     }
 
-    /// All patches.
-    pub fn iter(&self) -> impl Iterator<Item = &Patch> {
+    /// All chunks.
+    pub fn iter(&self) -> impl Iterator<Item = &Chunk> {
         self.list.iter()
     }
 
-    /// A patch.
-    pub fn get(&self, patch: usize) -> &Patch {
-        &self.list[patch]
+    /// A chunk.
+    pub fn get(&self, chunk: usize) -> &Chunk {
+        &self.list[chunk]
     }
 
-    /// Covers of other patches that elements of a patch touch: their slots follow those of the patch's own.
-    pub fn halo(&self, patch: &Patch) -> &[u32] {
-        &self.halo[patch.halo.clone()]
+    /// Covers of other chunks that elements of a chunk touch: their slots follow those of the chunk's own.
+    pub fn halo(&self, chunk: &Chunk) -> &[u32] {
+        &self.halo[chunk.halo.clone()]
     }
 
-    /// Batches of a patch.
-    pub fn batches(&self, patch: &Patch) -> &[Batch] {
-        &self.batches[patch.batches.clone()]
+    /// Batches of a chunk.
+    pub fn batches(&self, chunk: &Chunk) -> &[Batch] {
+        &self.batches[chunk.batches.clone()]
     }
 
-    /// Eights of elements of a patch.
-    pub fn eights(&self, patch: &Patch) -> usize {
-        self.batches(patch).iter().map(|batch| batch.rows.len() + batch.groups.len()).sum()
+    /// Eights of elements of a chunk.
+    pub fn eights(&self, chunk: &Chunk) -> usize {
+        self.batches(chunk).iter().map(|batch| batch.rows.len() + batch.groups.len()).sum()
     }
 
     /// Rows of a batch with their in-situ stress, which is empty when the model has none.
@@ -225,7 +225,7 @@ impl Patches {
         first..first + count
     }
 
-    /// First patches of the blocks that are cut into parts.
+    /// First chunks of the blocks that are cut into parts.
     pub fn cut_blocks(&self) -> impl Iterator<Item = usize> {
         (0..self.list.len()).filter(|&k| self.list[k].part_of.is_some() && !self.list[k].blocks.is_empty())
     }
@@ -237,7 +237,7 @@ struct Cutter<'a> {
     element_rock: &'a [u16],
     pre_stress: &'a [PreStress],
     slot_of: Vec<u32>,
-    patches: Patches,
+    chunks: Chunks,
 }
 
 impl Cutter<'_> {
@@ -245,7 +245,7 @@ impl Cutter<'_> {
         let elements = self.covers.elements_of(blocks.start).start..self.covers.elements_of(blocks.end - 1).end;
         let own = self.covers.covers_of(blocks.start).start..self.covers.covers_of(blocks.end - 1).end;
         let ids = elements.map(|e| e as u32).collect();
-        self.push(Patch { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
+        self.push(Chunk { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
     }
 
     /// Runs of whole tiles, in the order of the covers, where a tile with more covers than fit is cut; equal parts of a
@@ -284,14 +284,14 @@ impl Cutter<'_> {
         }
         for (part, (covers, elements)) in parts.into_iter().zip(elements).enumerate() {
             let blocks = if part == 0 { block..block + 1 } else { block + 1..block + 1 };
-            let patch = Patch { blocks, part_of: Some(block as u32), covers, halo: 0..0, batches: 0..0 };
-            self.push(patch, elements);
+            let chunk = Chunk { blocks, part_of: Some(block as u32), covers, halo: 0..0, batches: 0..0 };
+            self.push(chunk, elements);
         }
     }
 
-    /// Covers of other patches that elements touch, row by row.
-    fn find_halo(&mut self, patch: &mut Patch, elements: &[u32]) {
-        let is_own = |i: &u32| patch.covers.contains(&(*i as usize));
+    /// Covers of other chunks that elements touch, row by row.
+    fn find_halo(&mut self, chunk: &mut Chunk, elements: &[u32]) {
+        let is_own = |i: &u32| chunk.covers.contains(&(*i as usize));
         let touched = elements.iter().flat_map(|&e| self.covers.element_covers[e as usize]);
         let mut halo: Vec<u32> = touched.filter(|i| !is_own(i)).collect();
         halo.sort_unstable_by_key(|&i| {
@@ -299,37 +299,37 @@ impl Cutter<'_> {
             (row, column, i)
         });
         halo.dedup();
-        patch.halo = self.patches.halo.len()..self.patches.halo.len() + halo.len();
-        for (slot, cover) in patch.covers.clone().chain(halo.iter().map(|&i| i as usize)).enumerate() {
+        chunk.halo = self.chunks.halo.len()..self.chunks.halo.len() + halo.len();
+        for (slot, cover) in chunk.covers.clone().chain(halo.iter().map(|&i| i as usize)).enumerate() {
             self.slot_of[cover] = slot as u32;
         }
-        self.patches.halo.append(&mut halo);
+        self.chunks.halo.append(&mut halo);
     }
 
-    fn push(&mut self, mut patch: Patch, mut elements: Vec<u32>) {
-        self.find_halo(&mut patch, &elements);
-        let first_batch = self.patches.batches.len();
+    fn push(&mut self, mut chunk: Chunk, mut elements: Vec<u32>) {
+        self.find_halo(&mut chunk, &elements);
+        let first_batch = self.chunks.batches.len();
         let (covers, element_rock) = (self.covers, self.element_rock);
         let kind = |e: u32| (covers.element_triangle[e as usize].set, element_rock[e as usize]);
         elements.sort_by_key(|&e| (kind(e), e));
-        let in_rows = patch.part_of.is_some_and(|block| covers.is_tiled(block as usize));
+        let in_rows = chunk.part_of.is_some_and(|block| covers.is_tiled(block as usize));
         for batch in elements.chunk_by(|&a, &b| kind(a) == kind(b)) {
             self.push_batch(kind(batch[0]), batch, in_rows);
         }
-        patch.batches = first_batch..self.patches.batches.len();
-        self.patches.list.push(patch);
+        chunk.batches = first_batch..self.chunks.batches.len();
+        self.chunks.list.push(chunk);
     }
 
     fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[u32], in_rows: bool) {
-        let [first_row, first_group] = [self.patches.rows.list.len(), self.patches.groups.list.len()];
+        let [first_row, first_group] = [self.chunks.rows.list.len(), self.chunks.groups.list.len()];
         let others = if in_rows { self.push_rows(set, elements) } else { elements.to_vec() };
         for eight in others.chunks(LANES) {
             let mut ids = [NO_ELEMENT; LANES];
             ids[..eight.len()].copy_from_slice(eight);
             self.push_group(ids);
         }
-        let (rows, groups) = (first_row..self.patches.rows.list.len(), first_group..self.patches.groups.list.len());
-        self.patches.batches.push(Batch { set, rock, rows, groups });
+        let (rows, groups) = (first_row..self.chunks.rows.list.len(), first_group..self.chunks.groups.list.len());
+        self.chunks.batches.push(Batch { set, rock, rows, groups });
     }
 
     fn slots(&self, e: u32) -> [u32; 3] {
@@ -378,7 +378,7 @@ impl Cutter<'_> {
     fn push_row(&mut self, set: u8, ids: [u32; LANES]) {
         let [left, _, tip] = self.row_slots(set, ids[0]).map(|slot| Slot::new(slot as usize));
         let (area, pre) = self.lanes(&ids);
-        push_eight(&mut self.patches.rows, Row { first: [left, tip], area }, pre, ids);
+        push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, pre, ids);
     }
 
     fn push_group(&mut self, ids: [u32; LANES]) {
@@ -387,7 +387,7 @@ impl Cutter<'_> {
             (0..3).for_each(|k| slots[k][lane] = Slot::new(self.slots(e)[k] as usize));
         }
         let (area, pre) = self.lanes(&ids);
-        push_eight(&mut self.patches.groups, Group { slots, area }, pre, ids);
+        push_eight(&mut self.chunks.groups, Group { slots, area }, pre, ids);
     }
 
     /// Areas (m²) of eight elements, and their in-situ stress when the model has any.
