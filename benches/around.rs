@@ -35,7 +35,7 @@ fn search(criterion: &mut Criterion) {
     for model in [MODEL, Model::Slope(10_000, 4)] {
         let mut simulation = model.build().unwrap_or_else(|e| panic!("{e}"));
         simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        let (slope, scratch) = (simulation.slope(), simulation.scratch());
+        let (slope, scratch) = (simulation.model(), simulation.scratch());
         let view = SearchView {
             boundary: &slope.boundary,
             place: &scratch.place,
@@ -53,7 +53,7 @@ fn search(criterion: &mut Criterion) {
 /// Internal forces of all elements one after the other, by the formula that the step's kernels must agree with.
 fn elements(criterion: &mut Criterion) {
     let simulation = moving();
-    let (slope, state) = (simulation.slope(), simulation.state());
+    let (slope, state) = (simulation.model(), simulation.state());
     let covers = &slope.covers;
     let forces = |e: usize| -> Vector {
         let gradients = &covers.gradients[covers.element_triangle[e].set as usize];

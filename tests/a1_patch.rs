@@ -46,7 +46,7 @@ fn cut_rock(seed: u64) -> Simulation {
 /// The state in which every star has moved by `field` of its place.
 fn moved(simulation: &Simulation, field: impl Fn(Vector) -> Vector) -> State {
     let mut state = simulation.state().clone();
-    let stars = &simulation.slope().covers.star_position;
+    let stars = &simulation.model().covers.star_position;
     state.displacement = stars.iter().map(|x| field(*x)).collect();
     state
 }
@@ -117,9 +117,9 @@ fn the_patches_are_cut() {
     let (mut several, mut partial) = (0, 0);
     for seed in 1..=12 {
         let simulation = cut_rock(seed);
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         several += covers.covers_by_star().iter().filter(|(_, n)| *n > 1).count();
-        partial += simulation.slope().boundary.partial.iter().filter(|partial| **partial).count();
+        partial += simulation.model().boundary.partial.iter().filter(|partial| **partial).count();
         // Shoelace area of the outline: 78.25 m²; element areas are sums of as many products, each with error ε·100.
         let area: f64 = covers.element_area.iter().sum();
         let outline = [[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], [4.0, 9.5], [-1.0, 5.0]];

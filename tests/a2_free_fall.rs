@@ -32,7 +32,7 @@ fn every_point_falls_by_half_g_t_squared() {
         let mut simulation = simulation(&case(gravity, mesh, damping));
         let steps = 5000;
         let report = advance(&mut simulation, steps);
-        let t = steps as f64 * simulation.slope().dt;
+        let t = steps as f64 * simulation.model().dt;
         let fall = Vector::from(gravity) * (0.5 * t * t);
         assert!(fall.norm() > 1.0);
         for u in &simulation.state().displacement {
@@ -43,13 +43,13 @@ fn every_point_falls_by_half_g_t_squared() {
         assert!(largest <= 1e-12 * 2e9 * fall.norm().max(1.0), "{largest:e} Pa after {} m", fall.norm());
         for point in [[0.5, 0.6], [8.0, 1.0], [6.4, 6.4], [2.5, 6.05]] {
             let block = block_at(&simulation, point);
-            let slope = simulation.slope();
+            let slope = simulation.model();
             let (_, velocity, spin, _) =
                 block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block);
             // Rounding of v over the size of a block (0.4 m and more).
             assert!(spin.abs() <= 1e-11 * velocity.norm(), "spin {spin:e} at {point:?}");
         }
-        assert_eq!(simulation.slope().covers.block_count(), 4);
+        assert_eq!(simulation.model().covers.block_count(), 4);
         // ½v² is compared at full steps, where the mean of the half-step energies exceeds it by (g·dt)²/8.
         assert!(report.ledger.residual().abs() < 1e-6 * report.ledger.largest(), "{:?}", report.ledger);
     }

@@ -47,7 +47,7 @@ fn case(spinner: &Spinner, moment: f64) -> String {
 
 /// Current place of boundary point `k`.
 fn place(simulation: &Simulation, k: usize) -> Point {
-    let (slope, u) = (simulation.slope(), &simulation.state().displacement);
+    let (slope, u) = (simulation.model(), &simulation.state().displacement);
     let boundary = &slope.boundary;
     (0..3)
         .map(|c| {
@@ -59,7 +59,7 @@ fn place(simulation: &Simulation, k: usize) -> Point {
 
 /// Area of the current boundary loop of the only block.
 fn area(simulation: &Simulation) -> f64 {
-    let boundary = &simulation.slope().boundary;
+    let boundary = &simulation.model().boundary;
     let origin = place(simulation, 0);
     (0..boundary.len())
         .map(|k| (place(simulation, k) - origin).perp(&(place(simulation, boundary.after(k)) - origin)) / 2.0)
@@ -68,7 +68,7 @@ fn area(simulation: &Simulation) -> f64 {
 
 /// Runs ten turns; returns the angle turned since the push ended, unwrapped, and the time it took.
 fn ten_turns(simulation: &mut Simulation, spin: f64) -> (f64, f64) {
-    let boundary = simulation.slope().boundary.len();
+    let boundary = simulation.model().boundary.len();
     let arm = |s: &Simulation| -> Vector { place(s, boundary / 2) - place(s, 0) };
     let steps = simulation.steps_in(10.0 * std::f64::consts::TAU / spin);
     let (mut angle, mut before) = (0.0, arm(simulation));
@@ -80,7 +80,7 @@ fn ten_turns(simulation: &mut Simulation, spin: f64) -> (f64, f64) {
             before = now;
         }
     }
-    (angle, steps as f64 * simulation.slope().dt)
+    (angle, steps as f64 * simulation.model().dt)
 }
 
 /// The push gives L = ∫M dt = M·1 ms (the table's corners lie on the time grid, where the sum of kicks is exact), and

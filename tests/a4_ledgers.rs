@@ -52,8 +52,8 @@ fn collisions_keep_linear_and_angular_momentum() {
     ] {
         let text = format!("{}[solver]\ndt_max = {dt_max:e}\n", collision(seed, friction, damping, young));
         let mut simulation = simulation(&text);
-        let mass: f64 = simulation.slope().mass_matrix.total.iter().sum();
-        assert!(simulation.slope().covers.block_count() > 12);
+        let mass: f64 = simulation.model().mass_matrix.total.iter().sum();
+        assert!(simulation.model().covers.block_count() > 12);
         let [linear, angular] = momentum_drift(&mut simulation, steps, mass * 0.5);
         println!("seed {seed}: linear {linear:e}, angular {angular:e}");
         let (contacts, deepest) = (simulation.state().counters.judged, simulation.state().counters.penetration_max);
@@ -79,7 +79,7 @@ fn contacts_within_one_block_keep_its_momentum() {
     let carried: f64 = simulation.state().contacts.iter().map(|c| c.normal_force).sum();
     assert!(carried > 1e5, "the crack must bear: {carried}");
     let (linear, _) = simulation.momentum();
-    let time = 400.0 * simulation.slope().dt;
+    let time = 400.0 * simulation.model().dt;
     // 400 steps of impulses of 2e6·dt each round to √400·2e-16 of them.
     assert!(linear.norm() <= 1e-11 * 2e6 * time, "{linear}");
     assert!(report.locked > 0);

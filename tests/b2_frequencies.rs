@@ -32,9 +32,9 @@ fn frequency(
     swings: usize,
 ) -> f64 {
     let mut state = simulation.state().clone();
-    state.velocity = simulation.slope().covers.star_position.iter().map(|x| field(*x) * 1e-3).collect();
+    state.velocity = simulation.model().covers.star_position.iter().map(|x| field(*x) * 1e-3).collect();
     simulation.restore(state);
-    let dt = simulation.slope().dt;
+    let dt = simulation.model().dt;
     let (mut before, mut crossings) = (0.0, Vec::new());
     for step in 1..10_000_000u64 {
         simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));

@@ -52,7 +52,7 @@ fn a_confined_column_settles_under_its_weight() {
 
 /// σx and σy at y = 0 by an area-weighted straight line through all elements.
 fn base_stress(simulation: &enmm::model::Simulation) -> [f64; 2] {
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let stress = stresses(simulation, simulation.state());
     [0, 1].map(|k| {
         let (mut w, mut y, mut s, mut yy, mut ys) = (0.0, 0.0, 0.0, 0.0, 0.0);

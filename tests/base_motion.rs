@@ -63,7 +63,7 @@ fn a_motion_waits_for_its_stage() {
     let speeds = [0.0, -0.05, -0.1].map(|expected| {
         run_stage(&mut simulation);
         let [x, _] = velocity(&simulation);
-        assert!((x - expected).abs() < 0.51 * simulation.slope().dt, "{x} of {expected}");
+        assert!((x - expected).abs() < 0.51 * simulation.model().dt, "{x} of {expected}");
         simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
         x
     });
@@ -80,7 +80,7 @@ fn static_stages_feel_no_motion() {
     run_stage(&mut simulation);
     assert_eq!(velocity(&simulation), [0.0; 2]);
     run_all(&mut simulation);
-    assert!((velocity(&simulation)[0] + 0.05).abs() < 0.51 * simulation.slope().dt);
+    assert!((velocity(&simulation)[0] + 0.05).abs() < 0.51 * simulation.model().dt);
 }
 
 /// The rows of a file are those of a table: the case that is loaded holds them and names no file.

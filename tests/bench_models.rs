@@ -25,7 +25,7 @@ fn advance(simulation: &mut Simulation, steps: u64) {
 
 /// Free blocks and their elements.
 fn counts(simulation: &Simulation) -> [f64; 2] {
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let free = (0..covers.block_count()).filter(|&b| !simulation.scratch().mass_matrix.fixed[b]);
     let elements: usize = free.clone().map(|b| covers.elements_of(b).len()).sum();
     [free.count() as f64, elements as f64]
@@ -39,14 +39,14 @@ fn counts_are_those_of_the_name() {
         let wanted = [blocks as f64, (blocks * each) as f64];
         assert!((found / wanted[0] - 1.0).abs() < 0.1, "{found} blocks for {blocks}");
         assert!((elements / wanted[1] - 1.0).abs() < 0.1, "{elements} elements for {}", wanted[1]);
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         assert_eq!(covers.block_count() as f64, found + 1.0, "the slab is one block");
         assert!(covers.element_count() as f64 - elements < 0.4 * elements, "the slab is small");
     }
     let simulation = build(Model::Continuum(10_000));
-    let elements = simulation.slope().covers.element_count() as f64;
+    let elements = simulation.model().covers.element_count() as f64;
     assert!((elements / 1e4 - 1.0).abs() < 0.02, "{elements}");
-    assert_eq!(simulation.slope().covers.block_count(), 1);
+    assert_eq!(simulation.model().covers.block_count(), 1);
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn blocks_slide_down_the_base() {
         let [overlap, unheld] = overlaps.worst(&simulation);
         audited = [audited[0].max(overlap), audited[1].max(unheld)];
     }
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let time = simulation.time();
     let gravity = slope.gravity.norm();
     let way = 0.5 * gravity * (DIP.sin() - DIP.cos() * FRICTION.tan()) * time * time;
@@ -130,9 +130,9 @@ fn report_accounts_for_the_whole_step() {
 #[test]
 fn a_grain_far_below_the_mesh_size_stays_with_its_neighbours() {
     let mut simulation = build(Model::Slope(10_000, 16));
-    let thickness = &simulation.slope().boundary.block_thickness;
+    let thickness = &simulation.model().boundary.block_thickness;
     let thinnest = thickness.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(thinnest < 1e-3 * simulation.slope().covers.mesh.size, "{thinnest} m");
+    assert!(thinnest < 1e-3 * simulation.model().covers.mesh.size, "{thinnest} m");
     advance(&mut simulation, 30);
     let speed = simulation.state().velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!(speed < 20.0, "{speed} m/s");

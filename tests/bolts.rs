@@ -116,7 +116,7 @@ fn grouted_bars_need_no_smaller_step_and_come_by_stage() {
     [\"second\"]\n";
     let mut sim = simulation(&roof(&bars, &(SETTLE.replace("1e-7", "1e-5") + more)));
     let plain = simulation(&roof("", SETTLE));
-    assert_eq!(sim.slope().dt, plain.slope().dt);
+    assert_eq!(sim.model().dt, plain.model().dt);
     run_stage(&mut sim);
     assert!(forces(&sim)[0] > 3.5e4 && forces(&sim)[1] == 0.0, "{:?}", forces(&sim));
     assert!(sim.next_stage().expect("it fits"));
@@ -183,7 +183,7 @@ fn a_bolt_through_an_opening_warns() {
         .replace("points = [[1.0, -0.4]", "points = [[1.0, -1.5]")
         .replace("islands = [", "islands = [[[0, -2], [2, -2], [2, -1.2], [0, -1.2]], ");
     let sim = simulation(&text);
-    assert_eq!(sim.slope().bolts.len(), 1);
+    assert_eq!(sim.model().bolts.len(), 1);
     let warning = &sim.built().warnings.iter().find(|w| w.contains("outside the rock")).expect("a warning").clone();
     assert!(warning.contains("0.400 m"), "{warning}");
 }

@@ -59,8 +59,8 @@ impl Incline {
             let mut state = simulation.state().clone();
             let block = common::claims::block_at(&simulation, middle(self.slope));
             let kick = self.down() * speed;
-            simulation.slope().covers.covers_of(block).for_each(|i| state.velocity[i] += kick);
-            let mass = simulation.slope().mass_matrix.total[block];
+            simulation.model().covers.covers_of(block).for_each(|i| state.velocity[i] += kick);
+            let mass = simulation.model().mass_matrix.total[block];
             state.ledger.baseline += 0.5 * mass * speed * speed;
             simulation.restore(state);
         }
@@ -105,7 +105,7 @@ fn a_stiff_block_slides_by_half_a_t_squared() {
         let start = incline.along(&simulation);
         let steps = simulation.steps_in(1.0);
         let report = advance(&mut simulation, steps);
-        let t = steps as f64 * simulation.slope().dt;
+        let t = steps as f64 * simulation.model().dt;
         let error = (incline.along(&simulation) - start) / (exact * t * t) - 1.0;
         println!("a {slope} phi {friction}: {error:e}");
         let tolerance = if slope - friction < 3.0 { 5e-4 } else { 1e-4 };
@@ -125,7 +125,7 @@ fn a_soft_block_has_the_right_acceleration() {
         let mut span = 0.0;
         for seconds in [0.2, 0.4, 0.4] {
             let steps = simulation.steps_in(seconds);
-            span = steps as f64 * simulation.slope().dt;
+            span = steps as f64 * simulation.model().dt;
             advance(&mut simulation, steps);
             places.push(incline.along(&simulation));
         }

@@ -87,7 +87,7 @@ fn the_upper_block_pushes_the_lower() {
             assert_ledger(&last.expect("a report"));
             places.push(along(&simulation));
         }
-        let span = (steps / 10 * 10) as f64 * simulation.slope().dt;
+        let span = (steps / 10 * 10) as f64 * simulation.model().dt;
         let mean = pushes.iter().sum::<f64>() / pushes.len() as f64;
         for (k, start) in places[0].iter().enumerate() {
             let found = (places[2][k] - 2.0 * places[1][k] + start) / (span * span);

@@ -138,7 +138,7 @@ fn the_toppling_accelerates_like_a_rigid_pendulum() {
             *angle = column.fate(&simulation).turned;
         }
         // The mean spin over the window is that of its middle but for α's change.
-        let dt = simulation.slope().dt / 10.0;
+        let dt = simulation.model().dt / 10.0;
         let (mut angle, mut rate) = (turned[1], (turned[1] - turned[0]) / (window as f64 * 10.0 * dt));
         rate += 0.5 * window as f64 * 10.0 * dt * alpha(turned[1]);
         for _ in 0..10 * rest {

@@ -83,7 +83,7 @@ fn slope(tangent: f64) -> Simulation {
         dynamic("slope", 20.0, 0.1),
         tangent.atan().to_degrees()
     ));
-    assert_eq!(simulation.slope().covers.block_count(), 17);
+    assert_eq!(simulation.model().covers.block_count(), 17);
     run_stage(&mut simulation);
     assert!(simulation.next_stage().expect("a stage"));
     simulation
@@ -95,7 +95,7 @@ fn fate(tangent: f64, seconds: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let mut simulation = slope(tangent);
     let (_, _, middles) = geometry();
     let blocks: Vec<usize> = middles.iter().map(|p| block_at(&simulation, *p)).collect();
-    let motion = |s: &Simulation, b: usize| block_motion(s.slope(), s.state(), &s.scratch().mass_matrix, b);
+    let motion = |s: &Simulation, b: usize| block_motion(s.model(), s.state(), &s.scratch().mass_matrix, b);
     let start: Vec<_> = blocks.iter().map(|&b| motion(&simulation, b).0).collect();
     let mut turned = vec![0.0; 16];
     let steps = simulation.steps_in(0.05);

@@ -53,9 +53,9 @@ fn pushed(simulation: &mut Simulation) -> (Vector, f64) {
     let block = block_at(simulation, [40.0, 45.0]);
     advance(simulation, 1);
     let (mut force, mut moment) = (Vector::zeros(), 0.0);
-    for i in simulation.slope().covers.covers_of(block) {
+    for i in simulation.model().covers.covers_of(block) {
         force += simulation.scratch().load_force[i];
-        moment += simulation.slope().covers.star_position[i].perp(&simulation.scratch().load_force[i]);
+        moment += simulation.model().covers.star_position[i].perp(&simulation.scratch().load_force[i]);
     }
     (force, moment)
 }
@@ -93,7 +93,7 @@ fn a_host_shifts_the_table_by_what_it_moves_the_level() {
     let [x, y] = slope.foot();
     let table = |rise: f64| format!("[water]\ntable = [[0.0, {rise:?}], [{x:?}, {:?}]]\nfaces = []\n", y + 7.0 + rise);
     let mut moved = slope.build(&table(0.0));
-    assert_eq!(moved.slope().water.as_ref().expect("water").level, y + 7.0);
+    assert_eq!(moved.model().water.as_ref().expect("water").level, y + 7.0);
     moved.drive().to.water_level += 2.5;
     moved.drive().arrive();
     assert_close(pushed(&mut moved), pushed(&mut slope.build(&table(2.5))));

@@ -56,7 +56,7 @@ fn run(threads: usize, stopped: bool) -> State {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| {
         let mut one = simulation(SLOPE);
-        assert!(one.slope().covers.cover_count() > 3000, "{}", one.slope().covers.cover_count());
+        assert!(one.model().covers.cover_count() > 3000, "{}", one.model().covers.cover_count());
         let through = |simulation: Simulation| {
             if !stopped {
                 return simulation;

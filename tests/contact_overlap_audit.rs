@@ -44,7 +44,7 @@ fn a_failing_slope_overlaps_by_little() {
         k += 1;
     }
     let end = overlaps.deepest(&simulation);
-    println!("{} blocks, {speed} m/s, overlap {worst:e} m, {end:?}", simulation.slope().covers.block_count());
+    println!("{} blocks, {speed} m/s, overlap {worst:e} m, {end:?}", simulation.model().covers.block_count());
     println!("{:?}", simulation.state().counters);
     assert!(speed > 3.0, "the slope must fail: {speed} m/s");
     assert!(worst < 0.05 * SIZE, "overlap {worst:e} m");

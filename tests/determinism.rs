@@ -32,7 +32,7 @@ fn run(threads: usize) -> State {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
         let mut simulation = simulation(&heap());
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         assert!(covers.block_count() > 100 && covers.cover_count() > 4096, "{} blocks", covers.block_count());
         for _ in 0..400 {
             simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));

@@ -58,7 +58,7 @@ fn assert_rests(mut simulation: Simulation, seconds: f64) {
     let steps = simulation.steps_in(seconds - 4.0);
     let report = advance(&mut simulation, steps);
     let drift = distance(&before, &simulation.state().displacement);
-    let mass: f64 = simulation.slope().mass_matrix.total.iter().sum();
+    let mass: f64 = simulation.model().mass_matrix.total.iter().sum();
     let counters = simulation.state().counters;
     println!(
         "drift {drift:e} m, kinetic {:e} J of {mass} kg, penetration {:e} h, unsettled {}",

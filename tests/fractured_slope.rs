@@ -20,7 +20,7 @@ fn long_the_fractured_slope_rests_and_then_fails() {
     let case = fractured_slope();
     let size = case.mesh.size;
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
-    assert!(simulation.slope().covers.block_count() >= 400);
+    assert!(simulation.model().covers.block_count() >= 400);
 
     // At rest: kinetic energy below 1e-6 of the potential energy that settling has released.
     let rest = run_stage(&mut simulation);

@@ -53,7 +53,7 @@ fn quiet_base(wave: [f64; 2]) -> String {
 
 /// Largest difference of the velocities across the width, and of them from those of a column under a free surface.
 fn spread(mut simulation: Simulation, axis: usize, speed: f64, until: f64) -> [f64; 2] {
-    let dt = simulation.slope().dt;
+    let dt = simulation.model().dt;
     let [mut across, mut from_column] = [0.0f64; 2];
     for _ in 0..(until / dt) as u64 {
         simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
@@ -120,7 +120,7 @@ fn the_ledger_closes_between_columns() {
     let mut simulation = block(&both("free_field"), &(quiet_base([1.0, 0.0]) + solver), 5.0, 0.0);
     let mut largest = 0.0f64;
     let mut worst = 0.0f64;
-    for step in 0..(0.3 / simulation.slope().dt) as u64 {
+    for step in 0..(0.3 / simulation.model().dt) as u64 {
         let report = simulation.advance(step.is_multiple_of(10)).unwrap_or_else(|e| panic!("{e}"));
         largest = largest.max(report.ledger.largest());
         worst = worst.max(report.ledger.residual().abs());

@@ -84,7 +84,7 @@ fn joints_that_are_one_within_the_snap_tolerance_cross_nowhere() {
     };
     let loaded = parse_case(&case(&(0..600).map(near).collect::<String>(), 100 << 20), "case.toml", Path::new(""));
     let built = Simulation::new(loaded.expect("reads").case).expect("one joint");
-    assert_eq!(built.slope().covers.block_count(), 2);
+    assert_eq!(built.model().covers.block_count(), 2);
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn a_long_strip_across_the_lattice_is_cut_where_it_is() {
     };
     let clock = Instant::now();
     let turned = |length| strip(length).replace("size = 1.0", "size = 1.0\nangle_deg = 30");
-    assert_eq!(build(turned(10_000.0)).expect("fits").slope().covers.block_count(), 1);
+    assert_eq!(build(turned(10_000.0)).expect("fits").model().covers.block_count(), 1);
     assert!(clock.elapsed().as_secs_f64() < 10.0, "{:?}", clock.elapsed());
     let error = build(turned(100_000.0)).expect_err("no numbers").to_string();
     assert!(error.contains("mesh.angle_deg: 30°") && error.contains("at most"), "{error}");

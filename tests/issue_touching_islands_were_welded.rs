@@ -10,6 +10,6 @@ fn a_block_on_a_base_stays_apart() {
          young = 1e9\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = 30\n[[fix]]\nedge = [[0, -1], [2, -1]]\n\
          [[stage]]\nname = \"rest\"\nkind = \"dynamic\"\nduration = 1\n",
     );
-    assert_eq!(simulation.slope().covers.block_count(), 2);
+    assert_eq!(simulation.model().covers.block_count(), 2);
     assert!(simulation.built().warnings.is_empty(), "{:?}", simulation.built().warnings);
 }

@@ -18,7 +18,7 @@ fn a_block_that_swings_without_load_is_wholly_out_of_balance_and_one_that_does_n
     let mut simulation = simulation(&text);
     assert_eq!(simulation.report().unbalanced, 0.0);
     let mut state = simulation.state().clone();
-    let stretched = simulation.slope().covers.star_position.iter().map(|x| Vector::new(1e-3 * x.x, 0.0));
+    let stretched = simulation.model().covers.star_position.iter().map(|x| Vector::new(1e-3 * x.x, 0.0));
     state.displacement = stretched.collect();
     simulation.restore(state);
     for _ in 0..3 {

@@ -6,7 +6,7 @@ mod common;
 use common::simulation;
 use enmm::geometry::Vector;
 use enmm::io::bench::continuum_case;
-use enmm::state::{Scratch, Slope, State};
+use enmm::state::{Model, Scratch, State};
 use enmm::step::{Regime, advance, prepare};
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.
@@ -15,7 +15,7 @@ const STILL: f64 = 10.0;
 #[test]
 fn every_part_has_the_elements_of_its_covers_once() {
     let simulation = simulation(&continuum_case(12_000));
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let (covers, chunks) = (&slope.covers, &slope.chunks);
     let (mut in_rows, mut all) = (0, 0);
     for chunk in chunks.iter() {
@@ -41,7 +41,7 @@ fn every_part_has_the_elements_of_its_covers_once() {
 }
 
 /// Velocities after one step from displacements at rest.
-fn kicked(slope: &Slope, start: &State, displacement: impl Fn(usize) -> Vector) -> (Vec<Vector>, State) {
+fn kicked(slope: &Model, start: &State, displacement: impl Fn(usize) -> Vector) -> (Vec<Vector>, State) {
     let mut state = start.clone();
     (0..state.displacement.len()).for_each(|i| state.displacement[i] = displacement(i));
     let before = state.clone();
@@ -54,7 +54,7 @@ fn kicked(slope: &Slope, start: &State, displacement: impl Fn(usize) -> Vector) 
 #[test]
 fn forces_are_those_of_the_elements_one_by_one() {
     let simulation = simulation(&continuum_case(12_000));
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let place = |i: usize| slope.covers.star_position[i];
     let moved = |i: usize| {
         let p = place(i);

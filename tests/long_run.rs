@@ -30,7 +30,7 @@ fn kept(simulation: &mut Simulation) -> f64 {
     let with = |f: &dyn Fn(&Vector, &Vector) -> Vector| {
         let mut state = before.clone();
         state.velocity = before.velocity.iter().zip(after).map(|(a, b)| f(a, b)).collect();
-        energies(simulation.slope(), &state, &simulation.scratch().mass_matrix)
+        energies(simulation.model(), &state, &simulation.scratch().mass_matrix)
     };
     let mean = with(&|a, b| (a + b) * 0.5);
     mean.kinetic - with(&|a, b| (b - a) * 0.5).kinetic + mean.strain
@@ -43,7 +43,7 @@ fn an_undamped_block_keeps_its_energy() {
     for mesh in ["size = 0.4", "size = 0.9\nangle_deg = 21.0\norigin = [0.2, 0.1]"] {
         let mut simulation = simulation(&case(mesh));
         let mut state = simulation.state().clone();
-        let stars = &simulation.slope().covers.star_position;
+        let stars = &simulation.model().covers.star_position;
         state.displacement = stars.iter().map(|x| Vector::new(1e-6 * x.x + 4e-7 * x.y, -7e-7 * x.y)).collect();
         simulation.restore(state);
         // The first kick is half a step, from rest: the sum holds from the second on.

@@ -52,7 +52,7 @@ fn seconds() -> f64 {
 
 /// Bytes of model, state and buffers.
 fn bytes(simulation: &Simulation) -> [usize; 3] {
-    let (slope, state, scratch) = (simulation.slope(), simulation.state(), simulation.scratch());
+    let (slope, state, scratch) = (simulation.model(), simulation.state(), simulation.scratch());
     let elements = slope.covers.element_count();
     println!("{} blocks, {elements} elements, {} covers", slope.covers.block_count(), slope.covers.cover_count());
     for (heap, parts) in [("model", slope.memory()), ("state", state.memory()), ("buffers", scratch.memory())] {
@@ -71,7 +71,7 @@ fn bytes(simulation: &Simulation) -> [usize; 3] {
 fn a_jointed_model_stays_within_its_bytes_per_element() {
     let mut simulation = built(&slope(Some(3.1), 2.38, 1.0));
     simulation.advance(false).unwrap();
-    let elements = simulation.slope().covers.element_count();
+    let elements = simulation.model().covers.element_count();
     assert!((15_000..30_000).contains(&elements), "{elements}");
     for (bytes, limit) in bytes(&simulation).into_iter().zip([410, 325, 2400]) {
         assert!(bytes <= limit * elements, "{} bytes an element, limit {limit}", bytes / elements);
@@ -81,7 +81,7 @@ fn a_jointed_model_stays_within_its_bytes_per_element() {
 #[test]
 fn elements_are_found_by_place() {
     let simulation = built(&slope(Some(4.0), 3.0, 1.0));
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     for e in 0..covers.element_count() {
         let centroid = covers.element_centroid[e];
         if polygon::contains(covers.polygon(e), centroid) {

@@ -37,7 +37,7 @@ fn all_against_all(view: &SearchView) -> Vec<[u32; 3]> {
 
 /// Blocks pushed their own ways, some of them far off.
 fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let away = |block: u32| {
         let angle = 0.7 * f64::from(block);
         let far = if block % 50 == 7 { 30.0 } else { 1.0 };
@@ -53,11 +53,11 @@ fn the_search_finds_what_all_against_all_find() {
     let case = enmm::io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    let boundary = &simulation.slope().boundary;
+    let boundary = &simulation.model().boundary;
     assert!(boundary.partial.contains(&true), "there must be partial cuts");
     let fixed = &simulation.scratch().mass_matrix.fixed;
     let removed: Vec<bool> = (0..fixed.len()).map(|block| block % 40 == 3).collect();
-    let cutoff = 0.25 * simulation.slope().covers.mesh.size;
+    let cutoff = 0.25 * simulation.model().covers.mesh.size;
     let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();
     for share in [0.0, 0.1, 0.3] {
         let place = push(&simulation, share);

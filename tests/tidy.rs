@@ -550,7 +550,7 @@ fn count(problems: fn(&File) -> Vec<String>, path: &str, text: &str) -> usize {
 fn rooms_rule_is_seen_failing() {
     let rule = |path, text| count(room_problems, path, text);
     assert_eq!(rule("src/contact/law.rs", "use crate::geometry::Point; // crate::io is a comment"), 0);
-    assert_eq!(rule("src/contact/law.rs", "use crate::state::Slope;"), 1);
+    assert_eq!(rule("src/contact/law.rs", "use crate::state::Model;"), 1);
     assert_eq!(rule("src/contact/law.rs", "use crate::{geometry::Point, step::{Dt, X}, state};"), 2);
     assert_eq!(rule("src/cover/mod.rs", "pub fn f(c: &crate::model::Case) -> crate::geometry::Point {}"), 1);
     assert_eq!(rule("src/cover/mod.rs", "use super::step::Dt; use super::geometry::Point;"), 2);

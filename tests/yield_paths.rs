@@ -32,10 +32,10 @@ fn strained(simulation: &mut Simulation, strain: [f64; 2], angle: f64) -> [f64; 
         let y = Vector::new(x.x * (1.0 + strain[0]), x.y * (1.0 + strain[1]));
         Vector::new(c * y.x - s * y.y, s * y.x + c * y.y) - x
     };
-    state.displacement = simulation.slope().covers.star_position.iter().map(place).collect();
+    state.displacement = simulation.model().covers.star_position.iter().map(place).collect();
     simulation.restore(state);
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    let (slope, state) = (simulation.slope(), simulation.state());
+    let (slope, state) = (simulation.model(), simulation.state());
     let back = |[xx, yy, xy]: [f64; 3]| {
         let both = 2.0 * s * c * xy;
         [c * c * xx + s * s * yy + both, s * s * xx + c * c * yy - both, s * c * (yy - xx) + (c * c - s * s) * xy]
@@ -110,7 +110,7 @@ fn plane_stress_and_tension_cut_off() {
         assert_eq!(pulled.yielded_elements(), 0);
         let (stress, _) = biaxial(&mut pulled, 0.0, 2e-5, 16);
         assert!((stress[1] - 2e5).abs() < 1e-3, "{plane}: {}", stress[1]);
-        assert_eq!(pulled.yielded_elements(), pulled.slope().covers.element_count());
+        assert_eq!(pulled.yielded_elements(), pulled.model().covers.element_count());
         let snapshot = pulled.snapshot();
         assert!(snapshot.plastic_strain.iter().all(|p| *p > 1e-5), "outputs show it");
         let shown = snapshot.stress.iter().map(|s| s[0] + s[1]).fold(0.0f64, f64::max);

@@ -40,7 +40,7 @@ impl Cosimulation {
     /// A value that is not finite or too large, or a case without water.
     pub fn set_water_level(&mut self, level: f64) -> Result<(), CosimulationError> {
         number(&"water_level", level, LEVEL_MAX, "m")?;
-        if self.simulation.slope().water.is_none() {
+        if self.simulation.model().water.is_none() {
             let remedy = "add `[water]` with `level` to the case";
             return Err(CosimulationError::value("water_level", level, "that of a case with water", remedy));
         }
@@ -119,7 +119,7 @@ impl Cosimulation {
 
     /// Checks that a block exists.
     pub(super) fn check_block(&self, block: u32) -> Result<(), CosimulationError> {
-        let count = self.simulation.slope().covers.block_count();
+        let count = self.simulation.model().covers.block_count();
         if (block as usize) < count {
             return Ok(());
         }

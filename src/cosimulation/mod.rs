@@ -132,7 +132,7 @@ impl Cosimulation {
 
     /// Internal step (s).
     pub fn internal_step(&self) -> f64 {
-        self.simulation.slope().dt
+        self.simulation.model().dt
     }
 
     /// Communication step (s) that the case suggests.
@@ -147,7 +147,7 @@ impl Cosimulation {
 
     /// Ports of the case, in its order.
     pub fn ports(&self) -> &[Port] {
-        &self.simulation.slope().ports
+        &self.simulation.model().ports
     }
 
     /// Events so far, in order; their times count as [`Cosimulation::time`] does.
@@ -258,7 +258,7 @@ impl Cosimulation {
             let limit = format!("at least 1 and at most {}", limits::THREADS_MAX);
             return Err(CosimulationError::value("threads", threads, &limit, "1 suits all small models"));
         }
-        let is_small = self.simulation.slope().covers.cover_count() < THREADS_FROM;
+        let is_small = self.simulation.model().covers.cover_count() < THREADS_FROM;
         self.pool = if threads == 1 || is_small { None } else { Some(Arc::new(Pool::new(threads)?)) };
         self.simulation.set_serial(self.pool.is_none());
         Ok(())

@@ -102,7 +102,7 @@ impl Cosimulation {
 
     fn block_port(&self, block: u32) -> PortState {
         let state = self.simulation.motion_of(block as usize);
-        let boundary = &self.simulation.slope().boundary;
+        let boundary = &self.simulation.model().boundary;
         let places = self.simulation.places();
         let mut contact_force = Vector::zeros();
         for contact in &self.simulation.state().contacts {
@@ -124,8 +124,8 @@ impl Cosimulation {
     }
 
     fn boundary_port(&self, port: &Port) -> PortState {
-        let (slope, state) = (self.simulation.slope(), self.simulation.state());
-        let boundary = &slope.boundary;
+        let (model, state) = (self.simulation.model(), self.simulation.state());
+        let boundary = &model.boundary;
         let mut mean = PortState::default();
         let mut total = 0.0;
         for edge in port.edges.iter().map(|&e| e as usize) {
@@ -145,7 +145,7 @@ impl Cosimulation {
     }
 
     fn joint_port(&self, port: &Port) -> PortState {
-        let boundary = &self.simulation.slope().boundary;
+        let boundary = &self.simulation.model().boundary;
         let of_port = |contact: &&ContactHistory| {
             let [before, after] = boundary.edges_of_node(contact.node as usize);
             [contact.edge, before, after].iter().any(|edge| port.edges.binary_search(edge).is_ok())

@@ -59,8 +59,8 @@ pub struct Check {
 
 /// Looks at a built model; `warnings` are those of reading its case.
 pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
-    let (slope, built) = (simulation.slope(), simulation.built());
-    let covers = &slope.covers;
+    let (model, built) = (simulation.model(), simulation.built());
+    let covers = &model.covers;
     let block_areas = sorted((0..covers.block_count()).map(|b| covers.block_area(b)).collect());
     let mut stars_by_cover_count = BTreeMap::new();
     for (_, count) in covers.covers_by_star() {
@@ -75,17 +75,17 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         physical_covers: covers.cover_count(),
         stars: stars_by_cover_count.values().sum(),
         stars_by_cover_count,
-        cover_masses: sorted(slope.mass_matrix.row_sum.clone()),
+        cover_masses: sorted(model.mass_matrix.row_sum.clone()),
         vertices: distinct(&covers.polygon_points),
         boundary_edges: built.boundary_pieces,
         initial_contacts: scratch.contacts.len(),
-        critical_dt: slope.critical_dt,
+        critical_dt: model.critical_dt,
         small_covers_treated: small_covers(simulation, 2.0 * triangle),
         tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
         block_areas,
         merged_vertices: built.noding.merged_vertices,
         ignored_joints: ignored_traces(&built.noding).len(),
-        memory_bytes: (slope.bytes() + 2 * state.bytes() + scratch.bytes()) as u64,
+        memory_bytes: (model.bytes() + 2 * state.bytes() + scratch.bytes()) as u64,
         memory: memory(simulation, &state, &scratch),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
@@ -104,7 +104,7 @@ pub struct MemoryPart {
 
 /// Memory of a model with this state and these buffers.
 fn memory(simulation: &Simulation, state: &State, scratch: &Scratch) -> Vec<MemoryPart> {
-    let heaps = [("model", simulation.slope().memory()), ("state", state.memory()), ("buffers", scratch.memory())];
+    let heaps = [("model", simulation.model().memory()), ("state", state.memory()), ("buffers", scratch.memory())];
     let part = |heap| move |(part, bytes)| MemoryPart { heap, part, bytes };
     heaps.into_iter().flat_map(|(heap, parts)| parts.into_iter().map(part(heap))).collect()
 }
@@ -123,13 +123,13 @@ fn distinct(points: &[Point]) -> usize {
 
 /// Covers with less than the share of a full cover's mass; `third` is a third of the cover's hexagon (m²).
 fn small_covers(simulation: &Simulation, third: f64) -> usize {
-    let slope = simulation.slope();
-    let covers = &slope.covers;
+    let model = simulation.model();
+    let covers = &model.covers;
     let mut density = vec![0.0f64; covers.cover_count()];
     for (e, ids) in covers.element_covers.iter().enumerate() {
-        let of_element = slope.rocks[slope.element_rock[e] as usize].density;
+        let of_element = model.rocks[model.element_rock[e] as usize].density;
         ids.iter().for_each(|&i| density[i as usize] = density[i as usize].max(of_element));
     }
-    let masses = slope.mass_matrix.row_sum.iter().zip(density);
+    let masses = model.mass_matrix.row_sum.iter().zip(density);
     masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()
 }

@@ -8,15 +8,15 @@ use super::picture::ModelDecor;
 
 /// Title, stars, supports, monitors, ports, joints and counts of a model.
 pub fn model_decor(simulation: &Simulation) -> ModelDecor {
-    let (slope, case) = (simulation.slope(), simulation.case());
-    let covers = &slope.covers;
-    let supports = slope.supports.iter().map(|support| {
+    let (model, case) = (simulation.model(), simulation.case());
+    let covers = &model.covers;
+    let supports = model.supports.iter().map(|support| {
         let place = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
         support.covers.iter().zip(support.weights).map(place).sum()
     });
     let mut fixed: Vec<Point> = supports.collect();
     fixed.dedup();
-    let boundary = &slope.boundary;
+    let boundary = &model.boundary;
     let ends = |k: usize| [boundary.reference[k], boundary.reference[boundary.after(k)]];
     let joints = (0..boundary.len()).filter(|&k| boundary.trace[k] != NONE);
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
@@ -33,7 +33,7 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
             format!("mesh size {} m", covers.mesh.size),
         ],
         bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
-        trace_segments: joints.map(|k| (ends(k), slope.trace_law[boundary.trace[k] as usize])).collect(),
+        trace_segments: joints.map(|k| (ends(k), model.trace_law[boundary.trace[k] as usize])).collect(),
     }
 }
 

@@ -123,18 +123,18 @@ pub struct ModelCounts {
 impl ModelCounts {
     /// Counts a model.
     pub fn of(simulation: &Simulation) -> Self {
-        let slope = simulation.slope();
-        let covers = &slope.covers;
+        let model = simulation.model();
+        let covers = &model.covers;
         Self {
             blocks: covers.block_count(),
             elements: covers.element_count(),
             physical_covers: covers.cover_count(),
             stars: covers.covers_by_star().len(),
-            contact_nodes: slope.boundary.node_count(),
+            contact_nodes: model.boundary.node_count(),
             boundary_edges: simulation.built().boundary_pieces,
             contacts: simulation.state().contacts.len(),
-            joints: slope.trace_law.len(),
-            supports: slope.supports.len(),
+            joints: model.trace_law.len(),
+            supports: model.supports.len(),
             area: covers.element_area.iter().sum(),
             mesh_size: covers.mesh.size,
         }
@@ -205,7 +205,7 @@ pub struct BoltRecord {
 
 impl BoltRecord {
     fn of(simulation: &Simulation) -> Vec<Self> {
-        let segments = simulation.slope().bolts.iter().zip(&simulation.state().bolts);
+        let segments = simulation.model().bolts.iter().zip(&simulation.state().bolts);
         let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
             let case = &simulation.case().bolts[segment.bolt as usize];
             let middle = (segment.points[0] + segment.points[1]) * 0.5;
@@ -365,7 +365,7 @@ pub(super) struct RunRecord<'a> {
 
 impl Summary {
     pub(super) fn new(simulation: &Simulation, record: RunRecord) -> Self {
-        let (slope, state) = (simulation.slope(), simulation.state());
+        let (model, state) = (simulation.model(), simulation.state());
         let counters = &state.counters;
         Self {
             title: simulation.case().title.clone(),
@@ -381,8 +381,8 @@ impl Summary {
             dt: StepSizes {
                 min: counters.dt_min,
                 max: counters.dt_max,
-                internal: slope.dt,
-                critical: slope.critical_dt,
+                internal: model.dt,
+                critical: model.critical_dt,
             },
             open_close: OpenCloseRecord {
                 mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
@@ -399,7 +399,7 @@ impl Summary {
             yielded_elements: simulation.yielded_elements(),
             bolts: BoltRecord::of(simulation),
             penetration_max: counters.penetration_max,
-            penetration_max_relative: counters.penetration_max / slope.covers.mesh.size,
+            penetration_max_relative: counters.penetration_max / model.covers.mesh.size,
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             warnings: record.warnings,

@@ -71,8 +71,8 @@ mod tests {
             let backward = forces(u);
             for a in 0..3 {
                 let block = stiffness_block(0.5, &rock, UP[a], UP[b]);
-                let slope = (backward[a] - forward[a]) / 2e-7;
-                assert!((slope - Vector::new(block[axis], block[2 + axis])).norm() < 1e-6, "{a} {b} {axis}");
+                let model = (backward[a] - forward[a]) / 2e-7;
+                assert!((model - Vector::new(block[axis], block[2 + axis])).norm() < 1e-6, "{a} {b} {axis}");
             }
         }
     }

@@ -180,8 +180,8 @@ mod tests {
                     moved[k][axis] += d;
                     Deformation::new(moved, &UP).energy(&ROCK, &pre)
                 };
-                let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
-                assert!((slope + forces[k][axis]).abs() < 1e-8, "{slope} {}", forces[k][axis]);
+                let model = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+                assert!((model + forces[k][axis]).abs() < 1e-8, "{model} {}", forces[k][axis]);
             }
         }
     }

@@ -414,8 +414,8 @@ mod tests {
                     moved[k][axis] += d;
                     strength.energy(&Deformation::new(moved, &gradients), &[1e6, 2e6, 3e5, 0.0], &plastic)
                 };
-                let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
-                assert!((slope + forces[k][axis]).abs() < 1.0, "{slope} {}", forces[k][axis]);
+                let model = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+                assert!((model + forces[k][axis]).abs() < 1.0, "{model} {}", forces[k][axis]);
             }
         }
     }

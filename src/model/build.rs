@@ -20,7 +20,7 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Slope, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Model, State};
 
 use place::Places;
 
@@ -31,7 +31,7 @@ pub use warnings::ignored_traces;
 #[derive(Debug, Clone)]
 pub struct Built {
     /// Fixed part.
-    pub slope: Slope,
+    pub model: Model,
     /// State at the start.
     pub state: State,
     /// Element and reference point of each monitor.
@@ -60,20 +60,20 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (slope, bolt_warnings) = slope(case, &joints, covers, &outlines, tolerance, tell)?;
+    let (model, bolt_warnings) = model(case, &joints, covers, &outlines, tolerance, tell)?;
     tell(BuildStage::Start);
-    quiet::check_columns(&slope)?;
-    warnings::check_stages(case, &slope)?;
-    let places = Places { covers: &slope.covers, outlines: &outlines, tolerance };
+    quiet::check_columns(&model)?;
+    warnings::check_stages(case, &model)?;
+    let places = Places { covers: &model.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
-    let state = initial_state(case, &slope, &places)?;
-    warnings.extend(rock::overstressed(case, &slope));
+    let state = initial_state(case, &model, &places)?;
+    warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    warnings.extend(warnings::of_values(case, &slope, &places));
+    warnings.extend(warnings::of_values(case, &model, &places));
     Ok(Built {
-        slope,
+        model,
         state,
         monitors,
         noding,
@@ -97,14 +97,14 @@ pub(super) fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 const STIFFNESS_LENGTH: f64 = 1.0;
 
 /// The fixed part of the model, and what its bolts have to tell.
-fn slope(
+fn model(
     case: &Case,
     joints: &geometry::Joints,
     covers: Covers,
     outlines: &Outlines,
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
-) -> Result<(Slope, Vec<String>), Invalid> {
+) -> Result<(Model, Vec<String>), Invalid> {
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let places = Places { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
@@ -117,7 +117,7 @@ fn slope(
     let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
     let loads = loads(case, &places, &faces)?;
     let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
-    let slope = Slope {
+    let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
@@ -155,7 +155,7 @@ fn slope(
         element_rock,
         covers,
     };
-    Ok((slope, bolt_warnings))
+    Ok((model, bolt_warnings))
 }
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
@@ -353,8 +353,8 @@ fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid
     case.monitors.iter().enumerate().map(of).collect()
 }
 
-fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, Invalid> {
-    let covers = slope.covers.cover_count();
+fn initial_state(case: &Case, model: &Model, places: &Places) -> Result<State, Invalid> {
+    let covers = model.covers.cover_count();
     let mut velocity = vec![Vector::zeros(); covers];
     for (k, start) in case.initial_velocities.iter().enumerate() {
         let blocks = match start.block {
@@ -362,12 +362,12 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
                 let block = places.block(&format!("initial_velocity[{k}].block"), point)?;
                 block..block + 1
             }
-            None => 0..slope.covers.block_count(),
+            None => 0..model.covers.block_count(),
         };
         for block in blocks {
-            let centre = slope.covers.block_centroid(block);
-            for i in slope.covers.covers_of(block) {
-                let arm = slope.covers.star_position[i] - centre;
+            let centre = model.covers.block_centroid(block);
+            for i in model.covers.covers_of(block) {
+                let arm = model.covers.star_position[i] - centre;
                 velocity[i] = Vector::from(start.velocity) + Vector::new(-arm.y, arm.x) * start.angular_velocity;
             }
         }
@@ -384,21 +384,21 @@ fn initial_state(case: &Case, slope: &Slope, places: &Places) -> Result<State, I
         velocity,
         contacts: Vec::new(),
         neighbours: Default::default(),
-        support_force: slope.supports.iter().map(|s| s.preload).collect(),
-        support_rest: vec![0.0; slope.supports.len()],
-        fix_active: slope.fixities.iter().map(|f| f.active).collect(),
-        removed: vec![false; slope.covers.block_count()],
-        laws: slope.laws.clone(),
-        law_switch: (0..slope.laws.len() as u32).collect(),
+        support_force: model.supports.iter().map(|s| s.preload).collect(),
+        support_rest: vec![0.0; model.supports.len()],
+        fix_active: model.fixities.iter().map(|f| f.active).collect(),
+        removed: vec![false; model.covers.block_count()],
+        laws: model.laws.clone(),
+        law_switch: (0..model.laws.len() as u32).collect(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
-        drive: Drive::hold(Inputs::of(slope)),
-        bolts: vec![BoltState::default(); slope.bolts.len()],
-        plastic: rock::plastic(slope),
-        columns: slope.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
+        drive: Drive::hold(Inputs::of(model)),
+        bolts: vec![BoltState::default(); model.bolts.len()],
+        plastic: rock::plastic(model),
+        columns: model.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
         acceleration: Vec::new(),
         static_stretch: 0.0,
-        events: Events::none(slope.covers.block_count(), slope.trace_law.len()),
+        events: Events::none(model.covers.block_count(), model.trace_law.len()),
         ledger: Default::default(),
         counters: Default::default(),
     })

@@ -130,7 +130,7 @@ impl Simulation {
     }
 
     fn check_clock(&self, state: &State) -> Fit {
-        let dt = self.slope().dt;
+        let dt = self.model().dt;
         index("stage", state.stage, self.case().stages.len())?;
         length("stage_starts", state.stage_starts.len(), state.stage as usize + 1)?;
         for (k, &start) in state.stage_starts.iter().enumerate() {
@@ -148,7 +148,7 @@ impl Simulation {
     }
 
     fn check_motion(&self, state: &State) -> Fit {
-        let (slope, covers) = (self.slope(), self.slope().covers.cover_count());
+        let (model, covers) = (self.model(), self.model().covers.cover_count());
         let is_static = self.case().stages[state.stage as usize].kind == StageKind::Static;
         let of_static = if is_static { covers } else { 0 };
         let of_implicit = if state.acceleration.is_empty() { 0 } else { covers };
@@ -164,8 +164,8 @@ impl Simulation {
         }
         length("plastic", state.plastic.len(), self.state().plastic.len())?;
         numbers("plastic", state.plastic.as_flattened(), RATE)?;
-        length("columns", state.columns.len(), slope.columns.len())?;
-        for (k, (column, own)) in state.columns.iter().zip(&slope.columns).enumerate() {
+        length("columns", state.columns.len(), model.columns.len())?;
+        for (k, (column, own)) in state.columns.iter().zip(&model.columns).enumerate() {
             let names = ["displacement", "velocity"].map(|field| format!("columns[{k}].{field}"));
             for (what, list, most) in [(&names[0], &column.displacement, LENGTH), (&names[1], &column.velocity, RATE)] {
                 length(what, list.len(), own.node_count())?;
@@ -176,7 +176,7 @@ impl Simulation {
     }
 
     fn check_contacts(&self, contacts: &[ContactHistory]) -> Fit {
-        let boundary = &self.slope().boundary;
+        let boundary = &self.model().boundary;
         for (k, contact) in contacts.iter().enumerate() {
             let &ContactHistory {
                 node,
@@ -214,7 +214,7 @@ impl Simulation {
     }
 
     fn check_neighbours(&self, neighbours: &NeighbourList) -> Fit {
-        let boundary = &self.slope().boundary;
+        let boundary = &self.model().boundary;
         for (k, pair) in neighbours.pairs.iter().enumerate() {
             index(format_args!("neighbours.pairs[{k}].node"), pair.node, boundary.node_count())?;
             index(format_args!("neighbours.pairs[{k}].side"), pair.side, boundary.side_first.len())?;
@@ -249,7 +249,7 @@ impl Simulation {
     }
 
     fn check_inputs(&self, of: &str, inputs: &Inputs) -> Fit {
-        let (blocks, ports) = (self.state().removed.len(), self.slope().ports.len());
+        let (blocks, ports) = (self.state().removed.len(), self.model().ports.len());
         let Inputs {
             gravity,
             base_acceleration,
@@ -276,7 +276,7 @@ impl Simulation {
     }
 
     fn check_events(&self, events: &Events) -> Fit {
-        let (blocks, traces) = (self.state().removed.len(), self.slope().trace_law.len());
+        let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
         let Events { list, touching, detached, slipped, failed } = events;
         length("events.touching", touching.len(), blocks)?;
         length("events.detached", detached.len(), blocks)?;

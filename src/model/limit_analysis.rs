@@ -148,7 +148,7 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
         return Err(Invalid { key: "fix".to_owned(), message }.into());
     }
     let outlines = outlines(simulation.case())?;
-    let element_block = &simulation.slope().covers.element_block;
+    let element_block = &simulation.model().covers.element_block;
     let strengths = Strengths::new(&simulation, &bodies);
     let tolerance = 2.0 * simulation.built().noding.tolerance;
     let mut contacts = contact::interfaces(&outlines, element_block, &strengths, tolerance);
@@ -184,7 +184,7 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
 
 /// A limit as users see it: motions relative to the fastest block.
 fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse {
-    let slope = simulation.slope();
+    let model = simulation.model();
     let motions = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.motions);
     let speed = |b: usize| motions[b].0.norm().hypot(motions[b].1 * bodies[b].radius);
     let fastest = (0..motions.len()).map(speed).fold(0.0, f64::max);
@@ -196,8 +196,8 @@ fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse
             velocity: motions[b].0 / fastest,
             spin: motions[b].1 / fastest,
             speed: speed(b) / fastest,
-            area: slope.covers.block_area(b),
-            mass: slope.mass_matrix.total[b],
+            area: model.covers.block_area(b),
+            mass: model.mass_matrix.total[b],
         })
         .collect();
     mechanism.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));

@@ -5,7 +5,7 @@
 use crate::contact::{ContactHistory, ContactState, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
-use crate::state::{Slope, State};
+use crate::state::{Model, State};
 use crate::step;
 
 use super::Simulation;
@@ -51,8 +51,8 @@ pub struct BlockState {
 impl Simulation {
     /// The model now, without excavated blocks.
     pub fn snapshot(&self) -> Snapshot {
-        let (slope, state) = (self.slope(), self.state());
-        let covers = &slope.covers;
+        let (model, state) = (self.model(), self.state());
+        let covers = &model.covers;
         let mut snapshot = Snapshot {
             time: self.time(),
             joint_laws: self.case().joint_laws.keys().cloned().collect(),
@@ -62,33 +62,33 @@ impl Simulation {
         snapshot.elements.start.push(0);
         for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]) {
             for &p in covers.polygon(e) {
-                let displacement = slope.sample(e, p, &state.displacement);
+                let displacement = model.sample(e, p, &state.displacement);
                 snapshot.elements.points.push(p + displacement);
                 snapshot.displacement.push(displacement);
-                snapshot.velocity.push(slope.sample(e, p, &state.velocity));
+                snapshot.velocity.push(model.sample(e, p, &state.velocity));
             }
             snapshot.elements.start.push(snapshot.elements.points.len() as u32);
-            snapshot.stress.push(slope.stress(state, e));
+            snapshot.stress.push(model.stress(state, e));
             if !state.plastic.is_empty() {
-                snapshot.plastic_strain.push(equivalent_strain(&slope.plastic_strain(state, e)));
+                snapshot.plastic_strain.push(equivalent_strain(&model.plastic_strain(state, e)));
             }
             snapshot.block.push(covers.element_block[e]);
-            snapshot.rock.push(u32::from(slope.element_rock[e]));
+            snapshot.rock.push(u32::from(model.element_rock[e]));
         }
-        let places = places(slope, state);
+        let places = places(model, state);
         snapshot.boundaries = self.boundaries(&places);
-        self.each_contact(|contact| snapshot.joints.push(joint_point(slope, &places, contact)));
+        self.each_contact(|contact| snapshot.joints.push(joint_point(model, &places, contact)));
         snapshot
     }
 
     /// Loops of all blocks that are there, at the current `places` of the boundary points.
     fn boundaries(&self, places: &[Point]) -> Vec<Boundary> {
-        let (slope, state) = (self.slope(), self.state());
+        let (model, state) = (self.model(), self.state());
         let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
         let mut k = 0;
-        while k < slope.boundary.len() {
-            let end = loop_end(slope, k);
-            let (block, points) = (slope.boundary.block[k], places[k..end].to_vec());
+        while k < model.boundary.len() {
+            let end = loop_end(model, k);
+            let (block, points) = (model.boundary.block[k], places[k..end].to_vec());
             match by_block.last_mut() {
                 Some((last, loops)) if *last == block => loops.push(points),
                 _ => by_block.push((block, vec![points])),
@@ -102,7 +102,7 @@ impl Simulation {
                 Boundary {
                     block,
                     fixed: self.scratch().mass_matrix.fixed[block as usize],
-                    displacement: mean(slope, &state.displacement, block as usize),
+                    displacement: mean(model, &state.displacement, block as usize),
                     loops: polygons(&loops),
                 }
             })
@@ -111,13 +111,13 @@ impl Simulation {
 
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
-        let places = places(self.slope(), self.state());
+        let places = places(self.model(), self.state());
         let mut states: Vec<BlockState> =
-            (0..self.slope().covers.block_count()).map(|block| self.motion_of(block)).collect();
-        let boundary = &self.slope().boundary;
+            (0..self.model().covers.block_count()).map(|block| self.motion_of(block)).collect();
+        let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
             let node = boundary.node_point[contact.node as usize] as usize;
-            let depth = penetration(self.slope(), &places, contact);
+            let depth = penetration(self.model(), &places, contact);
             for block in [boundary.block[node], boundary.block[contact.edge as usize]] {
                 let state = &mut states[block as usize];
                 state.contact_count += u32::from(contact.state != ContactState::Open);
@@ -132,11 +132,11 @@ impl Simulation {
 
     /// The state of one block without what its contacts tell.
     pub fn motion_of(&self, block: usize) -> BlockState {
-        let (slope, state) = (self.slope(), self.state());
-        let covers = &slope.covers;
+        let (model, state) = (self.model(), self.state());
+        let covers = &model.covers;
         let mass_matrix = &self.scratch().mass_matrix;
-        let (_, velocity, spin, kinetic) = step::block_motion(slope, state, mass_matrix, block);
-        let displacement = mean(slope, &state.displacement, block);
+        let (_, velocity, spin, kinetic) = step::block_motion(model, state, mass_matrix, block);
+        let displacement = mean(model, &state.displacement, block);
         let area = covers.block_area(block);
         let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
@@ -144,14 +144,14 @@ impl Simulation {
             id: block as u32,
             fixed: mass_matrix.fixed[block],
             removed,
-            centroid: mean(slope, &covers.star_position, block) + displacement,
+            centroid: mean(model, &covers.star_position, block) + displacement,
             displacement,
-            rotation: rotation(slope, state, block),
+            rotation: rotation(model, state, block),
             velocity,
             angular_velocity: spin,
             mean_stress,
             area,
-            mass: slope.mass_matrix.total[block],
+            mass: model.mass_matrix.total[block],
             kinetic_energy: if removed { 0.0 } else { kinetic },
             strain_energy,
             ..BlockState::default()
@@ -162,14 +162,14 @@ impl Simulation {
 impl Simulation {
     /// Area mean of the stress xx, yy, xy (Pa, tension positive) and the strain energy (J/m) of a block.
     pub fn stress_of(&self, block: usize) -> ([f64; 3], f64) {
-        let (slope, state) = (self.slope(), self.state());
-        let covers = &slope.covers;
+        let (model, state) = (self.model(), self.state());
+        let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
         for e in covers.elements_of(block) {
-            let of_element = slope.stress(state, e);
+            let of_element = model.stress(state, e);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += slope.strain_energy(state, e) * covers.element_area[e];
+            strain_energy += model.strain_energy(state, e) * covers.element_area[e];
         }
         (stress, strain_energy)
     }
@@ -177,22 +177,22 @@ impl Simulation {
     /// Elements that are there and have yielded.
     pub fn yielded_elements(&self) -> usize {
         let state = self.state();
-        let blocks = &self.slope().covers.element_block;
+        let blocks = &self.model().covers.element_block;
         let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block as usize]);
         there.filter(|(plastic, _)| **plastic != [0.0; 4]).count()
     }
 
     /// Current places of the boundary points (m).
     pub fn places(&self) -> Vec<Point> {
-        places(self.slope(), self.state())
+        places(self.model(), self.state())
     }
 }
 
 /// One past the last point of the boundary loop that begins with point `first`.
-fn loop_end(slope: &Slope, first: usize) -> usize {
+fn loop_end(model: &Model, first: usize) -> usize {
     let mut k = first;
-    while slope.boundary.after(k) != first {
-        k = slope.boundary.after(k);
+    while model.boundary.after(k) != first {
+        k = model.boundary.after(k);
     }
     k + 1
 }
@@ -207,37 +207,37 @@ fn polygons(loops: &[Vec<Point>]) -> Polygons {
 }
 
 /// Current places of the boundary points (m).
-fn places(slope: &Slope, state: &State) -> Vec<Point> {
-    let boundary = &slope.boundary;
-    let place = |i: u32| slope.covers.star_position[i as usize] + state.displacement[i as usize];
+fn places(model: &Model, state: &State) -> Vec<Point> {
+    let boundary = &model.boundary;
+    let place = |i: u32| model.covers.star_position[i as usize] + state.displacement[i as usize];
     let sum = |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| place(i) * *w).sum();
     boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
 }
 
 /// Mean of a cover field over a block's mass.
-fn mean(slope: &Slope, field: &[Vector], block: usize) -> Vector {
-    let sum: Vector = slope.covers.covers_of(block).map(|i| field[i] * slope.mass_matrix.row_sum[i]).sum();
-    sum / slope.mass_matrix.total[block]
+fn mean(model: &Model, field: &[Vector], block: usize) -> Vector {
+    let sum: Vector = model.covers.covers_of(block).map(|i| field[i] * model.mass_matrix.row_sum[i]).sum();
+    sum / model.mass_matrix.total[block]
 }
 
 /// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
-fn rotation(slope: &Slope, state: &State, block: usize) -> f64 {
-    let centre = mean(slope, &slope.covers.star_position, block);
-    let shift = mean(slope, &state.displacement, block);
+fn rotation(model: &Model, state: &State, block: usize) -> f64 {
+    let centre = mean(model, &model.covers.star_position, block);
+    let shift = mean(model, &state.displacement, block);
     let (mut cosine, mut sine) = (0.0, 0.0);
-    for i in slope.covers.covers_of(block) {
-        let before = slope.covers.star_position[i] - centre;
+    for i in model.covers.covers_of(block) {
+        let before = model.covers.star_position[i] - centre;
         let after = before + state.displacement[i] - shift;
-        cosine += slope.mass_matrix.row_sum[i] * before.dot(&after);
-        sine += slope.mass_matrix.row_sum[i] * before.perp(&after);
+        cosine += model.mass_matrix.row_sum[i] * before.dot(&after);
+        sine += model.mass_matrix.row_sum[i] * before.perp(&after);
     }
     sine.atan2(cosine)
 }
 
-fn joint_point(slope: &Slope, places: &[Point], contact: &VertexEdge) -> JointPoint {
+fn joint_point(model: &Model, places: &[Point], contact: &VertexEdge) -> JointPoint {
     let history = &contact.history;
     JointPoint {
-        position: places[slope.boundary.node_point[history.node as usize] as usize],
+        position: places[model.boundary.node_point[history.node as usize] as usize],
         normal: contact.normal,
         length: contact.length,
         normal_stress: -history.normal_force / contact.length,
@@ -248,9 +248,9 @@ fn joint_point(slope: &Slope, places: &[Point], contact: &VertexEdge) -> JointPo
 }
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
-fn penetration(slope: &Slope, places: &[Point], contact: &ContactHistory) -> f64 {
+fn penetration(model: &Model, places: &[Point], contact: &ContactHistory) -> f64 {
     let edge = contact.edge as usize;
-    let (a, b) = (places[edge], places[slope.boundary.after(edge)]);
-    let node = places[slope.boundary.node_point[contact.node as usize] as usize];
+    let (a, b) = (places[edge], places[model.boundary.after(edge)]);
+    let node = places[model.boundary.node_point[contact.node as usize] as usize];
     ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Drive, Ledger, Scratch, Slope, State};
+use crate::state::{Drive, Ledger, Model, Scratch, State};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::build::{BuildStage, Built, build, index_of};
@@ -50,7 +50,7 @@ impl Simulation {
     /// The same with other constants of contact, for studies of what they do.
     #[must_use]
     pub fn with_entrance(mut self, rule: EntranceRule) -> Self {
-        self.built.slope.entrance = rule;
+        self.built.model.entrance = rule;
         self
     }
 
@@ -65,8 +65,8 @@ impl Simulation {
     }
 
     /// The fixed part of the model.
-    pub fn slope(&self) -> &Slope {
-        &self.built.slope
+    pub fn model(&self) -> &Model {
+        &self.built.model
     }
 
     /// The state now.
@@ -87,7 +87,7 @@ impl Simulation {
     /// Simulated time (s).
     pub fn time(&self) -> f64 {
         let state = self.state();
-        state.stage_start + state.stage_step as f64 * self.slope().dt + state.part
+        state.stage_start + state.stage_step as f64 * self.model().dt + state.part
     }
 
     /// Whether steps keep to the calling thread.
@@ -102,7 +102,7 @@ impl Simulation {
 
     /// Internal steps that cover `seconds` of simulated time.
     pub fn steps_in(&self, seconds: f64) -> u64 {
-        (seconds / self.slope().dt - 1e-6).ceil().max(1.0) as u64
+        (seconds / self.model().dt - 1e-6).ceil().max(1.0) as u64
     }
 
     /// Takes a state that this model had before, as from a checkpoint.
@@ -127,7 +127,7 @@ impl Simulation {
     /// Makes regime and buffers those of the state.
     fn take_up(&mut self) {
         self.regime = self.regime_of(self.built.state.stage as usize);
-        step::prepare(&self.built.slope, &self.built.state, &mut self.scratch);
+        step::prepare(&self.built.model, &self.built.state, &mut self.scratch);
     }
 
     /// Begins every stage to come without taking a step, and goes back: what does not fit is told before the run.
@@ -161,7 +161,7 @@ impl Simulation {
     /// # Errors
     /// A numerical failure; the state is then spoilt and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
-        step::advance(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, report)
+        step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.scratch, report)
     }
 
     /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.
@@ -169,7 +169,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_part(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        step::advance_part(&self.built.slope, self.regime, &mut self.built.state, &mut self.scratch, dt)
+        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.scratch, dt)
     }
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances.
@@ -181,7 +181,7 @@ impl Simulation {
     pub fn report_on(&self, serial: bool) -> StepReport {
         let mut state = self.state().clone();
         state.drive.hold_last();
-        step::outlook(self.slope(), self.regime, state, serial)
+        step::outlook(self.model(), self.regime, state, serial)
     }
 
     /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
@@ -196,12 +196,12 @@ impl Simulation {
 
     /// As [`Simulation::look_ahead`]; with `serial` on the calling thread alone.
     pub fn look_ahead_on(&self, serial: bool) -> (State, Scratch) {
-        step::look_ahead(self.slope(), self.regime, self.state(), serial)
+        step::look_ahead(self.model(), self.regime, self.state(), serial)
     }
 
     /// Shows [`Simulation::contacts`] one by one: all of them together can be larger than the model.
     pub fn each_contact(&self, mut see: impl FnMut(&VertexEdge)) {
-        step::each_contact(self.slope(), self.regime, self.state(), self.scratch.serial, &mut see);
+        step::each_contact(self.model(), self.regime, self.state(), self.scratch.serial, &mut see);
     }
 
     /// Whether the stage has covered its duration, or is static and at rest by this report.
@@ -223,7 +223,7 @@ impl Simulation {
     /// Why a motion with this ledger is worthless, when energy has come from nowhere.
     pub fn doubt(&self, ledger: &Ledger) -> Option<String> {
         let residual = ledger.residual_relative();
-        let moved = MOVED_MIN * self.slope().covers.mesh.size;
+        let moved = MOVED_MIN * self.model().covers.mesh.size;
         let has_moved = self.state().displacement.iter().any(|u| u.norm() > moved);
         (has_moved && residual.abs() >= RESIDUAL_MAX).then(|| {
             format!(
@@ -250,8 +250,8 @@ impl Simulation {
         if self.case.in_situ.is_some() {
             return 0.0;
         }
-        let (low, high) = polygon::bounds(&self.slope().covers.star_position);
-        let slowest = self.slope().rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
+        let (low, high) = polygon::bounds(&self.model().covers.star_position);
+        let slowest = self.model().rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
         4.0 * (high - low).y / slowest
     }
 
@@ -263,9 +263,9 @@ impl Simulation {
         self.change_bolts(stage)?;
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
-        let (slope, state) = (&self.built.slope, &mut self.built.state);
-        step::begin_stage(slope, self.regime, state, stage as u32, start, at_rest);
-        step::prepare(slope, state, &mut self.scratch);
+        let (model, state) = (&self.built.model, &mut self.built.state);
+        step::begin_stage(model, self.regime, state, stage as u32, start, at_rest);
+        step::prepare(model, state, &mut self.scratch);
         let after = self.energies();
         let sum = |l: &Ledger| l.kinetic + l.strain + l.potential;
         let ledger = &mut self.built.state.ledger;
@@ -277,11 +277,11 @@ impl Simulation {
         if self.scratch.mass_matrix.mass.is_empty() {
             return Ledger::default();
         }
-        step::energies(self.slope(), self.state(), &self.scratch.mass_matrix)
+        step::energies(self.model(), self.state(), &self.scratch.mass_matrix)
     }
 
     fn excavate(&mut self, stage: usize) -> Result<(), Invalid> {
-        let covers = &self.built.slope.covers;
+        let covers = &self.built.model.covers;
         let stage_case = &self.case.stages[stage];
         for (k, &point) in stage_case.excavate.iter().enumerate() {
             let element = covers.element_near(Point::from(point), self.built.noding.tolerance);
@@ -308,7 +308,7 @@ impl Simulation {
 
     /// Laws and their switches as the stages of the case up to one make them.
     pub(super) fn laws_in(&self, stage: u32) -> (Vec<JointLaw>, Vec<u32>) {
-        let mut laws = self.slope().laws.clone();
+        let mut laws = self.model().laws.clone();
         let mut switch: Vec<u32> = (0..laws.len() as u32).collect();
         (0..=stage as usize).for_each(|stage| change_laws(&self.case, stage, &mut laws, &mut switch));
         (laws, switch)
@@ -316,15 +316,15 @@ impl Simulation {
 
     fn change_fixities(&mut self, stage: usize) {
         let stage_case = &self.case.stages[stage];
-        let (slope, state) = (&self.built.slope, &mut self.built.state);
-        for (k, fixity) in slope.fixities.iter().enumerate() {
+        let (model, state) = (&self.built.model, &mut self.built.state);
+        for (k, fixity) in model.fixities.iter().enumerate() {
             let Some(name) = &fixity.name else { continue };
             if stage_case.free.contains(name) {
                 state.fix_active[k] = false;
             }
             if stage_case.fix.contains(name) && !state.fix_active[k] {
                 state.fix_active[k] = true;
-                for (s, support) in slope.supports.iter().enumerate().filter(|(_, s)| s.fix == k as u32) {
+                for (s, support) in model.supports.iter().enumerate().filter(|(_, s)| s.fix == k as u32) {
                     state.support_rest[s] = support.sample(&state.displacement);
                     state.support_force[s] = support.preload;
                 }
@@ -334,9 +334,9 @@ impl Simulation {
 
     /// Installs the bolts of a stage, and those of the start in the first one; bars in blocks that are gone go as well.
     fn change_bolts(&mut self, stage: usize) -> Result<(), Invalid> {
-        let (slope, state) = (&self.built.slope, &mut self.built.state);
+        let (model, state) = (&self.built.model, &mut self.built.state);
         let install = &self.case.stages[stage].install;
-        for (segment, bolt) in slope.bolts.iter().zip(&mut state.bolts) {
+        for (segment, bolt) in model.bolts.iter().zip(&mut state.bolts) {
             let name = self.case.bolts[segment.bolt as usize].name.as_ref();
             let position = install.iter().position(|wanted| Some(wanted) == name);
             let gone = segment.blocks.iter().any(|&b| state.removed[b as usize]);
@@ -348,7 +348,7 @@ impl Simulation {
             if gone {
                 *bolt = BoltState { active: false, force: 0.0, ..*bolt };
             } else if position.is_some() || stage == 0 && segment.active {
-                let length = segment.span(&slope.covers.star_position, &state.displacement).norm();
+                let length = segment.span(&model.covers.star_position, &state.displacement).norm();
                 *bolt = segment.install(length);
                 state.ledger.bolt_installed += segment.energy(bolt, length);
             }
@@ -359,14 +359,14 @@ impl Simulation {
     /// Displacement and velocity of a monitor.
     pub fn monitor(&self, k: usize) -> (Vector, Vector) {
         let (element, point) = self.built.monitors[k];
-        let slope = self.slope();
-        let sample = |field: &[Vector]| slope.sample(element, point, field);
+        let model = self.model();
+        let sample = |field: &[Vector]| model.sample(element, point, field);
         (sample(&self.state().displacement), sample(&self.state().velocity))
     }
 
     /// Linear and angular momentum of the free blocks, see [`step::momentum`].
     pub fn momentum(&self) -> (Vector, f64) {
-        step::momentum(self.slope(), self.state(), &self.scratch.mass_matrix)
+        step::momentum(self.model(), self.state(), &self.scratch.mass_matrix)
     }
 }
 

@@ -3,9 +3,9 @@
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress};
 
-use super::{Slope, State};
+use super::{Model, State};
 
-impl Slope {
+impl Model {
     /// Deformation of an element under displacements of the covers (m).
     pub fn deformation(&self, element: usize, displacement: &[Vector]) -> Deformation {
         let u = self.covers.element_covers[element].map(|i| displacement[i as usize]);

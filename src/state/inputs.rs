@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Vector;
 
-use super::{PortKind, Slope};
+use super::{Model, PortKind};
 
 /// Values that a host sets; each holds until it is set anew.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -29,19 +29,19 @@ pub struct Inputs {
 
 impl Inputs {
     /// The values that the case starts with.
-    pub fn of(slope: &Slope) -> Self {
-        let (blocks, ports) = (slope.covers.block_count(), slope.ports.len());
+    pub fn of(model: &Model) -> Self {
+        let (blocks, ports) = (model.covers.block_count(), model.ports.len());
         let mut inputs = Self {
-            gravity: slope.gravity,
+            gravity: model.gravity,
             base_acceleration: Vector::zeros(),
-            water_level: slope.water.as_ref().map_or(0.0, |water| water.level),
+            water_level: model.water.as_ref().map_or(0.0, |water| water.level),
             strength_factor: 1.0,
             block_force: vec![Vector::zeros(); blocks],
             block_moment: vec![0.0; blocks],
             port_traction: vec![Vector::zeros(); ports],
             port_pressure: vec![0.0; ports],
         };
-        for (k, port) in slope.ports.iter().enumerate() {
+        for (k, port) in model.ports.iter().enumerate() {
             if port.kind == PortKind::Block {
                 inputs.block_force[port.block as usize] += port.force;
                 inputs.block_moment[port.block as usize] += port.scalar;

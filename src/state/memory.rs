@@ -4,7 +4,7 @@ use crate::contact::Boundary;
 use crate::cover::Covers;
 use crate::mechanics::MassMatrix;
 
-use super::{Events, ImplicitScratch, Inputs, Scratch, Slope, State};
+use super::{Events, ImplicitScratch, Inputs, Model, Scratch, State};
 
 /// What a part of a heap is, and its bytes.
 pub type Part = (&'static str, usize);
@@ -28,7 +28,7 @@ fn total(parts: &[Part]) -> usize {
     parts.iter().map(|part| part.1).sum()
 }
 
-impl Slope {
+impl Model {
     /// Bytes of what is fixed.
     pub fn bytes(&self) -> usize {
         total(&self.memory())

@@ -1,4 +1,4 @@
-//! The three heaps: [`Slope`] (fixed once built), [`State`] (all that a checkpoint holds), [`Scratch`] (buffers).
+//! The three heaps: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Scratch`] (buffers).
 
 mod element;
 mod events;
@@ -6,18 +6,18 @@ mod implicit;
 mod inputs;
 mod ledger;
 mod memory;
+mod model;
 mod scratch;
-mod slope;
 
 pub use events::{Event, EventKind, Events};
 pub use implicit::{Implicit, ImplicitScratch, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use memory::Part;
-pub use scratch::{ContactOutcome, PatchSums, Scratch, Seconds};
-pub use slope::{
-    BaseMotion, Fixity, FreeFieldPoint, MotionKind, Port, PortKind, QuietBoundary, Slope, TimedRecord, Water,
+pub use model::{
+    BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
 };
+pub use scratch::{ContactOutcome, PatchSums, Scratch, Seconds};
 
 use serde::{Deserialize, Serialize};
 

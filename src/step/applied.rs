@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
-use crate::state::{Drive, MotionKind, Port, Slope, State, TimedRecord};
+use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
 
 use super::{Regime, quiet};
 
@@ -26,7 +26,7 @@ impl TimedRecord {
 }
 
 /// Acceleration (m/s²) of the base by its records, its mean over a kick (Eq. 45).
-pub fn base_motion(slope: &Slope, regime: Regime, state: &State, kick: Kick) -> Vector {
+pub fn base_motion(model: &Model, regime: Regime, state: &State, kick: Kick) -> Vector {
     let of = |base: &crate::state::BaseMotion| {
         let TimedRecord { record, .. } = &base.motion;
         base.motion.over(regime, state, kick, |from, to| match base.kind {
@@ -34,31 +34,31 @@ pub fn base_motion(slope: &Slope, regime: Regime, state: &State, kick: Kick) -> 
             MotionKind::Velocity => record.mean_rate(from, to),
         })
     };
-    slope.base_motions.iter().map(of).sum()
+    model.base_motions.iter().map(of).sum()
 }
 
 /// Particle velocity (m/s) of the wave that comes in through a quiet boundary, its mean over a kick.
-pub fn wave(slope: &Slope, regime: Regime, state: &State, kick: Kick, quiet: u32) -> Vector {
-    let wave = &slope.quiets[quiet as usize].wave;
+pub fn wave(model: &Model, regime: Regime, state: &State, kick: Kick, quiet: u32) -> Vector {
+    let wave = &model.quiets[quiet as usize].wave;
     wave.as_ref().map_or_else(Vector::zeros, |w| w.over(regime, state, kick, |a, b| w.record.mean(a, b)))
 }
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
 /// base by (Eq. 31).
-pub fn acceleration(slope: &Slope, state: &State, t: f64) -> Vector {
-    let body: Vector = slope.loads.iter().map(|load| load.body(t)).sum();
+pub fn acceleration(model: &Model, state: &State, t: f64) -> Vector {
+    let body: Vector = model.loads.iter().map(|load| load.body(t)).sum();
     let share = state.drive.share(t);
     state.drive.gravity(share) + body - state.drive.base_acceleration(share)
 }
 
 /// Whether [`push_forces`] may add anything but zero.
-pub fn pushes(slope: &Slope, state: &State) -> bool {
+pub fn pushes(model: &Model, state: &State) -> bool {
     let Drive { from, to, .. } = &state.drive;
     let any = |values: &[Vector]| values.iter().any(|v| *v != Vector::zeros());
     let any_scalar = |values: &[f64]| values.iter().any(|v| *v != 0.0);
-    slope.loads.iter().any(|load| !matches!(load.action, LoadAction::Body(_)))
-        || slope.water.is_some()
-        || quiet::frozen(slope, state).next().is_some()
+    model.loads.iter().any(|load| !matches!(load.action, LoadAction::Body(_)))
+        || model.water.is_some()
+        || quiet::frozen(model, state).next().is_some()
         || [from, to].into_iter().any(|inputs| {
             any(&inputs.port_traction)
                 || any_scalar(&inputs.port_pressure)
@@ -69,45 +69,45 @@ pub fn pushes(slope: &Slope, state: &State) -> bool {
 
 /// Adds to `force` (N/m per cover) what loads and inputs push with at time `t` (s); inputs and water act by their share
 /// `ramp`, as gravity does.
-pub fn push_forces(slope: &Slope, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
-    for load in &slope.loads {
-        let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
-        let covers = |b: u32| slope.covers.covers_of(b as usize);
-        load.push(t, place, covers, &slope.mass_matrix, force);
+pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
+    for load in &model.loads {
+        let place = |i: usize| model.covers.star_position[i] + state.displacement[i];
+        let covers = |b: u32| model.covers.covers_of(b as usize);
+        load.push(t, place, covers, &model.mass_matrix, force);
     }
-    let faces = Faces { slope, state };
+    let faces = Faces { model, state };
     let share = state.drive.share(t);
     faces.push_water(share, ramp, force);
-    for (k, port) in slope.ports.iter().enumerate() {
+    for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);
         faces.push_port(port, traction * ramp, pressure * ramp, force);
     }
-    push_blocks(slope, state, share, ramp, force);
-    for (k, support) in quiet::frozen(slope, state) {
+    push_blocks(model, state, share, ramp, force);
+    for (k, support) in quiet::frozen(model, state) {
         mechanics::spread(&support.covers, &support.weights, support.direction * state.support_force[k], force);
     }
 }
 
-fn push_blocks(slope: &Slope, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
-    for block in (0..slope.covers.block_count()).filter(|&b| !state.removed[b]) {
+fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
+    for block in (0..model.covers.block_count()).filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
-            let place = |i: usize| slope.covers.star_position[i] + state.displacement[i];
-            let covers = slope.covers.covers_of(block);
-            mechanics::push_block(covers, &place, &slope.mass_matrix, f * ramp, moment * ramp, force);
+            let place = |i: usize| model.covers.star_position[i] + state.displacement[i];
+            let covers = model.covers.covers_of(block);
+            mechanics::push_block(covers, &place, &model.mass_matrix, f * ramp, moment * ramp, force);
         }
     }
 }
 
 /// Boundary edges at their current places.
 struct Faces<'a> {
-    slope: &'a Slope,
+    model: &'a Model,
     state: &'a State,
 }
 
 impl Faces<'_> {
     fn push_water(&self, share: f64, ramp: f64, force: &mut [Vector]) {
-        let Some(water) = &self.slope.water else { return };
+        let Some(water) = &self.model.water else { return };
         let level = self.state.drive.water_level(share);
         let weight = water.density * self.state.drive.gravity(share).norm() * ramp;
         let rise = level - water.level;
@@ -124,9 +124,9 @@ impl Faces<'_> {
         if traction == Vector::zeros() && pressure == 0.0 {
             return;
         }
-        let reference = &self.slope.boundary.reference;
+        let reference = &self.model.boundary.reference;
         for &edge in &port.edges {
-            let length = (reference[self.slope.boundary.after(edge as usize)] - reference[edge as usize]).norm();
+            let length = (reference[self.model.boundary.after(edge as usize)] - reference[edge as usize]).norm();
             let dead = traction * (0.5 * length);
             self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
         }
@@ -134,12 +134,12 @@ impl Faces<'_> {
 
     /// Spreads the forces at both ends of an edge over their covers.
     fn push(&self, edge: u32, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
-        let boundary = &self.slope.boundary;
+        let boundary = &self.model.boundary;
         if self.state.removed[boundary.block[edge as usize] as usize] {
             return;
         }
         let ends = [edge as usize, boundary.after(edge as usize)];
-        let stars = &self.slope.covers.star_position;
+        let stars = &self.model.covers.star_position;
         let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
         for (k, f) in ends.into_iter().zip(forces(a, b)) {
             mechanics::spread(&boundary.covers[k], &boundary.weights[k], f, force);

@@ -12,7 +12,7 @@ use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, W
 use crate::mechanics::{
     BlockCovers, BlockMotion, BlockStart, Chunk, Chunks, Damping, KickStep, MassMatrix, element_lanes,
 };
-use crate::state::{PatchSums, Slope, State};
+use crate::state::{Model, PatchSums, State};
 
 use super::DECAY_MAX;
 
@@ -104,7 +104,7 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
 
 /// What every block of a step shares.
 pub(super) struct Pass<'a> {
-    pub slope: &'a Slope,
+    pub model: &'a Model,
     pub state: &'a State,
     pub mass_matrix: &'a MassMatrix,
     pub acceleration: Vector,
@@ -129,7 +129,7 @@ impl Pass<'_> {
 
     fn span(&self, block: usize, covers: Range<usize>) -> Span<'_> {
         Span {
-            star: &self.slope.covers.star_position[covers.clone()],
+            star: &self.model.covers.star_position[covers.clone()],
             displacement: &self.state.displacement[covers.clone()],
             velocity: &self.state.velocity[covers.clone()],
             mass: &self.mass_matrix.mass[covers.clone()],
@@ -138,7 +138,7 @@ impl Pass<'_> {
     }
 
     fn reference(&self, block: usize) -> Reference {
-        self.span(block, self.slope.covers.covers_of(block)).reference()
+        self.span(block, self.model.covers.covers_of(block)).reference()
     }
 
     /// How the covers of a block in a chunk are written.
@@ -163,15 +163,15 @@ impl Pass<'_> {
     fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
         let (start, count) = (chunk.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
-        let times = self.slope.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
+        let times = self.model.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
         Ahead { pass: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
     }
 
     /// Adds the element forces of a chunk to the table of its covers (Eq. 7).
     #[inline(always)]
     fn push_elements<L: Lanes>(&self, lanes: L, chunk: &Chunk, next: &[Vector], tables: &mut [Table; 2]) {
-        let (slope, u) = (self.slope, &self.state.displacement);
-        let chunks = &slope.chunks;
+        let (model, u) = (self.model, &self.state.displacement);
+        let chunks = &model.chunks;
         let [displacement, force] = &mut *tables;
         let (own, halo) = (chunk.covers.len(), chunks.halo(chunk));
         let local = displacement.first_mut(own + halo.len() + LANES);
@@ -188,8 +188,8 @@ impl Pass<'_> {
         }
         let mut ahead = self.ahead(chunk, next);
         for batch in chunks.batches(chunk) {
-            let rock = &slope.rocks[batch.rock as usize];
-            let [in_row, in_group] = chunks.gradients(batch, &slope.covers.gradients[batch.set as usize]);
+            let rock = &model.rocks[batch.rock as usize];
+            let [in_row, in_group] = chunks.gradients(batch, &model.covers.gradients[batch.set as usize]);
             element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, || ahead.ask());
             element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, || ahead.ask());
         }
@@ -201,17 +201,17 @@ impl Pass<'_> {
     /// Adds what plastic strain takes from the forces of the elements of a chunk.
     #[inline(never)]
     fn relieve(&self, chunk: &Chunk, force: &mut Table) {
-        let (slope, chunks) = (self.slope, &self.slope.chunks);
+        let (model, chunks) = (self.model, &self.model.chunks);
         for batch in chunks.batches(chunk) {
-            let Some(strength) = &slope.strengths[batch.rock as usize] else { continue };
-            let g = &slope.covers.gradients[batch.set as usize];
+            let Some(strength) = &model.strengths[batch.rock as usize] else { continue };
+            let g = &model.covers.gradients[batch.set as usize];
             for (e, slots) in chunks.elements(batch) {
                 let plastic = &self.state.plastic[e];
                 if *plastic == [0.0; 4] {
                     continue;
                 }
-                let deformation = slope.deformation(e, &self.state.displacement);
-                let relief = strength.forces(&deformation, g, slope.covers.element_area[e], plastic);
+                let deformation = model.deformation(e, &self.state.displacement);
+                let relief = strength.forces(&deformation, g, model.covers.element_area[e], plastic);
                 slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
             }
         }
@@ -240,10 +240,10 @@ impl Ahead<'_> {
         let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
         self.next = later;
         prefetch(now);
-        let Pass { slope, state, mass_matrix, .. } = self.pass;
+        let Pass { model, state, mass_matrix, .. } = self.pass;
         prefetch(&state.displacement[covers.clone()]);
         prefetch(&state.velocity[covers.clone()]);
-        prefetch(&slope.covers.star_position[covers.clone()]);
+        prefetch(&model.covers.star_position[covers.clone()]);
         prefetch(&mass_matrix.mass[covers.clone()]);
         prefetch(&mass_matrix.row_sum[covers]);
     }
@@ -278,7 +278,7 @@ impl Work for Pass<'_> {
     /// Forces and kick of the blocks of a chunk; of a part of a block all but what is common to the block.
     #[inline(always)]
     fn chunk<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
-        let chunk = self.slope.chunks.get(number);
+        let chunk = self.model.chunks.get(number);
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
         let fixed = match chunk.part_of {
@@ -299,7 +299,7 @@ impl Work for Pass<'_> {
             return;
         }
         for (k, block) in chunk.blocks.clone().enumerate() {
-            let covers = self.slope.covers.covers_of(block);
+            let covers = self.model.covers.covers_of(block);
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
             (motion[k], start[k]) = self.kick_block(lanes, (number, block), force, predicted, &mut sums.fastest);
@@ -317,7 +317,7 @@ impl Pass<'_> {
         predicted: &mut [Vector],
         fastest: &mut f64,
     ) -> (BlockMotion, BlockStart) {
-        let covers = self.slope.covers.covers_of(block);
+        let covers = self.model.covers.covers_of(block);
         if self.mass_matrix.fixed[block] {
             let squares = self.state.velocity[covers].iter().map(|v| v.norm_squared());
             *fastest = squares.fold(*fastest, f64::max);
@@ -343,7 +343,7 @@ impl Pass<'_> {
         predicted: &mut [Vector],
         sums: &mut PatchSums,
     ) {
-        let covers = self.slope.chunks.get(chunk).covers.clone();
+        let covers = self.model.chunks.get(chunk).covers.clone();
         let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
         let own = self.own(chunk, block, covers, &step);
         (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
@@ -351,7 +351,7 @@ impl Pass<'_> {
 
     /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
     pub fn kick(&self, out: &mut KickOut) {
-        let chunks = &self.slope.chunks;
+        let chunks = &self.model.chunks;
         let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };
         Run { work: self, chunks, range: 0..chunks.len(), out: kicked }.share(self.grain);
         let mut is_cut = false;
@@ -366,7 +366,7 @@ impl Pass<'_> {
 
     /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
     fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
-        let chunks = &self.slope.chunks;
+        let chunks = &self.model.chunks;
         let block = chunks.get(first).blocks.start;
         if self.mass_matrix.fixed[block] {
             return false;
@@ -411,8 +411,8 @@ impl Work for Exposed<'_> {
 
     #[inline(always)]
     fn chunk<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
-        let Pass { slope, mass_matrix, movable, exposed, .. } = *self.pass;
-        let chunk = slope.chunks.get(k);
+        let Pass { model, mass_matrix, movable, exposed, .. } = *self.pass;
+        let chunk = model.chunks.get(k);
         let Some(block) = chunk.part_of.map(|b| b as usize).filter(|b| !mass_matrix.fixed[*b]) else { return };
         if let Some(spread) = spread(mass_matrix, (chunk, block), movable[k], exposed, &self.sums[k].common) {
             let from = &self.start[block].from;
@@ -444,7 +444,7 @@ const NEAR: f64 = 0.99;
 
 /// The end of a step: contacts' part of the velocities, new places, sums for the works.
 pub(super) struct Finish<'a> {
-    pub slope: &'a Slope,
+    pub model: &'a Model,
     pub mass_matrix: &'a MassMatrix,
     /// Velocities before the step (m/s).
     pub before: &'a [Vector],
@@ -488,7 +488,7 @@ impl Work for Finish<'_> {
 
     #[inline(always)]
     fn chunk<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
-        let chunk = self.slope.chunks.get(k);
+        let chunk = self.model.chunks.get(k);
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
@@ -496,7 +496,7 @@ impl Work for Finish<'_> {
         let common = sums.common;
         let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b as usize..b as usize + 1);
         for block in blocks.filter(|b| !self.mass_matrix.fixed[*b]) {
-            let own = self.slope.covers.covers_of(block);
+            let own = self.model.covers.covers_of(block);
             let covers = own.start.max(chunk.covers.start)..own.end.min(chunk.covers.end);
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let of_part = chunk
@@ -504,7 +504,7 @@ impl Work for Finish<'_> {
                 .and_then(|_| spread(self.mass_matrix, (chunk, block), self.movable[k], self.exposed, &common));
             let mut end = End {
                 spread: of_part,
-                star: &self.slope.covers.star_position[covers.clone()],
+                star: &self.model.covers.star_position[covers.clone()],
                 mass: &self.mass_matrix.mass[covers.clone()],
                 inertial: &inertial(self.mass_matrix, block)[covers.clone()],
                 row_sum: &self.mass_matrix.row_sum[covers.clone()],
@@ -523,7 +523,7 @@ impl Work for Finish<'_> {
                 sums.damping += self.damping_work(block, &works);
             }
         }
-        sums.is_near = farthest < NEAR * self.slope.failure_displacement.powi(2);
+        sums.is_near = farthest < NEAR * self.model.failure_displacement.powi(2);
     }
 }
 
@@ -556,7 +556,7 @@ impl Finish<'_> {
 
     /// Ends the step of all blocks.
     pub fn run(&self, out: Finished) -> Totals {
-        let chunks = &self.slope.chunks;
+        let chunks = &self.model.chunks;
         let Finished { velocity, displacement, sums } = out;
         let out = Finished { velocity, displacement, sums: &mut *sums };
         Run { work: self, chunks, range: 0..chunks.len(), out }.share(self.grain);
@@ -605,10 +605,10 @@ fn is_damping(damping: Damping) -> bool {
 
 /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
 /// lighter by the root of that faster (Eq. 76).
-pub(super) fn block_damping(slope: &Slope, mass_matrix: &MassMatrix, damping: Damping, block: usize) -> Damping {
+pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Damping, block: usize) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
-            Damping::Deformation((-(ratio_dt * slope.block_frequency[block]).min(DECAY_MAX)).exp())
+            Damping::Deformation((-(ratio_dt * model.block_frequency[block]).min(DECAY_MAX)).exp())
         }
         Damping::Deformation(_) => Damping::Deformation(1.0),
         Damping::Mass(factor) if mass_matrix.lightness > 1.0 && mass_matrix.is_free(block) => {
@@ -620,12 +620,12 @@ pub(super) fn block_damping(slope: &Slope, mass_matrix: &MassMatrix, damping: Da
 
 /// One block's slices: for its energy, momentum and damping.
 pub(super) fn block_covers<'a>(
-    slope: &'a Slope,
+    model: &'a Model,
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
     block: usize,
 ) -> BlockCovers<'a> {
-    let range = slope.covers.covers_of(block);
-    BlockCovers { mass_matrix, block, range, star: &slope.covers.star_position, displacement, velocity }
+    let range = model.covers.covers_of(block);
+    BlockCovers { mass_matrix, block, range, star: &model.covers.star_position, displacement, velocity }
 }

@@ -25,9 +25,9 @@ impl Step<'_> {
         }
         let state = &mut *self.state;
         for row in &self.scratch.bolts {
-            let segment = &self.slope.bolts[row.segment as usize];
+            let segment = &self.model.bolts[row.segment as usize];
             let bolt = &mut state.bolts[row.segment as usize];
-            let length = segment.span(&self.slope.covers.star_position, &state.displacement).norm();
+            let length = segment.span(&self.model.covers.star_position, &state.displacement).norm();
             *bolt = segment.after(bolt, length, row.force);
         }
         std::mem::swap(&mut state.velocity, &mut self.scratch.predicted);
@@ -42,7 +42,7 @@ impl Step<'_> {
     /// report wants the places before.
     fn finish(&mut self, dt: f64) -> Totals {
         let is_loaded = self.extra(dt) != Vector::zeros();
-        let (slope, state) = (self.slope, &mut *self.state);
+        let (model, state) = (self.model, &mut *self.state);
         let Scratch {
             mass_matrix,
             predicted,
@@ -58,7 +58,7 @@ impl Step<'_> {
             ..
         } = &mut *self.scratch;
         let finish = Finish {
-            slope,
+            model,
             mass_matrix,
             before: &state.velocity,
             motion,
@@ -74,7 +74,7 @@ impl Step<'_> {
         };
         let displacement = &mut state.displacement;
         let totals = finish.run(Finished { velocity: predicted, displacement, sums });
-        self.is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(slope).powi(2);
+        self.is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(model).powi(2);
         totals
     }
 
@@ -88,15 +88,15 @@ impl Step<'_> {
 
     /// Velocities after damping and before any force.
     fn fill_damped(&mut self) {
-        let (slope, state) = (self.slope, &*self.state);
+        let (model, state) = (self.model, &*self.state);
         let Scratch { mass_matrix, damped, .. } = &mut *self.scratch;
-        for block in 0..slope.covers.block_count() {
-            let covers = blocks::block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
-            let out = &mut damped[slope.covers.covers_of(block)];
+        for block in 0..model.covers.block_count() {
+            let covers = blocks::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
+            let out = &mut damped[model.covers.covers_of(block)];
             if mass_matrix.fixed[block] {
                 out.fill(Vector::zeros());
             } else {
-                mechanics::damp(&covers, blocks::block_damping(slope, mass_matrix, self.damping, block), out);
+                mechanics::damp(&covers, blocks::block_damping(model, mass_matrix, self.damping, block), out);
             }
         }
     }
@@ -104,15 +104,15 @@ impl Step<'_> {
     /// Energies at the start of this sub-step and the unbalanced ratio.
     fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
         self.fill_damped();
-        let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
-        let kinetic = |velocity: &[Vector]| report::kinetic(slope, &scratch.mass_matrix, &state.displacement, velocity);
+        let (model, state, scratch) = (self.model, &*self.state, &*self.scratch);
+        let kinetic = |velocity: &[Vector]| report::kinetic(model, &scratch.mass_matrix, &state.displacement, velocity);
         let mut ledger = state.ledger;
         ledger.add_works(works, 0.5);
         ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
-        ledger.strain = report::strain(slope, state);
-        ledger.potential = report::potential(slope, state);
-        ledger.stored = report::stored(slope, state, scratch);
-        ledger.bolt_stored = report::bolt_stored(slope, state);
+        ledger.strain = report::strain(model, state);
+        ledger.potential = report::potential(model, state);
+        ledger.stored = report::stored(model, state, scratch);
+        ledger.bolt_stored = report::bolt_stored(model, state);
         let contacts = scratch.contacts.iter();
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
         StepReport {
@@ -123,13 +123,13 @@ impl Step<'_> {
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
             penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
-            speed_max: report::speed_max(slope, state),
+            speed_max: report::speed_max(model, state),
         }
     }
 
     /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
     fn unbalanced(&self, dt: f64) -> f64 {
-        let (mass_matrix, scratch) = (&self.slope.mass_matrix, &*self.scratch);
+        let (mass_matrix, scratch) = (&self.model.mass_matrix, &*self.scratch);
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let acceleration = self.acceleration(dt);
         let (mut net, mut applied) = (0.0, 0.0);
@@ -150,7 +150,7 @@ impl Step<'_> {
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let scratch = &*self.scratch;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {
-            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.slope.mass_matrix.mass[i] / kick_dt);
+            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.model.mass_matrix.mass[i] / kick_dt);
         }
     }
 }

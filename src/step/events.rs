@@ -2,7 +2,7 @@
 
 use crate::contact::ContactState;
 use crate::geometry::Vector;
-use crate::state::{Event, EventKind, Scratch, Slope, State};
+use crate::state::{Event, EventKind, Model, Scratch, State};
 
 use super::Regime;
 
@@ -10,19 +10,19 @@ use super::Regime;
 const SLIP_MIN: f64 = 1e-6;
 
 /// Notes what the step that ends at `time` (s) has brought; static stages bring nothing, since their path is no motion.
-pub fn note(slope: &Slope, regime: Regime, state: &mut State, scratch: &mut Scratch, time: f64) {
+pub fn note(model: &Model, regime: Regime, state: &mut State, scratch: &mut Scratch, time: f64) {
     let touching = &mut scratch.touching;
     touching.clear();
-    touching.resize(slope.covers.block_count(), false);
+    touching.resize(model.covers.block_count(), false);
     for contact in &state.contacts {
-        let node = slope.boundary.node_point[contact.node as usize] as usize;
-        touching[slope.boundary.block[node] as usize] = true;
-        touching[slope.boundary.block[contact.edge as usize] as usize] = true;
+        let node = model.boundary.node_point[contact.node as usize] as usize;
+        touching[model.boundary.block[node] as usize] = true;
+        touching[model.boundary.block[contact.edge as usize] as usize] = true;
     }
     if let Regime::Dynamic { .. } = regime {
         note_detached(state, scratch, time);
-        note_slipped(slope, state, time);
-        note_failed(slope, state, scratch, time);
+        note_slipped(model, state, time);
+        note_failed(model, state, scratch, time);
     }
     state.events.touching.copy_from_slice(&scratch.touching);
 }
@@ -39,12 +39,12 @@ fn note_detached(state: &mut State, scratch: &Scratch, time: f64) {
     }
 }
 
-fn note_slipped(slope: &Slope, state: &mut State, time: f64) {
-    let least = SLIP_MIN * slope.covers.mesh.size;
+fn note_slipped(model: &Model, state: &mut State, time: f64) {
+    let least = SLIP_MIN * model.covers.mesh.size;
     let events = &mut state.events;
     let none = events.slipped.len() - 1;
     for contact in state.contacts.iter().filter(|c| c.state == ContactState::Slip && c.slip > least) {
-        let trace = slope.boundary.trace[contact.edge as usize];
+        let trace = model.boundary.trace[contact.edge as usize];
         let joint = (trace as usize).min(none);
         if !events.slipped[joint] {
             events.slipped[joint] = true;
@@ -54,10 +54,10 @@ fn note_slipped(slope: &Slope, state: &mut State, time: f64) {
     }
 }
 
-fn note_failed(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64) {
-    let limit = slope.failure_displacement;
-    for (first, chunk) in slope.chunks.iter().enumerate().filter(|(_, chunk)| !chunk.blocks.is_empty()) {
-        let parts = first..first + slope.chunks.parts(first).len().max(1);
+fn note_failed(model: &Model, state: &mut State, scratch: &mut Scratch, time: f64) {
+    let limit = model.failure_displacement;
+    for (first, chunk) in model.chunks.iter().enumerate().filter(|(_, chunk)| !chunk.blocks.is_empty()) {
+        let parts = first..first + model.chunks.parts(first).len().max(1);
         if scratch.sums[parts].iter().all(|sums| sums.is_near) {
             continue;
         }
@@ -65,9 +65,9 @@ fn note_failed(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f6
             if state.events.failed[block] {
                 continue;
             }
-            let covers = slope.covers.covers_of(block);
-            let sum: Vector = covers.map(|i| state.displacement[i] * slope.mass_matrix.row_sum[i]).sum();
-            if sum.norm() > limit * slope.mass_matrix.total[block] {
+            let covers = model.covers.covers_of(block);
+            let sum: Vector = covers.map(|i| state.displacement[i] * model.mass_matrix.row_sum[i]).sum();
+            if sum.norm() > limit * model.mass_matrix.total[block] {
                 state.events.failed[block] = true;
                 state.events.list.push(Event { kind: EventKind::Failed, subject: block as u32, time });
             }

@@ -2,7 +2,7 @@
 
 use crate::cover;
 use crate::geometry::Point;
-use crate::state::Slope;
+use crate::state::Model;
 
 use super::Step;
 
@@ -48,28 +48,28 @@ pub struct StepError {
 }
 
 /// Speed (m/s) beyond which rock has run away: the fastest wave of any rock.
-pub(super) fn speed_limit(slope: &Slope) -> f64 {
-    slope.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max)
+pub(super) fn speed_limit(model: &Model) -> f64 {
+    model.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max)
 }
 
 impl Step<'_> {
     /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
     pub(super) fn guard(&self) -> Result<(), StepError> {
-        let slope = self.slope;
+        let model = self.model;
         if self.singular {
-            return Err(self.failed(0, slope.covers.star_position[0], Failure::Singular));
+            return Err(self.failed(0, model.covers.star_position[0], Failure::Singular));
         }
         if !self.is_sound {
             self.guard_speeds()?;
         }
-        let limit = slope.penetration_limit;
+        let limit = model.penetration_limit;
         let scratch = &*self.scratch;
         if scratch.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
             return Ok(());
         }
         match scratch.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let place = scratch.place[slope.boundary.node_point[contact.history.node as usize] as usize];
+                let place = scratch.place[model.boundary.node_point[contact.history.node as usize] as usize];
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
                 Err(self.failed(contact.pair.blocks[0], place, failure))
             }
@@ -85,11 +85,11 @@ impl Step<'_> {
     /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
     /// small block has cut lies far from its rock, and turns with it.
     fn guard_speeds(&self) -> Result<(), StepError> {
-        let (slope, limit) = (self.slope, speed_limit(self.slope));
+        let (model, limit) = (self.model, speed_limit(self.model));
         for (i, velocity) in self.state.velocity.iter().enumerate() {
-            let (block, speed) = (slope.covers.cover_block[i], velocity.norm());
+            let (block, speed) = (model.covers.cover_block[i], velocity.norm());
             if !speed.is_finite() {
-                return Err(self.failed(block, slope.covers.star_position[i], Failure::NotFinite));
+                return Err(self.failed(block, model.covers.star_position[i], Failure::NotFinite));
             }
             if speed > limit
                 && let Some((place, speed)) = self.rock_faster_than(limit, block as usize)
@@ -102,7 +102,7 @@ impl Step<'_> {
 
     /// Place and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
     fn rock_faster_than(&self, limit: f64, block: usize) -> Option<(Point, f64)> {
-        let (covers, state) = (&self.slope.covers, &*self.state);
+        let (covers, state) = (&self.model.covers, &*self.state);
         let corners = covers.elements_of(block).flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
         let mut moving = corners.map(|(element, corner)| {
             let weights = covers.weights(element, corner);

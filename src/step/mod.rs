@@ -23,7 +23,7 @@ pub(crate) use touch::CUTOFF;
 
 use crate::contact::{SolverReport, VertexEdge};
 use crate::mechanics::Damping;
-use crate::state::{Scratch, Slope, State};
+use crate::state::{Model, Scratch, State};
 
 use touch::CONTACTS;
 
@@ -59,22 +59,22 @@ pub enum Regime {
 /// # Errors
 /// Fails on a non-finite state, a runaway block or a penetration beyond the limit; `state` is then spoilt.
 pub fn advance(
-    slope: &Slope,
+    model: &Model,
     regime: Regime,
     state: &mut State,
     scratch: &mut Scratch,
     report: bool,
 ) -> Result<StepReport, StepError> {
-    let rest = slope.dt - state.part;
-    let mut step = Step::new(slope, regime, state, scratch);
+    let rest = model.dt - state.part;
+    let mut step = Step::new(model, regime, state, scratch);
     step.report = report;
     let outcome = step.on_threads(rest);
     step.guard()?;
     state.stage_step += 1;
     state.step += 1;
     state.part = 0.0;
-    let time = state.stage_start + state.stage_step as f64 * slope.dt;
-    events::note(slope, regime, state, scratch, time);
+    let time = state.stage_start + state.stage_step as f64 * model.dt;
+    events::note(model, regime, state, scratch, time);
     Ok(outcome)
 }
 
@@ -83,13 +83,13 @@ pub fn advance(
 /// # Errors
 /// As [`advance`].
 pub fn advance_part(
-    slope: &Slope,
+    model: &Model,
     regime: Regime,
     state: &mut State,
     scratch: &mut Scratch,
     dt: f64,
 ) -> Result<StepReport, StepError> {
-    let mut step = Step::new(slope, regime, state, scratch);
+    let mut step = Step::new(model, regime, state, scratch);
     let outcome = step.on_threads(dt);
     step.guard()?;
     state.part += dt;
@@ -98,32 +98,32 @@ pub fn advance_part(
 
 /// Energies and the unbalanced ratio that the next step will find at its start; nothing advances. With `serial` it
 /// keeps to the calling thread.
-pub fn outlook(slope: &Slope, regime: Regime, mut state: State, serial: bool) -> StepReport {
+pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) -> StepReport {
     let mut scratch = Scratch { serial, ..Scratch::default() };
-    prepare(slope, &state, &mut scratch);
-    let rest = slope.dt - state.part;
-    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
+    prepare(model, &state, &mut scratch);
+    let rest = model.dt - state.part;
+    let mut step = Step::new(model, regime, &mut state, &mut scratch);
     step.report = true;
-    match &slope.implicit {
+    match &model.implicit {
         Some(implicit) => step.implicit_outlook(implicit, rest),
         None => step.interval(rest, 0),
     }
 }
 
 /// A copy of the state, with buffers of its own.
-fn beside(slope: &Slope, state: &State, serial: bool) -> (State, Scratch) {
+fn beside(model: &Model, state: &State, serial: bool) -> (State, Scratch) {
     let mut scratch = Scratch { serial, ..Scratch::default() };
-    prepare(slope, state, &mut scratch);
+    prepare(model, state, &mut scratch);
     (state.clone(), scratch)
 }
 
 /// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
 /// it keeps to the calling thread.
-pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
-    let (mut state, mut scratch) = beside(slope, state, serial);
-    let dt = slope.dt - state.part;
-    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
-    if slope.implicit.is_some() {
+pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
+    let (mut state, mut scratch) = beside(model, state, serial);
+    let dt = model.dt - state.part;
+    let mut step = Step::new(model, regime, &mut state, &mut scratch);
+    if model.implicit.is_some() {
         step.implicit_contacts(dt);
     } else {
         step.set_out(dt);
@@ -133,11 +133,11 @@ pub fn look_ahead(slope: &Slope, regime: Regime, state: &State, serial: bool) ->
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
-pub fn each_contact(slope: &Slope, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
-    let (mut state, mut scratch) = beside(slope, state, serial);
-    let dt = slope.dt - state.part;
-    let mut step = Step::new(slope, regime, &mut state, &mut scratch);
-    if slope.implicit.is_some() {
+pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
+    let (mut state, mut scratch) = beside(model, state, serial);
+    let dt = model.dt - state.part;
+    let mut step = Step::new(model, regime, &mut state, &mut scratch);
+    if model.implicit.is_some() {
         step.implicit_contacts(dt);
         return scratch.contacts.iter().for_each(see);
     }
@@ -158,7 +158,7 @@ fn ramp(regime: Regime, stage_time: f64) -> f64 {
 
 /// One step in progress.
 struct Step<'a> {
-    slope: &'a Slope,
+    model: &'a Model,
     regime: Regime,
     state: &'a mut State,
     scratch: &'a mut Scratch,
@@ -172,10 +172,10 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    fn new(slope: &'a Slope, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
-        let time = state.stage_start + state.stage_step as f64 * slope.dt + state.part;
+    fn new(model: &'a Model, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
+        let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
         Self {
-            slope,
+            model,
             regime,
             state,
             scratch,
@@ -192,14 +192,14 @@ impl Step<'_> {
     /// Covers `dt` (s) on the threads of the pool. A caller from outside hands over the whole of it at once, which is
     /// dearer for every parallel part by itself.
     fn on_threads(&mut self, dt: f64) -> StepReport {
-        let is_small = self.slope.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
+        let is_small = self.model.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
         if self.scratch.serial || is_small { self.interval(dt, 0) } else { rayon::scope(|_| self.interval(dt, 0)) }
     }
 
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
     fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
-        let slope = self.slope;
-        if let Some(implicit) = &slope.implicit {
+        let model = self.model;
+        if let Some(implicit) = &model.implicit {
             return self.implicit_interval(implicit, dt);
         }
         self.set_out(dt);
@@ -245,7 +245,7 @@ impl Step<'_> {
         counters.substeps += 1;
         counters.sweeps += u64::from(swept.sweeps);
         counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
-        counters.unsettled += u64::from(swept.unsettled > self.slope.tolerance);
+        counters.unsettled += u64::from(swept.unsettled > self.model.tolerance);
         counters.judged += swept.judged;
         counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
         counters.dt_max = counters.dt_max.max(dt);

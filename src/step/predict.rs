@@ -13,7 +13,7 @@ impl Step<'_> {
     /// Plastic strain at the current displacements.
     pub(super) fn yield_rock(&mut self) {
         let clock = Instant::now();
-        yielding::update(self.slope, self.state, self.scratch, self.time);
+        yielding::update(self.model, self.state, self.scratch, self.time);
         self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
@@ -29,7 +29,7 @@ impl Step<'_> {
         let Scratch { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
             &mut *self.scratch;
         let pass = blocks::Pass {
-            slope: self.slope,
+            model: self.model,
             state: &*self.state,
             mass_matrix,
             acceleration,
@@ -51,33 +51,33 @@ impl Step<'_> {
 
     /// Damping of every block, when the step or the masses are no longer those of the step before.
     fn damp_blocks(&mut self) {
-        let (slope, damping) = (self.slope, self.damping);
+        let (model, damping) = (self.model, self.damping);
         let Scratch { mass_matrix, damping: of_blocks, damping_of, .. } = &mut *self.scratch;
         if *damping_of != Some(damping) {
             *damping_of = Some(damping);
-            let blocks = 0..slope.covers.block_count();
+            let blocks = 0..model.covers.block_count();
             of_blocks.clear();
-            of_blocks.extend(blocks.map(|block| blocks::block_damping(slope, mass_matrix, damping, block)));
+            of_blocks.extend(blocks.map(|block| blocks::block_damping(model, mass_matrix, damping, block)));
         }
     }
 
     /// Forces of loads, when there are any.
     fn load(&mut self) {
-        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
-        let was_loaded = std::mem::replace(&mut scratch.is_loaded, applied::pushes(slope, state));
+        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
+        let was_loaded = std::mem::replace(&mut scratch.is_loaded, applied::pushes(model, state));
         if was_loaded || scratch.is_loaded {
             scratch.load_force.fill(Vector::zeros());
         }
         if scratch.is_loaded {
             let ramp = ramp(self.regime, self.time - state.stage_start);
-            applied::push_forces(slope, state, self.time, ramp, &mut scratch.load_force);
+            applied::push_forces(model, state, self.time, ramp, &mut scratch.load_force);
         }
     }
 
     /// Acceleration of all rock (m/s²) in a step of `dt` (s).
     pub(super) fn acceleration(&self, dt: f64) -> Vector {
-        let base = applied::base_motion(self.slope, self.regime, self.state, self.kick_of(dt));
-        applied::acceleration(self.slope, self.state, self.time) * self.ramp() - base
+        let base = applied::base_motion(self.model, self.regime, self.state, self.kick_of(dt));
+        applied::acceleration(self.model, self.state, self.time) * self.ramp() - base
     }
 
     /// Share of gravity that acts at this time.
@@ -95,7 +95,7 @@ impl Step<'_> {
                 for i in 0..state.displacement.len() {
                     let moved = state.displacement[i] - state.stage_displacement[i];
                     work += state.stage_force[i].dot(&moved);
-                    inertia += self.slope.mass_matrix.mass[i] * moved.norm_squared();
+                    inertia += self.model.mass_matrix.mass[i] * moved.norm_squared();
                 }
                 let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
                 Damping::Mass((-(rate * dt).min(DECAY_MAX)).exp())

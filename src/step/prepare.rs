@@ -2,64 +2,64 @@
 
 use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
-use crate::state::{Scratch, Slope, State};
+use crate::state::{Model, Scratch, State};
 
 use super::{Regime, applied, implicit, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
-pub fn prepare(slope: &Slope, state: &State, scratch: &mut Scratch) {
-    let covers = slope.covers.cover_count();
+pub fn prepare(model: &Model, state: &State, scratch: &mut Scratch) {
+    let covers = model.covers.cover_count();
     for field in [&mut scratch.load_force, &mut scratch.predicted, &mut scratch.damped, &mut scratch.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
-    scratch.motion.resize(slope.covers.block_count(), Default::default());
-    scratch.start.resize(slope.covers.block_count(), Default::default());
-    scratch.sums.resize(slope.chunks.len(), Default::default());
-    scratch.push.resize(slope.covers.block_count(), Default::default());
+    scratch.motion.resize(model.covers.block_count(), Default::default());
+    scratch.start.resize(model.covers.block_count(), Default::default());
+    scratch.sums.resize(model.chunks.len(), Default::default());
+    scratch.push.resize(model.covers.block_count(), Default::default());
     scratch.columns.clear();
     scratch.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
     scratch.trace_law.clear();
-    scratch.trace_law.extend(slope.trace_law.iter().map(|&law| state.law_switch[law as usize]));
-    hold(slope, state, scratch);
-    expose(slope, &mut scratch.exposed);
-    scratch.open_close.prepare(&scratch.mass_matrix, &slope.supports, &scratch.rows);
-    implicit::prepare(slope, &scratch.mass_matrix, &mut scratch.implicit);
+    scratch.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law as usize]));
+    hold(model, state, scratch);
+    expose(model, &mut scratch.exposed);
+    scratch.open_close.prepare(&scratch.mass_matrix, &model.supports, &scratch.rows);
+    implicit::prepare(model, &scratch.mass_matrix, &mut scratch.implicit);
 }
 
 /// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
-fn expose(slope: &Slope, exposed: &mut Vec<bool>) {
+fn expose(model: &Model, exposed: &mut Vec<bool>) {
     exposed.clear();
-    exposed.resize(slope.covers.cover_count(), false);
-    let of_contacts = slope.boundary.covers.iter().chain(&slope.boundary.edge_covers);
-    let of_supports = slope.supports.iter().map(|support| &support.covers);
-    let of_bolts = slope.bolts.iter().flat_map(|bolt| &bolt.covers);
+    exposed.resize(model.covers.cover_count(), false);
+    let of_contacts = model.boundary.covers.iter().chain(&model.boundary.edge_covers);
+    let of_supports = model.supports.iter().map(|support| &support.covers);
+    let of_bolts = model.bolts.iter().flat_map(|bolt| &bolt.covers);
     for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {
         exposed[cover as usize] = true;
     }
 }
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
-fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
-    scratch.mass_matrix.clone_from(&slope.mass_matrix);
+fn hold(model: &Model, state: &State, scratch: &mut Scratch) {
+    scratch.mass_matrix.clone_from(&model.mass_matrix);
     let mass_matrix = &mut scratch.mass_matrix;
-    for (fixity, _) in slope.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
+    for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
-            mass_matrix.hold_block(&slope.covers, slope.covers.cover_block[cover as usize] as usize);
+            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize] as usize);
             mass_matrix.hold_cover(cover as usize, axes);
         }
     }
-    for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
-        mass_matrix.hold_block(&slope.covers, block);
-        slope.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
+    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+        mass_matrix.hold_block(&model.covers, block);
+        model.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
     scratch.rows.clear();
     let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
-    for (_, support) in slope.supports.iter().enumerate().filter(holds) {
-        mass_matrix.hold_block(&slope.covers, support.block as usize);
+    for (_, support) in model.supports.iter().enumerate().filter(holds) {
+        mass_matrix.hold_block(&model.covers, support.block as usize);
     }
-    scratch.rows.extend(slope.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
+    scratch.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
         displacement: 0.0,
         target: 0.0,
@@ -69,14 +69,14 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
         force: state.support_force[k],
     }));
     let is_static = !state.stage_displacement.is_empty();
-    if is_static && slope.implicit.is_none() && slope.mass_scaling > 1.0 {
-        mass_matrix.lighten(slope.mass_scaling);
+    if is_static && model.implicit.is_none() && model.mass_scaling > 1.0 {
+        mass_matrix.lighten(model.mass_scaling);
     }
-    mass_matrix.mark_fixed(&slope.covers);
+    mass_matrix.mark_fixed(&model.covers);
     scratch.damping_of = None;
     let is_movable = |i: usize| mass_matrix.inverse[i].x > 0.0 && mass_matrix.inverse[i].y > 0.0;
     scratch.movable.clear();
-    scratch.movable.extend(slope.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
+    scratch.movable.extend(model.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.
@@ -84,11 +84,11 @@ fn hold(slope: &Slope, state: &State, scratch: &mut Scratch) {
 /// Velocities count as those of the start itself when they are `at_rest`, so that a sudden change of strength acts for
 /// half a step only in the first kick; otherwise the leapfrog goes on. An implicit stage after a static one begins
 /// from rest.
-pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
+pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
     if at_rest {
         state.dt_last = 0.0;
-        if slope.implicit.is_some() && stage > 0 {
-            implicit::stop(slope, state);
+        if model.implicit.is_some() && stage > 0 {
+            implicit::stop(model, state);
         }
     }
     state.acceleration.clear();
@@ -98,18 +98,18 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State, stage: u32,
     state.stage_step = 0;
     state.stage_starts.truncate(stage as usize);
     state.stage_starts.push(start);
-    quiet::begin_stage(slope, regime, state);
+    quiet::begin_stage(model, regime, state);
     state.neighbours.forget();
     state.stage_displacement.clear();
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {
         state.stage_displacement.clone_from(&state.displacement);
-        let acceleration = applied::acceleration(slope, state, start);
-        let mut force: Vec<Vector> = slope.mass_matrix.row_sum.iter().map(|m| acceleration * *m).collect();
-        applied::push_forces(slope, state, start, 1.0, &mut force);
+        let acceleration = applied::acceleration(model, state, start);
+        let mut force: Vec<Vector> = model.mass_matrix.row_sum.iter().map(|m| acceleration * *m).collect();
+        applied::push_forces(model, state, start, 1.0, &mut force);
         state.stage_force = force;
     }
-    for block in (0..slope.covers.block_count()).filter(|&b| state.removed[b]) {
-        state.velocity[slope.covers.covers_of(block)].fill(Vector::zeros());
+    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+        state.velocity[model.covers.covers_of(block)].fill(Vector::zeros());
     }
 }

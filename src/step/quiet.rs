@@ -3,31 +3,31 @@
 use crate::contact::{Resistance, Support};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnDrive, ColumnState, Foot};
-use crate::state::{Slope, State};
+use crate::state::{Model, State};
 
 use super::applied::{self, Kick};
 use super::{DECAY_MAX, Regime, Step};
 
 /// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
-pub fn frozen<'a>(slope: &'a Slope, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
-    let first = slope.fixed_supports as usize;
+pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
+    let first = model.fixed_supports as usize;
     let is_frozen = |support: &Support| {
         !support.is_dashpot() && !state.fix_active[support.fix as usize] && !state.removed[support.block as usize]
     };
-    slope.supports.iter().enumerate().skip(first).filter(move |(_, support)| is_frozen(support))
+    model.supports.iter().enumerate().skip(first).filter(move |(_, support)| is_frozen(support))
 }
 
 /// Lets dashpots take over from springs in a dynamic stage, and springs from dashpots, where they are, in a static one.
-pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State) {
+pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
     let is_dynamic = matches!(regime, Regime::Dynamic { .. });
-    for quiet in &slope.quiets {
+    for quiet in &model.quiets {
         let [springs, dashpots] = [quiet.springs, quiet.dashpots].map(|fix| fix as usize);
         if state.fix_active[dashpots] == is_dynamic {
             continue;
         }
         (state.fix_active[springs], state.fix_active[dashpots]) = (!is_dynamic, is_dynamic);
         let own = |(_, s): &(usize, &Support)| s.fix == quiet.springs || s.fix == quiet.dashpots;
-        for (k, support) in slope.supports.iter().enumerate().filter(own) {
+        for (k, support) in model.supports.iter().enumerate().filter(own) {
             if support.is_dashpot() {
                 state.support_force[k] = 0.0;
             } else if !is_dynamic {
@@ -37,7 +37,7 @@ pub fn begin_stage(slope: &Slope, regime: Regime, state: &mut State) {
         }
         if let Some(column) = quiet.column {
             let column = column as usize;
-            state.columns[column] = ColumnState::at_rest(slope.columns[column].node_count());
+            state.columns[column] = ColumnState::at_rest(model.columns[column].node_count());
         }
     }
 }
@@ -51,17 +51,17 @@ impl Step<'_> {
     /// Velocities of the free-field columns after a step of `dt` (s).
     pub(super) fn kick_columns(&mut self, dt: f64) {
         let Regime::Dynamic { damping } = self.regime else { return };
-        let (slope, state, kick) = (self.slope, &*self.state, self.kick_of(dt));
+        let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));
         let length = kick.to - kick.from;
         let host = state.drive.base_acceleration(state.drive.share(self.time));
-        let acceleration = -(host + applied::base_motion(slope, self.regime, state, kick));
-        for (k, column) in slope.columns.iter().enumerate() {
+        let acceleration = -(host + applied::base_motion(model, self.regime, state, kick));
+        for (k, column) in model.columns.iter().enumerate() {
             let wave = match column.foot {
                 Foot::Rigid => Vector::zeros(),
-                Foot::Quiet(quiet) => applied::wave(slope, self.regime, state, kick, quiet),
+                Foot::Quiet(quiet) => applied::wave(model, self.regime, state, kick, quiet),
             };
             let drive = ColumnDrive { acceleration, wave, kick: length };
-            let decay = |block: u32| (-(damping * dt * slope.block_frequency[block as usize]).min(DECAY_MAX)).exp();
+            let decay = |block: u32| (-(damping * dt * model.block_frequency[block as usize]).min(DECAY_MAX)).exp();
             column.kick(&state.columns[k], &drive, decay, &mut self.scratch.columns[k]);
         }
     }
@@ -80,31 +80,31 @@ impl Step<'_> {
     /// What the supports answer to in a step of `dt` (s): springs to the place at its end (Eq. 23), dashpots to the
     /// mean of the velocities before and after it (Eqs. 46, 47).
     pub(super) fn load_supports(&mut self, dt: f64) {
-        let (slope, state, kick) = (self.slope, &*self.state, self.kick_of(dt));
+        let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));
         let regime = self.regime;
         let scratch = &mut *self.scratch;
         let mut wave = (u32::MAX, Vector::zeros());
-        let mut beside = slope.free_field.iter().peekable();
+        let mut beside = model.free_field.iter().peekable();
         for row in &mut scratch.rows {
             let k = row.support as usize;
-            let support = &slope.supports[k];
+            let support = &model.supports[k];
             row.displacement = support.sample(&state.displacement) - state.support_rest[k];
             row.approach = support.sample(&scratch.predicted);
             row.force = state.support_force[k];
             let Resistance::Dashpot(quiet) = support.resistance else {
                 row.target = support.preload - support.stiffness * row.displacement;
-                row.viscosity = support.stiffness * slope.theta * dt;
+                row.viscosity = support.stiffness * model.theta * dt;
                 continue;
             };
             if wave.0 != quiet {
-                wave = (quiet, applied::wave(slope, regime, state, kick, quiet));
+                wave = (quiet, applied::wave(model, regime, state, kick, quiet));
             }
             row.viscosity = 0.5 * support.stiffness;
             row.target = 2.0 * support.stiffness * wave.1.dot(&support.direction)
                 - row.viscosity * support.sample(&state.velocity);
             while beside.next_if(|point| point.support < row.support).is_some() {}
             if let (Some(point), Some(column)) =
-                (beside.next_if(|point| point.support == row.support), slope.quiets[quiet as usize].column)
+                (beside.next_if(|point| point.support == row.support), model.quiets[quiet as usize].column)
             {
                 let (own, after) = (&state.columns[column as usize], &scratch.columns[column as usize]);
                 let velocity = point.at.sample(&own.velocity) + point.at.sample(after);

@@ -3,7 +3,7 @@
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, MassMatrix};
-use crate::state::{Ledger, Scratch, Slope, State};
+use crate::state::{Ledger, Model, Scratch, State};
 
 use super::blocks::block_covers;
 use super::{implicit, quiet};
@@ -37,42 +37,42 @@ pub(super) fn unbalanced(net: f64, applied: f64) -> f64 {
 
 /// Largest speed (m/s) of rock: of the corners of its blocks. Covers may be faster, since their stars lie outside small
 /// blocks.
-pub(super) fn speed_max(slope: &Slope, state: &State) -> f64 {
-    let boundary = &slope.boundary;
+pub(super) fn speed_max(model: &Model, state: &State) -> f64 {
+    let boundary = &model.boundary;
     (0..boundary.len()).map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Kinetic energy (J/m) of all blocks that can move.
-pub(super) fn kinetic(slope: &Slope, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
-    if let Some(implicit) = &slope.implicit {
-        return implicit::kinetic_energy(slope, implicit, mass_matrix, velocity);
+pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
+    if let Some(implicit) = &model.implicit {
+        return implicit::kinetic_energy(model, implicit, mass_matrix, velocity);
     }
-    (0..slope.covers.block_count())
+    (0..model.covers.block_count())
         .filter(|&b| !mass_matrix.fixed[b])
-        .map(|b| mechanics::kinetic_energy(&block_covers(slope, mass_matrix, displacement, velocity, b)))
+        .map(|b| mechanics::kinetic_energy(&block_covers(model, mass_matrix, displacement, velocity, b)))
         .sum()
 }
 
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
-pub(super) fn strain(slope: &Slope, state: &State) -> f64 {
-    let covers = &slope.covers;
-    let of_element = |e: usize| covers.element_area[e] * slope.strain_energy(state, e);
+pub(super) fn strain(model: &Model, state: &State) -> f64 {
+    let covers = &model.covers;
+    let of_element = |e: usize| covers.element_area[e] * model.strain_energy(state, e);
     (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]).map(of_element).sum()
 }
 
 /// Potential energy (J/m) of gravity relative to the reference configuration.
-pub(super) fn potential(slope: &Slope, state: &State) -> f64 {
-    let covers = &slope.covers;
+pub(super) fn potential(model: &Model, state: &State) -> f64 {
+    let covers = &model.covers;
     (0..covers.cover_count())
         .filter(|&i| !state.removed[covers.cover_block[i] as usize])
-        .map(|i| -slope.mass_matrix.row_sum[i] * slope.gravity.dot(&state.displacement[i]))
+        .map(|i| -model.mass_matrix.row_sum[i] * model.gravity.dot(&state.displacement[i]))
         .sum()
 }
 
 /// Energy (J/m) stored in the springs of contacts and supports.
-pub(super) fn stored(slope: &Slope, state: &State, scratch: &Scratch) -> f64 {
+pub(super) fn stored(model: &Model, state: &State, scratch: &Scratch) -> f64 {
     let support = |row: &crate::contact::SupportRow| {
-        let support = &slope.supports[row.support as usize];
+        let support = &model.supports[row.support as usize];
         if support.is_dashpot() {
             return 0.0;
         }
@@ -81,33 +81,33 @@ pub(super) fn stored(slope: &Slope, state: &State, scratch: &Scratch) -> f64 {
     let contacts = scratch.contacts.iter().map(VertexEdge::stored_energy).sum::<f64>();
     let supports = scratch.rows.iter().map(support).sum::<f64>();
     let kept = |(k, s): (usize, &Support)| 0.5 * state.support_force[k].powi(2) / s.stiffness;
-    contacts + supports + quiet::frozen(slope, state).map(kept).sum::<f64>()
+    contacts + supports + quiet::frozen(model, state).map(kept).sum::<f64>()
 }
 
 /// Energy (J/m) stored in bolts.
-pub(super) fn bolt_stored(slope: &Slope, state: &State) -> f64 {
-    let star = &slope.covers.star_position;
+pub(super) fn bolt_stored(model: &Model, state: &State) -> f64 {
+    let star = &model.covers.star_position;
     let of = |(segment, bolt): (&BoltSegment, &BoltState)| {
         segment.energy(bolt, segment.span(star, &state.displacement).norm())
     };
-    slope.bolts.iter().zip(&state.bolts).map(of).sum()
+    model.bolts.iter().zip(&state.bolts).map(of).sum()
 }
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
-pub fn energies(slope: &Slope, state: &State, mass_matrix: &MassMatrix) -> Ledger {
+pub fn energies(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledger {
     Ledger {
-        kinetic: kinetic(slope, mass_matrix, &state.displacement, &state.velocity),
-        strain: strain(slope, state),
-        potential: potential(slope, state),
+        kinetic: kinetic(model, mass_matrix, &state.displacement, &state.velocity),
+        strain: strain(model, state),
+        potential: potential(model, state),
         ..state.ledger
     }
 }
 
 /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
-pub fn momentum(slope: &Slope, state: &State, mass_matrix: &MassMatrix) -> (Vector, f64) {
+pub fn momentum(model: &Model, state: &State, mass_matrix: &MassMatrix) -> (Vector, f64) {
     let (mut linear, mut angular) = (Vector::zeros(), 0.0);
-    for block in (0..slope.covers.block_count()).filter(|&b| mass_matrix.is_free(b)) {
-        let covers = block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
+    for block in (0..model.covers.block_count()).filter(|&b| mass_matrix.is_free(b)) {
+        let covers = block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
         let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&covers);
         linear += velocity * mass_matrix.total[block];
         angular += mass_matrix.total[block] * centre.perp(&velocity) + mass_matrix.polar[block] * spin;
@@ -116,8 +116,8 @@ pub fn momentum(slope: &Slope, state: &State, mass_matrix: &MassMatrix) -> (Vect
 }
 
 /// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
-pub fn block_motion(slope: &Slope, state: &State, mass_matrix: &MassMatrix, block: usize) -> (Point, Vector, f64, f64) {
-    let covers = block_covers(slope, mass_matrix, &state.displacement, &state.velocity, block);
+pub fn block_motion(model: &Model, state: &State, mass_matrix: &MassMatrix, block: usize) -> (Point, Vector, f64, f64) {
+    let covers = block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
     let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
     let kinetic = if mass_matrix.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
     (centre, velocity, spin, kinetic)

@@ -27,9 +27,9 @@ impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
     pub(super) fn locate(&mut self) {
         let clock = Instant::now();
-        let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let boundary = &slope.boundary;
-        let star = &slope.covers.star_position;
+        let (model, scratch) = (self.model, &mut *self.scratch);
+        let boundary = &model.boundary;
+        let star = &model.covers.star_position;
         let displacement = &self.state.displacement;
         let place = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum()
@@ -41,16 +41,16 @@ impl Step<'_> {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
             points.map(place).collect_into_vec(&mut scratch.place);
         }
-        scratch.frames.update(boundary, &scratch.place, slope.entrance.flush_sine, scratch.serial);
+        scratch.frames.update(boundary, &scratch.place, model.entrance.flush_sine, scratch.serial);
         scratch.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
     /// Near pairs, when nodes have moved.
     pub(super) fn search(&mut self) {
         let clock = Instant::now();
-        let (slope, scratch) = (self.slope, &mut *self.scratch);
-        let boundary = &slope.boundary;
-        let size = slope.covers.mesh.size;
+        let (model, scratch) = (self.model, &mut *self.scratch);
+        let boundary = &model.boundary;
+        let size = model.covers.mesh.size;
         if self.state.neighbours.is_stale(boundary, &scratch.place, SKIN * size) {
             let view = SearchView {
                 boundary,
@@ -69,7 +69,7 @@ impl Step<'_> {
 
     /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
     pub(super) fn reach(&self, dt: f64) -> f64 {
-        REACH * self.slope.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
+        REACH * self.model.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
     }
 
     /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
@@ -85,23 +85,23 @@ impl Step<'_> {
             Regime::Dynamic { damping } => Some(damping),
             Regime::Static { .. } => None,
         };
-        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
-        let size = slope.covers.mesh.size;
-        scratch.contact_cache.index(&state.contacts, slope.boundary.node_count());
-        scratch.penetrating.index(&slope.boundary, &scratch.frames, &state.contacts);
+        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
+        let size = model.covers.mesh.size;
+        scratch.contact_cache.index(&state.contacts, model.boundary.node_count());
+        scratch.penetrating.index(&model.boundary, &scratch.frames, &state.contacts);
         let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = NarrowPhase {
-            boundary: &slope.boundary,
+            boundary: &model.boundary,
             place: &scratch.place,
             frames: &scratch.frames,
-            star: &slope.covers.star_position,
+            star: &model.covers.star_position,
             displacement: &state.displacement,
             mass_matrix: &scratch.mass_matrix,
             motion: &scratch.motion,
             laws: &state.laws,
             trace_law: &scratch.trace_law,
             strength: state.drive.strength_factor(state.drive.share(self.time)),
-            default_law: state.law_switch.get(slope.default_law as usize).copied().unwrap_or_default(),
+            default_law: state.law_switch.get(model.default_law as usize).copied().unwrap_or_default(),
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,
@@ -109,12 +109,12 @@ impl Step<'_> {
             penetrating: &scratch.penetrating,
             approach: dt.map(approach),
             size,
-            rule: slope.entrance,
-            flush_cosine: slope.entrance.flush_cosine(),
+            rule: model.entrance,
+            flush_cosine: model.entrance.flush_cosine(),
             reach,
-            theta: slope.theta,
+            theta: model.theta,
             first: state.step == 0,
-            in_situ: slope.in_situ.as_ref(),
+            in_situ: model.in_situ.as_ref(),
             serial: scratch.serial,
         };
         let near_pairs = &state.neighbours.pairs;
@@ -132,15 +132,15 @@ impl Step<'_> {
 
     /// Bolts that bear in this step.
     pub(super) fn load_bolts(&mut self) {
-        let (slope, state, scratch) = (self.slope, &*self.state, &mut *self.scratch);
+        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
         let view = BoltView {
-            star: &slope.covers.star_position,
+            star: &model.covers.star_position,
             displacement: &state.displacement,
             predicted: &scratch.predicted,
             mass_matrix: &scratch.mass_matrix,
             motion: &scratch.motion,
         };
-        let rows = slope.bolts.iter().zip(&state.bolts).enumerate();
+        let rows = model.bolts.iter().zip(&state.bolts).enumerate();
         let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
         scratch.bolts.clear();
         scratch.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
@@ -150,12 +150,12 @@ impl Step<'_> {
     pub(super) fn open_close(&mut self, dt: f64) -> SolverReport {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
-        let (slope, scratch) = (self.slope, &mut *self.scratch);
+        let (model, scratch) = (self.model, &mut *self.scratch);
         let Scratch { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = scratch;
-        let (theta, tolerance, sweeps_max) = (slope.theta, slope.tolerance, slope.sweeps_max);
+        let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
         let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &slope.covers.block_covers);
-        open_close.arrange(&slope.boundary, near_pairs, mass_matrix, block_covers, contacts);
+        let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &model.covers.block_covers);
+        open_close.arrange(&model.boundary, near_pairs, mass_matrix, block_covers, contacts);
         let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
         open_close.impulses(mass_matrix, increment, push);
         scratch.seconds.sweep += clock.elapsed().as_secs_f64();

@@ -9,7 +9,7 @@ use super::blocks::Totals;
 impl Step<'_> {
     /// Acceleration (m/s²) beyond gravity in a step of `dt` (s): its work is external.
     pub(super) fn extra(&self, dt: f64) -> Vector {
-        self.acceleration(dt) - self.slope.gravity
+        self.acceleration(dt) - self.model.gravity
     }
 
     /// Loads times velocities before and after the step (W/m).
@@ -23,7 +23,7 @@ impl Step<'_> {
 
     /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
     pub(super) fn works(&self, dt: f64, finished: &Totals) -> Ledger {
-        let (slope, state, scratch) = (self.slope, &*self.state, &*self.scratch);
+        let (model, state, scratch) = (self.model, &*self.state, &*self.scratch);
         let mut works = Ledger { damping: finished.damping, ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
         for outcome in &scratch.outcomes {
@@ -31,7 +31,7 @@ impl Step<'_> {
             works.friction -= outcome.friction;
         }
         for row in &scratch.rows {
-            let support = &slope.supports[row.support as usize];
+            let support = &model.supports[row.support as usize];
             let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
             let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
             *work += row.force * velocity * kick_dt;

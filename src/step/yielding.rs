@@ -4,24 +4,24 @@ use rayon::prelude::*;
 
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, PlasticStrain, YieldSurface};
-use crate::state::{Scratch, Slope, State};
+use crate::state::{Model, Scratch, State};
 
 /// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
 const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of time `time` (s), and
 /// books what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
-pub fn update(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64) {
+pub fn update(model: &Model, state: &mut State, scratch: &mut Scratch, time: f64) {
     if state.plastic.is_empty() {
         return;
     }
     let factor = state.drive.strength_factor(state.drive.share(time));
     scratch.surfaces.clear();
-    scratch.surfaces.extend(slope.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
+    scratch.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
     scratch.yielded.clear();
     scratch.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    let pass = Pass { slope, surfaces: &scratch.surfaces, displacement, velocity, dt_last: *dt_last, removed };
+    let pass = Pass { model, surfaces: &scratch.surfaces, displacement, velocity, dt_last: *dt_last, removed };
     let runs = scratch.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
     if scratch.serial {
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
@@ -34,7 +34,7 @@ pub fn update(slope: &Slope, state: &mut State, scratch: &mut Scratch, time: f64
 
 /// What all runs share.
 struct Pass<'a> {
-    slope: &'a Slope,
+    model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
     displacement: &'a [Vector],
     velocity: &'a [Vector],
@@ -45,15 +45,15 @@ struct Pass<'a> {
 impl Pass<'_> {
     /// Updates the elements from `first` on; returns the energy (J/m) that it takes.
     fn run(&self, first: usize, plastic: &mut [PlasticStrain]) -> f64 {
-        let covers = &self.slope.covers;
+        let covers = &self.model.covers;
         let mut energy = 0.0;
         for (element, plastic) in (first..).zip(plastic) {
-            let Some(surface) = &self.surfaces[self.slope.element_rock[element] as usize] else { continue };
+            let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element] as usize] {
                 continue;
             }
             let (at, pre) =
-                (self.slope.deformation(element, self.displacement), self.slope.pre_stress_and_out(element));
+                (self.model.deformation(element, self.displacement), self.model.pre_stress_and_out(element));
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
                 let taken = surface.taken(&self.before(element), &at, &pre, [plastic, &growth]);
                 (0..4).for_each(|k| plastic[k] += growth[k]);
@@ -65,7 +65,7 @@ impl Pass<'_> {
 
     /// Deformation of an element one step ago.
     fn before(&self, element: usize) -> Deformation {
-        let covers = &self.slope.covers;
+        let covers = &self.model.covers;
         let place = |i: u32| self.displacement[i as usize] - self.velocity[i as usize] * self.dt_last;
         let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
         Deformation::new(covers.element_covers[element].map(place), gradients)

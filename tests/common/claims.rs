@@ -73,7 +73,7 @@ pub fn assert_ledger(report: &StepReport) {
 
 /// Stress xx, yy, xy of every element under the displacements of a state.
 pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let covers = &slope.covers;
     (0..covers.element_count())
         .map(|e| {
@@ -88,12 +88,12 @@ pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
 /// Centroid (m), its velocity (m/s), spin (rad/s) and kinetic energy (J/m) of the block that holds a reference point.
 pub fn motion(simulation: &Simulation, point: [f64; 2]) -> (Point, Vector, f64, f64) {
     let block = block_at(simulation, point);
-    block_motion(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix, block)
+    block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, block)
 }
 
 /// The block that holds a reference point.
 pub fn block_at(simulation: &Simulation, point: [f64; 2]) -> usize {
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let element = covers.element_at(Point::from(point)).expect("rock at the point");
     covers.element_block[element] as usize
 }

@@ -49,7 +49,7 @@ struct Placed {
 
 impl Audit {
     pub fn new(simulation: &Simulation) -> Self {
-        let (boundary, blocks) = (&simulation.slope().boundary, simulation.slope().covers.block_count());
+        let (boundary, blocks) = (&simulation.model().boundary, simulation.model().covers.block_count());
         let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
         for k in 0..boundary.len() {
             let block = boundary.block[k] as usize;
@@ -75,7 +75,7 @@ impl Audit {
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
-        let (boundary, place) = (&simulation.slope().boundary, &simulation.scratch().place);
+        let (boundary, place) = (&simulation.model().boundary, &simulation.scratch().place);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {

@@ -158,13 +158,13 @@ impl Run {
     fn entry(&self, model: &'static str, variant: String, error: f64, at_rest: bool) -> Entry {
         let (simulation, counters) = (&self.simulation, &self.simulation.state().counters);
         let (steps, before) = (simulation.state().step - self.before.0, &self.before.1);
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         Entry {
             model,
             variant,
             integrator: self.integrator,
             counts: [covers.block_count(), covers.cover_count(), simulation.state().contacts.len()],
-            dt: simulation.slope().dt,
+            dt: simulation.model().dt,
             error,
             wall: self.wall.elapsed().as_secs_f64(),
             cpu: cpu_seconds() - self.cpu,

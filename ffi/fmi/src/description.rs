@@ -97,7 +97,7 @@ pub fn identity(variable: &Variable) -> Vec<(&'static str, String)> {
 impl Facts {
     /// The facts of a model.
     pub fn of(model: &Cosimulation, identifier: &str) -> Self {
-        let blocks = model.simulation().slope().covers.block_count();
+        let blocks = model.simulation().model().covers.block_count();
         let title = model.case().title.trim();
         let notes = model.case().fmu.clone().unwrap_or_default();
         let title = if title.is_empty() { identifier } else { title };

@@ -198,7 +198,7 @@ pub fn measure(model: &Model, options: &BenchOptions, machine: &Machine) -> Resu
     let mut simulation = model.build()?;
     let build_seconds = clock.elapsed().as_secs_f64();
     model.warm(&mut simulation)?;
-    let elements = simulation.slope().covers.element_count() as u64;
+    let elements = simulation.model().covers.element_count() as u64;
     let steps = (WINDOW_UPDATES / elements).clamp(WINDOW_STEPS[0], WINDOW_STEPS[1]);
     let start = simulation.state().clone();
     let mut windows = Windows::new(steps);
@@ -229,7 +229,7 @@ fn first_second(model: &Model) -> Result<f64, BenchError> {
 }
 
 fn sizes(simulation: &Simulation) -> Measured {
-    let (slope, mass_matrix) = (simulation.slope(), &simulation.scratch().mass_matrix);
+    let (slope, mass_matrix) = (simulation.model(), &simulation.scratch().mass_matrix);
     let covers = &slope.covers;
     let free = (0..covers.block_count()).filter(|&block| !mass_matrix.fixed[block]);
     let (mut blocks, mut elements) = (0, 0);
@@ -273,7 +273,7 @@ impl Measured {
     }
 
     fn take_heaps(&mut self, simulation: &Simulation) {
-        let (slope, state, scratch) = (simulation.slope(), simulation.state(), simulation.scratch());
+        let (slope, state, scratch) = (simulation.model(), simulation.state(), simulation.scratch());
         self.heap_bytes = [slope.bytes(), state.bytes(), scratch.bytes()];
         let parts = state.memory().into_iter().chain(scratch.memory());
         let of_contacts: usize = parts.filter(|part| OF_CONTACTS.contains(&part.0)).map(|part| part.1).sum();

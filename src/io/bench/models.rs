@@ -92,7 +92,7 @@ impl Model {
     /// A numerical failure.
     pub fn warm(&self, simulation: &mut Simulation) -> Result<(), BenchError> {
         if matches!(self, Self::Continuum(_) | Self::Slope(..)) {
-            let elements = simulation.slope().covers.element_count() as u64;
+            let elements = simulation.model().covers.element_count() as u64;
             return advance(simulation, (WARM_UPDATES / elements).clamp(WARM_STEPS_MIN, WARM_STEPS));
         }
         loop {

@@ -149,7 +149,7 @@ impl Chart {
 pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
     let snapshot = reduction.simulation.snapshot();
     let trial = reduction.first_unstable();
-    let mut fails = vec![false; reduction.simulation.slope().covers.block_count()];
+    let mut fails = vec![false; reduction.simulation.model().covers.block_count()];
     trial.iter().flat_map(|t| &t.failing).for_each(|block| fails[block.block as usize] = true);
     let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - MARGIN, height: HEIGHT_MAX };
     let view = View::fit(Bounds::of(&snapshot.elements.points), area);

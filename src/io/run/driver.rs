@@ -262,7 +262,7 @@ impl<'a> Driver<'a> {
         sweeps_mean: f64,
     ) -> Result<(), RunError> {
         let after = rows::monitors(&self.simulation);
-        let dt = [dt_before, self.simulation.slope().dt];
+        let dt = [dt_before, self.simulation.model().dt];
         let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
         self.history.row(&row).map_err(RunError::Output)
     }
@@ -438,6 +438,6 @@ fn lost_past(past: Past, simulation: &Simulation, directory: &Path) -> Option<St
 /// again, but for those of the start of a later stage, which the stage before wrote.
 fn kept_until(simulation: &Simulation) -> f64 {
     let state = simulation.state();
-    let half = 0.5 * simulation.slope().dt;
+    let half = 0.5 * simulation.model().dt;
     if state.stage > 0 && state.stage_step == 0 { simulation.time() + half } else { simulation.time() - half }
 }

@@ -4,7 +4,7 @@ use crate::contact::{Resistance, Support};
 use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::{Column, Elasticity, Foot, Record};
 use crate::model::case::{self, Axes, Axis, BaseMotionKind, Case, Invalid};
-use crate::state::{BaseMotion, Fixity, FreeFieldPoint, MotionKind, QuietBoundary, Slope, TimedRecord};
+use crate::state::{BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, QuietBoundary, TimedRecord};
 
 use super::place::{OuterPiece, Places};
 use super::{EDGE_RATIO, in_situ, stiffness_over};
@@ -210,17 +210,17 @@ pub(super) fn warning(case: &Case) -> Option<String> {
 }
 
 /// Whether the columns are stable at the step of the model.
-pub(super) fn check_columns(slope: &Slope) -> Result<(), Invalid> {
-    for (k, column) in slope.columns.iter().enumerate() {
+pub(super) fn check_columns(model: &Model) -> Result<(), Invalid> {
+    for (k, column) in model.columns.iter().enumerate() {
         let most = column.critical_dt();
-        if slope.dt > most {
+        if model.dt > most {
             return Err(Invalid {
                 key: format!("free_field[{k}].edge"),
                 message: format!(
                     "its column has cells of {:.6} m, which a wave crosses in {most:.3e} s, below the internal step of \
                      {:.3e} s: set solver.dt_max to {:.3e} or less",
                     column.spacing,
-                    slope.dt,
+                    model.dt,
                     0.9 * most
                 ),
             });

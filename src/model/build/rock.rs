@@ -4,7 +4,7 @@ use crate::cover::Covers;
 use crate::geometry::polygon;
 use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
-use crate::state::Slope;
+use crate::state::Model;
 
 use super::geometry::points;
 use super::place::Places;
@@ -35,9 +35,9 @@ pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
 }
 
 /// No plastic strain in any element; empty when no rock yields.
-pub(super) fn plastic(slope: &Slope) -> Vec<PlasticStrain> {
-    let yields = slope.strengths.iter().any(Option::is_some);
-    vec![[0.0; 4]; if yields { slope.covers.element_count() } else { 0 }]
+pub(super) fn plastic(model: &Model) -> Vec<PlasticStrain> {
+    let yields = model.strengths.iter().any(Option::is_some);
+    vec![[0.0; 4]; if yields { model.covers.element_count() } else { 0 }]
 }
 
 /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
@@ -58,25 +58,25 @@ pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16
 }
 
 /// A warning where the in-situ stress is beyond the strength of the rock: how many elements, where, and by how much.
-pub(super) fn overstressed(case: &Case, slope: &Slope) -> Option<String> {
+pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     case.in_situ.as_ref()?;
     let excess = |e: usize| {
-        let strength = slope.strength_of(e)?;
-        let stress = slope.pre_stress_and_out(e);
+        let strength = model.strength_of(e)?;
+        let stress = model.pre_stress_and_out(e);
         let size = stress.iter().fold(strength.cohesion, |a, s| a.max(s.abs()));
         let excess = strength.surface(1.0).excess(stress);
         (excess > 1e-9 * size).then_some((e, excess))
     };
-    let beyond: Vec<(usize, f64)> = (0..slope.covers.element_count()).filter_map(excess).collect();
+    let beyond: Vec<(usize, f64)> = (0..model.covers.element_count()).filter_map(excess).collect();
     let &(worst, most) = beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let place = slope.covers.element_centroid[worst];
-    let name = case.rocks.keys().nth(slope.element_rock[worst] as usize).map_or("", String::as_str);
+    let place = model.covers.element_centroid[worst];
+    let name = case.rocks.keys().nth(model.element_rock[worst] as usize).map_or("", String::as_str);
     Some(format!(
         "the in-situ stress is beyond the strength of the rock in {} of {} elements, most at ({:.6}, {:.6}) m in \
          `{name}`, by {most:.3e} Pa; they yield in the first step: lower the stress, set `in_situ.szz`, or raise the \
          strength",
         beyond.len(),
-        slope.covers.element_count(),
+        model.covers.element_count(),
         place.x,
         place.y
     ))

@@ -4,7 +4,7 @@
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
 use crate::model::case::{Case, Invalid};
-use crate::state::Slope;
+use crate::state::Model;
 
 use super::place::Places;
 
@@ -63,13 +63,13 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
 }
 
 /// What is unusual about values of the case.
-pub(super) fn of_values(case: &Case, slope: &Slope, places: &Places) -> Vec<String> {
+pub(super) fn of_values(case: &Case, model: &Model, places: &Places) -> Vec<String> {
     let mut warnings = rocks(case);
-    warnings.extend(extent(case, slope));
+    warnings.extend(extent(case, model));
     warnings.extend(gravity(case));
     warnings.extend(unheld(case));
     warnings.extend(long_edges(case, places));
-    warnings.extend(tension(slope));
+    warnings.extend(tension(model));
     warnings
 }
 
@@ -96,11 +96,11 @@ fn rocks(case: &Case) -> Vec<String> {
 }
 
 /// A model that is larger than slopes are, or smaller than its mesh.
-fn extent(case: &Case, slope: &Slope) -> Option<String> {
-    let (low, high) = polygon::bounds(&slope.covers.polygon_points);
+fn extent(case: &Case, model: &Model) -> Option<String> {
+    let (low, high) = polygon::bounds(&model.covers.polygon_points);
     let span = high - low;
     if span.max() > LONGEST {
-        let area: f64 = slope.covers.element_area.iter().sum();
+        let area: f64 = model.covers.element_area.iter().sum();
         return Some(format!(
             "domain.outline: the rock is {:.6} m by {:.6} m, {area:.3e} m²; slopes are up to {LONGEST} m: coordinates \
              are in metres, so divide those in millimetres by 1000",
@@ -153,9 +153,9 @@ fn long_edges(case: &Case, places: &Places) -> Vec<String> {
 }
 
 /// In-situ stress that pulls.
-fn tension(slope: &Slope) -> Option<String> {
-    let field = slope.in_situ.as_ref()?;
-    let stresses = slope.covers.element_centroid.iter().map(|p| (field.at(*p), *p));
+fn tension(model: &Model) -> Option<String> {
+    let field = model.in_situ.as_ref()?;
+    let stresses = model.covers.element_centroid.iter().map(|p| (field.at(*p), *p));
     let pull = |s: &[f64; 3]| s[0].max(s[1]);
     let greatest = stresses.clone().map(|(s, _)| s[0].abs().max(s[1].abs())).fold(0.0, f64::max);
     let pulled = stresses.clone().filter(|(s, _)| pull(s) > TENSION_SHARE * greatest).count();
@@ -164,7 +164,7 @@ fn tension(slope: &Slope) -> Option<String> {
         format!(
             "in_situ: pulls at the rock in {pulled} of {} elements, most at ({:.6}, {:.6}) m, by {:.3e} Pa; tension is \
              positive, and rock under ground is compressed: write sxx and syy negative",
-            slope.covers.element_count(),
+            model.covers.element_count(),
             place.x,
             place.y,
             pull(&most)
@@ -173,8 +173,8 @@ fn tension(slope: &Slope) -> Option<String> {
 }
 
 /// Refuses stages that are shorter than a step.
-pub(super) fn check_stages(case: &Case, slope: &Slope) -> Result<(), Invalid> {
-    let dt = slope.dt;
+pub(super) fn check_stages(case: &Case, model: &Model) -> Result<(), Invalid> {
+    let dt = model.dt;
     match case.stages.iter().position(|stage| stage.duration < dt * (1.0 - 1e-6)) {
         None => Ok(()),
         Some(k) => Err(Invalid {

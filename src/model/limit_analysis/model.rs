@@ -74,16 +74,16 @@ pub struct Bar {
 
 /// The blocks of a model in the stage that it has reached, at their places before any motion.
 pub fn bodies(simulation: &Simulation) -> Vec<Body> {
-    let (slope, state) = (simulation.slope(), simulation.state());
-    let covers = &slope.covers;
+    let (model, state) = (simulation.model(), simulation.state());
+    let covers = &model.covers;
     let time = simulation.time();
-    let acceleration = step::acceleration(slope, state, time);
+    let acceleration = step::acceleration(model, state, time);
     let gravity = if acceleration.norm() > 0.0 { acceleration.norm() } else { STANDARD_GRAVITY };
     let mut pushes = vec![Vector::zeros(); covers.cover_count()];
-    step::push_forces(slope, state, time, 1.0, &mut pushes);
+    step::push_forces(model, state, time, 1.0, &mut pushes);
     let body = |b: usize| {
-        let mass = slope.mass_matrix.total[b];
-        let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * slope.mass_matrix.row_sum[i]).sum();
+        let mass = model.mass_matrix.total[b];
+        let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * model.mass_matrix.row_sum[i]).sum();
         let centre = sum / mass;
         // Weights of covers reproduce rigid motion, so that their forces have the resultant of what acts.
         let force: Vector = covers.covers_of(b).map(|i| pushes[i]).sum();
@@ -108,21 +108,21 @@ pub fn bodies(simulation: &Simulation) -> Vec<Body> {
 
 /// Applies all fixities that hold.
 fn hold(simulation: &Simulation, bodies: &mut [Body]) {
-    let (slope, state) = (simulation.slope(), simulation.state());
-    let covers = &slope.covers;
+    let (model, state) = (simulation.model(), simulation.state());
+    let covers = &model.covers;
     let mut block_of_cover = vec![0; covers.cover_count()];
     for b in 0..covers.block_count() {
         covers.covers_of(b).for_each(|i| block_of_cover[i] = b);
     }
     let axes = [Vector::x(), Vector::y()];
-    for (fixity, _) in slope.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
+    for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, held) in &fixity.covers {
             let body = &mut bodies[block_of_cover[cover as usize]];
             let at = covers.star_position[cover as usize];
             (0..2).filter(|&k| held[k]).for_each(|k| body.hold(at, axes[k]));
         }
     }
-    for support in slope.supports.iter().filter(|s| state.fix_active[s.fix as usize]) {
+    for support in model.supports.iter().filter(|s| state.fix_active[s.fix as usize]) {
         let at = support.covers.iter().zip(support.weights).map(|(&i, w)| covers.star_position[i as usize] * w).sum();
         bodies[support.block as usize].hold(at, support.direction);
     }
@@ -130,8 +130,8 @@ fn hold(simulation: &Simulation, bodies: &mut [Body]) {
 
 /// The bolts that are installed and join two blocks.
 pub fn bars(simulation: &Simulation) -> Vec<Bar> {
-    let (slope, state) = (simulation.slope(), simulation.state());
-    let installed = slope.bolts.iter().zip(&state.bolts).filter(|(_, state)| state.active && !state.broken);
+    let (model, state) = (simulation.model(), simulation.state());
+    let installed = model.bolts.iter().zip(&state.bolts).filter(|(_, state)| state.active && !state.broken);
     let bar = |(segment, _): (&crate::contact::BoltSegment, _)| Bar {
         blocks: segment.blocks,
         ends: segment.points,
@@ -154,8 +154,8 @@ impl<'a> Strengths<'a> {
 
     /// Law of faces that a joint trace has made, after switches.
     pub fn law(&self, trace: u32) -> u32 {
-        let slope = self.simulation.slope();
-        let law = if trace == NONE { slope.default_law } else { slope.trace_law[trace as usize] };
+        let model = self.simulation.model();
+        let law = if trace == NONE { model.default_law } else { model.trace_law[trace as usize] };
         self.simulation.state().law_switch[law as usize]
     }
 

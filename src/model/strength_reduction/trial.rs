@@ -58,11 +58,11 @@ impl Base {
 
     /// Area (m²) of all blocks without a support; where each has one, of all that can move.
     pub fn free_area(&self) -> f64 {
-        let slope = self.simulation.slope();
-        let mut held = vec![false; slope.covers.block_count()];
-        slope.supports.iter().for_each(|support| held[support.block as usize] = true);
+        let model = self.simulation.model();
+        let mut held = vec![false; model.covers.block_count()];
+        model.supports.iter().for_each(|support| held[support.block as usize] = true);
         let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
-            self.moving().filter(|&b| is_in(b)).map(|b| slope.covers.block_area(b)).sum()
+            self.moving().filter(|&b| is_in(b)).map(|b| model.covers.block_area(b)).sum()
         };
         let free = area(&|b| !held[b]);
         if free > 0.0 { free } else { area(&|_| true) }
@@ -149,15 +149,15 @@ impl Base {
     /// Largest displacement (m) of a block's covers since the trial began.
     fn moved(&self, simulation: &Simulation, block: usize) -> f64 {
         let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
-        simulation.slope().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
+        simulation.model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
     }
 
     /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks, which bears when they move.
     fn slip(&self, simulation: &Simulation) -> f64 {
         let key = |contact: &ContactHistory| (contact.node, contact.side);
-        let (slope, state) = (simulation.slope(), simulation.state());
-        let boundary = &slope.boundary;
-        let bolts = slope.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
+        let (model, state) = (simulation.model(), simulation.state());
+        let boundary = &model.boundary;
+        let bolts = model.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
         let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
         let mut before = self.simulation.state().contacts.iter().peekable();
         let counts = |contact: &&ContactHistory| {
@@ -175,17 +175,17 @@ impl Base {
 
     /// Motion of all free blocks since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
-        let (slope, state) = (simulation.slope(), simulation.state());
+        let (model, state) = (simulation.model(), simulation.state());
         let mass_matrix = &simulation.scratch().mass_matrix;
         self.moving()
             .map(|b| {
-                let (_, velocity, spin, _) = block_motion(slope, state, mass_matrix, b);
-                let radius = (slope.covers.block_area(b) / std::f64::consts::PI).sqrt();
+                let (_, velocity, spin, _) = block_motion(model, state, mass_matrix, b);
+                let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
                     block: b as u32,
-                    place: slope.covers.block_centroid(b),
-                    area: slope.covers.block_area(b),
-                    mass: slope.mass_matrix.total[b],
+                    place: model.covers.block_centroid(b),
+                    area: model.covers.block_area(b),
+                    mass: model.mass_matrix.total[b],
                     displacement: self.moved(simulation, b),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
                     speed: velocity.norm().hypot(spin * radius),
@@ -245,17 +245,17 @@ fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reas
 
 /// Times, speeds and lengths of a model's motion (Eqs. 61, 63).
 fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
-    let (slope, state) = (simulation.slope(), simulation.state());
-    let (low, high) = polygon::bounds(&slope.covers.star_position);
+    let (model, state) = (simulation.model(), simulation.state());
+    let (low, high) = polygon::bounds(&model.covers.star_position);
     let height = (high - low).y;
-    let wave = height / slope.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
+    let wave = height / model.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
     let gravity = state.drive.gravity(1.0).norm();
     let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
     let fall = (height / gravity).sqrt();
     let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
     let still_speed = STILL * tolerance * gravity * window;
-    let free = (0..slope.covers.block_count()).filter(|&b| !simulation.scratch().mass_matrix.fixed[b]);
-    let mass: f64 = free.map(|b| slope.mass_matrix.total[b]).sum();
+    let free = (0..model.covers.block_count()).filter(|&b| !simulation.scratch().mass_matrix.fixed[b]);
+    let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
     let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
     let elastic = (ELASTIC * height).max(given_way);
     Scales {
@@ -265,6 +265,6 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
         still_speed,
         still_kinetic: 0.5 * mass * still_speed * still_speed,
         elastic,
-        limit: slope.failure_displacement.max(elastic),
+        limit: model.failure_displacement.max(elastic),
     }
 }

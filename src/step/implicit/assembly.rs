@@ -28,8 +28,8 @@ impl Step<'_> {
     }
 
     fn set_pattern(&mut self) {
-        let covers = &self.slope.covers;
-        let boundary = &self.slope.boundary;
+        let covers = &self.model.covers;
+        let boundary = &self.model.boundary;
         let buffers = &mut self.scratch.implicit;
         let free = |i: u32| !(buffers.held[2 * i as usize] && buffers.held[2 * i as usize + 1]);
         let pairs = &mut buffers.pairs;
@@ -82,13 +82,13 @@ impl Step<'_> {
 
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, mass: f64, stiffness: f64) {
-        let (slope, state) = (self.slope, &*self.state);
-        let (covers, buffers) = (&slope.covers, &mut self.scratch.implicit);
-        let Some(implicit) = &slope.implicit else { return };
+        let (model, state) = (self.model, &*self.state);
+        let (covers, buffers) = (&model.covers, &mut self.scratch.implicit);
+        let Some(implicit) = &model.implicit else { return };
         for (e, places) in buffers.element_places.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
-            let rock = &slope.rocks[slope.element_rock[e] as usize];
+            let rock = &model.rocks[model.element_rock[e] as usize];
             let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
             let deformation = Deformation::new(u, gradients);
             let turned = gradients.map(|g| deformation.turn_vector(g));
@@ -128,10 +128,10 @@ impl Step<'_> {
     }
 
     fn add_supports(&mut self) {
-        let slope = self.slope;
+        let model = self.model;
         let matrix = &mut self.scratch.implicit.matrix;
         for row in &self.scratch.rows {
-            let support = &slope.supports[row.support as usize];
+            let support = &model.supports[row.support as usize];
             let d = support.direction;
             let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);
             for k in 0..9 {

@@ -9,16 +9,16 @@ use super::{Inertia, Step};
 impl Step<'_> {
     /// Internal forces at the places reached (Eq. 7).
     pub(super) fn implicit_internal(&mut self) {
-        let (slope, state) = (self.slope, &*self.state);
-        let (covers, buffers) = (&slope.covers, &mut self.scratch.implicit);
+        let (model, state) = (self.model, &*self.state);
+        let (covers, buffers) = (&model.covers, &mut self.scratch.implicit);
         buffers.internal.fill(Vector::zeros());
         for e in 0..covers.element_count() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
-            let rock = &slope.rocks[slope.element_rock[e] as usize];
+            let rock = &model.rocks[model.element_rock[e] as usize];
             let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
             let deformation = Deformation::new(u, gradients);
-            let forces = deformation.forces(gradients, covers.element_area[e], rock, &slope.pre_stress_of(e));
+            let forces = deformation.forces(gradients, covers.element_area[e], rock, &model.pre_stress_of(e));
             for (i, f) in ids.into_iter().zip(forces) {
                 buffers.internal[i as usize] += f;
             }
@@ -52,7 +52,7 @@ impl Step<'_> {
     fn bear(&mut self) {
         let scratch = &mut *self.scratch;
         for row in &mut scratch.rows {
-            let support = &self.slope.supports[row.support as usize];
+            let support = &self.model.supports[row.support as usize];
             let moved = support.sample(&scratch.implicit.moved);
             row.force = support.preload - support.stiffness * (row.displacement + moved);
         }
@@ -60,7 +60,7 @@ impl Step<'_> {
 
     /// Forces out of balance (Eq. 67) at the places reached; returns their norm and the norm of the largest part.
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
-        let slope = self.slope;
+        let model = self.model;
         self.push_bearing();
         let buffers = &mut self.scratch.implicit;
         let mut scale = norm(&buffers.residual).max(norm(&buffers.applied));
@@ -71,13 +71,13 @@ impl Step<'_> {
         for (sum, (applied, internal)) in buffers.residual.iter_mut().zip(bearing_and_rest) {
             *sum += applied + internal;
         }
-        if let Some(implicit) = &slope.implicit {
-            for (mass, ids) in implicit.element_mass.iter().zip(&slope.covers.element_covers) {
+        if let Some(implicit) = &model.implicit {
+            for (mass, ids) in implicit.element_mass.iter().zip(&model.covers.element_covers) {
                 push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
             }
             if !inertia.rests {
                 let momentum =
-                    buffers.field.iter().zip(&slope.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
+                    buffers.field.iter().zip(&model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
                 scale = scale.max(momentum.sum::<f64>().sqrt());
             }
         }
@@ -122,7 +122,7 @@ impl Step<'_> {
             mechanics::spread(&contact.pair.covers[1], &contact.pair.weights[1], -force, residual);
         }
         for row in &scratch.rows {
-            let support = &self.slope.supports[row.support as usize];
+            let support = &self.model.supports[row.support as usize];
             mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
         }
     }

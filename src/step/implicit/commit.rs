@@ -12,8 +12,8 @@ use crate::step::report::{potential, speed_max, stored, strain, unbalanced};
 impl Step<'_> {
     /// Ends a sub-step with the forces and places that the iteration left.
     pub(super) fn implicit_commit(&mut self, inertia: &Inertia) {
-        let slope = self.slope;
-        let Some(implicit) = &slope.implicit else { return };
+        let model = self.model;
+        let Some(implicit) = &model.implicit else { return };
         let clock = Instant::now();
         let mut works = self.implicit_works(implicit, inertia);
         let scratch = &mut *self.scratch;
@@ -84,7 +84,7 @@ impl Step<'_> {
             }
         }
         for (row, before) in scratch.rows.iter().zip(&buffers.bearing_before) {
-            let support = &self.slope.supports[row.support as usize];
+            let support = &self.model.supports[row.support as usize];
             works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
         works
@@ -92,32 +92,32 @@ impl Step<'_> {
 
     /// Work of loads, and of gravity beyond what the potential holds.
     fn load_work(&self, inertia: &Inertia) -> f64 {
-        let (slope, buffers) = (self.slope, &self.scratch.implicit);
+        let (model, buffers) = (self.model, &self.scratch.implicit);
         let mut work = 0.0;
         for (i, moved) in buffers.moved.iter().enumerate() {
             let mut force = buffers.applied[i] * inertia.end;
             if inertia.end < 1.0 {
                 force += buffers.applied_before[i] * (1.0 - inertia.end);
             }
-            work += (force - slope.gravity * slope.mass_matrix.row_sum[i]).dot(moved);
+            work += (force - model.gravity * model.mass_matrix.row_sum[i]).dot(moved);
         }
         work
     }
 
     /// Energies and the unbalanced ratio at the start of this sub-step.
     pub(super) fn implicit_report(&mut self, dt: f64) -> StepReport {
-        let slope = self.slope;
-        let Some(implicit) = &slope.implicit else { return StepReport::default() };
+        let model = self.model;
+        let Some(implicit) = &model.implicit else { return StepReport::default() };
         let unbalanced = self.implicit_unbalanced();
         let (state, scratch) = (&*self.state, &*self.scratch);
         let mut ledger = state.ledger;
-        ledger.kinetic = kinetic_energy(slope, implicit, &scratch.mass_matrix, &state.velocity);
+        ledger.kinetic = kinetic_energy(model, implicit, &scratch.mass_matrix, &state.velocity);
         if let Regime::Static { .. } = self.regime {
             ledger.damping -= ledger.kinetic;
         }
-        ledger.strain = strain(slope, state);
-        ledger.potential = potential(slope, state);
-        ledger.stored = stored(slope, state, scratch);
+        ledger.strain = strain(model, state);
+        ledger.potential = potential(model, state);
+        ledger.stored = stored(model, state, scratch);
         StepReport {
             time: self.time,
             dt,
@@ -126,7 +126,7 @@ impl Step<'_> {
             locked: self.count_contacts(ContactState::Lock),
             slipping: self.count_contacts(ContactState::Slip),
             penetration_max: scratch.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
-            speed_max: speed_max(slope, state),
+            speed_max: speed_max(model, state),
         }
     }
 

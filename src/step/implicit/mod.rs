@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::{Implicit, Rule, Scratch, Slope};
+use crate::state::{Implicit, Model, Rule, Scratch};
 
 use super::touch::{CUTOFF, REACH};
 use super::{Regime, Step, StepReport, applied, ramp};
@@ -26,11 +26,11 @@ const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
 /// Sizes the buffers; the matrix gets its pattern in the next step.
-pub(super) fn prepare(slope: &Slope, mass_matrix: &MassMatrix, scratch: &mut crate::state::ImplicitScratch) {
-    if slope.implicit.is_none() {
+pub(super) fn prepare(model: &Model, mass_matrix: &MassMatrix, scratch: &mut crate::state::ImplicitScratch) {
+    if model.implicit.is_none() {
         return;
     }
-    let covers = slope.covers.cover_count();
+    let covers = model.covers.cover_count();
     for field in [
         &mut scratch.moved,
         &mut scratch.offset,
@@ -152,9 +152,9 @@ impl Step<'_> {
         }
         let scratch = &mut *self.scratch;
         scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let reach = REACH * self.slope.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
-        let moved_for = if self.state.step > 0 { self.slope.dt } else { 0.0 };
-        self.entrance(reach.min(CUTOFF * self.slope.covers.mesh.size), moved_for, None);
+        let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
+        let moved_for = if self.state.step > 0 { self.model.dt } else { 0.0 };
+        self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), moved_for, None);
         self.load_supports(dt);
         let buffers = &mut self.scratch.implicit;
         buffers.forces_before.clear();
@@ -176,12 +176,12 @@ impl Step<'_> {
             }
             let share = ramp(self.regime, time - self.state.stage_start);
             let whole = applied::Kick { from: self.time, to: self.time + dt };
-            let base = applied::base_motion(self.slope, self.regime, self.state, whole);
-            let acceleration = applied::acceleration(self.slope, self.state, time) * share - base;
-            for (force, mass) in force.iter_mut().zip(&self.slope.mass_matrix.row_sum) {
+            let base = applied::base_motion(self.model, self.regime, self.state, whole);
+            let acceleration = applied::acceleration(self.model, self.state, time) * share - base;
+            for (force, mass) in force.iter_mut().zip(&self.model.mass_matrix.row_sum) {
                 *force = acceleration * *mass;
             }
-            applied::push_forces(self.slope, self.state, time, share, force);
+            applied::push_forces(self.model, self.state, time, share, force);
         }
     }
 }

@@ -2,36 +2,36 @@
 
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{MassMatrix, push_mass};
-use crate::state::{Implicit, Slope, State};
+use crate::state::{Implicit, Model, State};
 
 use super::{Inertia, Step};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
-pub fn kinetic_energy(slope: &Slope, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {
-    (0..slope.covers.block_count())
+pub fn kinetic_energy(model: &Model, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {
+    (0..model.covers.block_count())
         .filter(|&b| !mass_matrix.fixed[b])
-        .map(|b| block_energy(slope, implicit, velocity, b))
+        .map(|b| block_energy(model, implicit, velocity, b))
         .sum()
 }
 
 /// Kinetic energy (J/m) of one block by the consistent mass.
-pub fn block_energy(slope: &Slope, implicit: &Implicit, velocity: &[Vector], block: usize) -> f64 {
+pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], block: usize) -> f64 {
     let of_element = |e: usize| {
-        let [v0, v1, v2] = slope.covers.element_covers[e].map(|i| velocity[i as usize]);
+        let [v0, v1, v2] = model.covers.element_covers[e].map(|i| velocity[i as usize]);
         let [m00, m11, m22, m01, m02, m12] = implicit.element_mass[e];
         0.5 * (m00 * v0.norm_squared() + m11 * v1.norm_squared() + m22 * v2.norm_squared())
             + m01 * v0.dot(&v1)
             + m02 * v0.dot(&v2)
             + m12 * v1.dot(&v2)
     };
-    slope.covers.elements_of(block).map(of_element).sum()
+    model.covers.elements_of(block).map(of_element).sum()
 }
 
 /// Takes the velocities of a static stage, which its steps do not use, and their energy, which its reports hold.
-pub fn stop(slope: &Slope, state: &mut State) {
-    let Some(implicit) = &slope.implicit else { return };
-    let moving = (0..slope.covers.block_count()).filter(|&b| !state.removed[b]);
-    let energy: f64 = moving.map(|b| block_energy(slope, implicit, &state.velocity, b)).sum();
+pub fn stop(model: &Model, state: &mut State) {
+    let Some(implicit) = &model.implicit else { return };
+    let moving = (0..model.covers.block_count()).filter(|&b| !state.removed[b]);
+    let energy: f64 = moving.map(|b| block_energy(model, implicit, &state.velocity, b)).sum();
     state.ledger.damping -= energy;
     state.velocity.fill(Vector::zeros());
 }
@@ -60,27 +60,27 @@ impl Step<'_> {
         if ratio == 0.0 || inertia.rests {
             return 0.0;
         }
-        let slope = self.slope;
+        let model = self.model;
         let mut taken = 0.0;
-        for block in 0..slope.covers.block_count() {
+        for block in 0..model.covers.block_count() {
             if self.scratch.mass_matrix.fixed[block] {
                 continue;
             }
-            let before = block_energy(slope, implicit, &self.state.velocity, block);
-            let factor = (-ratio * inertia.dt * slope.block_frequency[block]).exp();
+            let before = block_energy(model, implicit, &self.state.velocity, block);
+            let factor = (-ratio * inertia.dt * model.block_frequency[block]).exp();
             self.damp_block(implicit, block, factor);
-            taken += before - block_energy(slope, implicit, &self.state.velocity, block);
+            taken += before - block_energy(model, implicit, &self.state.velocity, block);
         }
         taken
     }
 
     fn damp_block(&mut self, implicit: &Implicit, block: usize, factor: f64) {
-        let slope = self.slope;
+        let model = self.model;
         let (state, buffers) = (&mut *self.state, &mut self.scratch.implicit);
-        let range = slope.covers.covers_of(block);
-        let mass = &slope.mass_matrix.row_sum;
-        let total: f64 = slope.mass_matrix.total[block];
-        let place = |u: &[Vector], i: usize| slope.covers.star_position[i] + u[i];
+        let range = model.covers.covers_of(block);
+        let mass = &model.mass_matrix.row_sum;
+        let total: f64 = model.mass_matrix.total[block];
+        let place = |u: &[Vector], i: usize| model.covers.star_position[i] + u[i];
         let centre: Point = range.clone().map(|i| place(&state.displacement, i) * mass[i]).sum::<Point>() / total;
         let mean: Vector = range.clone().map(|i| state.velocity[i] * mass[i]).sum::<Vector>() / total;
         for i in range.clone() {
@@ -89,10 +89,10 @@ impl Step<'_> {
         }
         let [spun, inertia] = [&state.velocity, &buffers.field].map(|field| {
             let of_element = |e: usize| {
-                let ids = slope.covers.element_covers[e].map(|i| i as usize);
+                let ids = model.covers.element_covers[e].map(|i| i as usize);
                 turned_product(&implicit.element_mass[e], ids, &buffers.field, field)
             };
-            slope.covers.elements_of(block).map(of_element).sum::<f64>()
+            model.covers.elements_of(block).map(of_element).sum::<f64>()
         });
         let spin = spun / inertia;
         for i in range {
@@ -108,7 +108,7 @@ impl Step<'_> {
     pub(super) fn mass_times_field(&mut self, implicit: &Implicit) {
         let buffers = &mut self.scratch.implicit;
         buffers.residual.fill(Vector::zeros());
-        for (mass, ids) in implicit.element_mass.iter().zip(&self.slope.covers.element_covers) {
+        for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
             push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
         }
     }

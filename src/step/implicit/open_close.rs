@@ -120,7 +120,7 @@ impl Step<'_> {
 
     /// New contacts that touch count as locked in the first factor: whether they open is then judged.
     fn presume_closed(&mut self) {
-        let touching = TOUCHING * self.slope.covers.mesh.size;
+        let touching = TOUCHING * self.model.covers.mesh.size;
         for contact in self.scratch.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
             contact.history.state = ContactState::Lock;
         }

@@ -133,9 +133,9 @@ impl Totals {
     }
 
     fn now(simulation: &Simulation, places: &[Vector]) -> Self {
-        let ledger = energies(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix);
+        let ledger = energies(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix);
         let moved = block_displacements(simulation);
-        let mass = &simulation.slope().mass_matrix.total;
+        let mass = &simulation.model().mass_matrix.total;
         let way: f64 = moved.iter().zip(places).zip(mass).map(|((now, then), mass)| mass * (now - then).norm()).sum();
         Self {
             released: -ledger.potential,
@@ -162,7 +162,7 @@ pub(crate) fn fail(simulation: &mut Simulation, seconds: f64) -> Result<Totals, 
     let places = block_displacements(simulation);
     let first = Totals::now(simulation, &places);
     simulation.next_stage()?;
-    let steps = seconds / simulation.slope().dt;
+    let steps = seconds / simulation.model().dt;
     for _ in 0..steps as u64 {
         simulation.advance(false)?;
     }
@@ -186,7 +186,7 @@ pub(super) fn failure(integrator: Integrator, spacing: f64, known: &mut Option<T
 
 /// Mean displacement of every block (m).
 pub(crate) fn block_displacements(simulation: &Simulation) -> Vec<Vector> {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let of = |b: usize| {
         let covers = slope.covers.covers_of(b);
         let sum: Vector = covers.map(|i| simulation.state().displacement[i] * slope.mass_matrix.row_sum[i]).sum();

@@ -72,7 +72,7 @@ pub fn ratios(quick: bool) -> Result<Vec<Cost>, Trouble> {
 
 fn on_mesh(size: f64) -> Result<Vec<Cost>, Trouble> {
     let explicit = Runner::new("explicit", size, 1, None)?;
-    let dt = explicit.simulation.slope().dt;
+    let dt = explicit.simulation.model().dt;
     let mut runners = vec![explicit];
     for ratio in RATIOS {
         for (name, rule) in [("implicit, constant", Newmark::Constant), ("implicit, mean", Newmark::Trapezoidal)] {
@@ -100,7 +100,7 @@ struct Column {
 
 impl Column {
     fn of(simulation: &Simulation) -> Self {
-        let (slope, rock) = (simulation.slope(), &simulation.slope().rocks[0]);
+        let (slope, rock) = (simulation.model(), &simulation.model().rocks[0]);
         Self { gravity: slope.gravity.norm(), speed: (rock.confined_modulus() / rock.density).sqrt() }
     }
 
@@ -157,7 +157,7 @@ impl Runner {
     }
 
     fn compare(&mut self, column: &Column) {
-        let (slope, state, time) = (self.simulation.slope(), self.simulation.state(), self.simulation.time());
+        let (slope, state, time) = (self.simulation.model(), self.simulation.state(), self.simulation.time());
         for element in (0..slope.covers.element_count()).step_by(STRIDE) {
             let place = slope.covers.element_centroid[element];
             let found = slope.sample(element, place, &state.displacement);
@@ -168,7 +168,7 @@ impl Runner {
     }
 
     fn cost(&mut self) -> Cost {
-        let (slope, counters) = (self.simulation.slope(), self.simulation.state().counters);
+        let (slope, counters) = (self.simulation.model(), self.simulation.state().counters);
         let steps = self.simulation.state().step as f64;
         let counts = [counters.factorisations, counters.sweeps].map(|n| n as f64 / steps);
         let [factor, solve] = self.kernels();

@@ -73,13 +73,13 @@ fn case(setup: &Setup, seed: u64) -> String {
 /// The state in which every star has moved by `field` of its place.
 fn moved(simulation: &Simulation, field: impl Fn(Vector) -> Vector) -> State {
     let mut state = simulation.state().clone();
-    state.displacement = simulation.slope().covers.star_position.iter().map(|x| field(*x)).collect();
+    state.displacement = simulation.model().covers.star_position.iter().map(|x| field(*x)).collect();
     state
 }
 
 /// Largest difference (Pa) of the stress of any element from an expected one.
 fn worst(simulation: &Simulation, state: &State, expected: [f64; 3]) -> f64 {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let of = |e: usize| {
         let found = slope.stress(state, e);
         (0..3).map(|k| (found[k] - expected[k]).abs()).fold(0.0, f64::max)
@@ -124,7 +124,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (mut most, mut elements, mut cut) = ([0.0f64; 4], 0, 0);
     for k in 0..count {
         let (found, simulation) = errors(setup, seed + k)?;
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         let full = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
         elements += covers.element_count();
         cut += covers.element_area.iter().filter(|area| **area < 0.999 * full).count();

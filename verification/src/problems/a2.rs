@@ -82,7 +82,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let t = simulation.time();
     let (s, c) = setup.get("direction_deg").to_radians().sin_cos();
     let fall = Vector::new(c, s) * (0.5 * g * t * t);
-    let (slope, state) = (simulation.slope(), simulation.state());
+    let (slope, state) = (simulation.model(), simulation.state());
     let off = state.displacement.iter().map(|u| (u - fall).norm()).fold(0.0, f64::max);
     let stress =
         (0..slope.covers.element_count()).flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));

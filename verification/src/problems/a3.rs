@@ -62,7 +62,7 @@ fn shape(setup: &Setup) -> Vec<[f64; 2]> {
 
 /// Area (m²) of the boundary loop now, and the way from its first point to the one opposite.
 fn now(simulation: &Simulation) -> (f64, Vector) {
-    let (places, boundary) = (simulation.places(), &simulation.slope().boundary);
+    let (places, boundary) = (simulation.places(), &simulation.model().boundary);
     let corner = |k: usize| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
     ((0..places.len()).map(corner).sum(), places[places.len() / 2] - places[0])
 }
@@ -93,7 +93,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let turns = if setup.quick { setup.get("turns").min(0.5) } else { setup.get("turns") };
     let steps = simulation.steps_in(turns * std::f64::consts::TAU / w0);
     let every = (steps / 400).max(1);
-    let motion = |s: &Simulation| block_motion(s.slope(), s.state(), &s.scratch().mass_matrix, 0);
+    let motion = |s: &Simulation| block_motion(s.model(), s.state(), &s.scratch().mass_matrix, 0);
     let (momentum, (_, _, spin, kinetic)) = (simulation.momentum().1, motion(&simulation));
     let (mut angle, mut arm, mut curve) = (0.0, now(&simulation).1, Vec::new());
     for k in 1..=steps {
@@ -106,7 +106,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             curve.push([turned, simulation.momentum().1 / momentum - 1.0, motion(&simulation).3 / kinetic - 1.0]);
         }
     }
-    let time = steps as f64 * simulation.slope().dt;
+    let time = steps as f64 * simulation.model().dt;
     let drift = [simulation.momentum().1 / momentum, motion(&simulation).3 / kinetic, now(&simulation).0 / area];
     let found = [momentum, spin, std::f64::consts::TAU * time / angle, kinetic];
     let mut rows = rows(setup, density * polar, found);

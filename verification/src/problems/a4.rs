@@ -61,7 +61,7 @@ fn case(setup: &Setup) -> String {
 /// Largest change of linear and angular momentum over M|v| and M|v|·5 m, and the report with the worst ledger.
 fn collide(simulation: &mut Simulation, steps: u64, curve: &mut Curve) -> Result<([f64; 2], StepReport), Trouble> {
     let (linear, angular) = simulation.momentum();
-    let mass: f64 = simulation.slope().mass_matrix.total.iter().sum();
+    let mass: f64 = simulation.model().mass_matrix.total.iter().sum();
     let scale = mass * 0.5;
     let (mut worst, mut report) = ([0.0f64; 2], StepReport::default());
     let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();

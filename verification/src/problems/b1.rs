@@ -118,7 +118,7 @@ fn solve(setup: &mut Setup, beam: &Beam, load: Load, rows: f64) -> std::result::
 
 /// Root mean square, by area, of the error of stress xx in the middle half of the beam over the greatest stress.
 fn stress_error(simulation: &Simulation, beam: &Beam, q: f64) -> f64 {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let covers = &slope.covers;
     let (mut sum, mut area) = (0.0, 0.0);
     for e in 0..covers.element_count() {

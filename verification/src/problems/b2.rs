@@ -137,7 +137,7 @@ fn start(simulation: &mut Simulation, beam: &Beam, kind: Kind) {
         }
     };
     let mut state = simulation.state().clone();
-    state.velocity = simulation.slope().covers.star_position.iter().map(|x| mode(*x) * speed).collect();
+    state.velocity = simulation.model().covers.star_position.iter().map(|x| mode(*x) * speed).collect();
     simulation.restore(state.clone());
     let energy = simulation.report().ledger.kinetic;
     state.ledger.baseline += energy;

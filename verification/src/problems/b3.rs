@@ -85,7 +85,7 @@ fn text(setup: &Setup, size: f64) -> String {
 
 /// Stress xx and yy (Pa) of every element.
 fn stresses(simulation: &Simulation) -> Vec<[f64; 2]> {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let covers = &slope.covers;
     let of = |e: usize| {
         let u = covers.element_covers[e].map(|i| simulation.state().displacement[i as usize]);
@@ -98,7 +98,7 @@ fn stresses(simulation: &Simulation) -> Vec<[f64; 2]> {
 
 /// Stress xx and yy (Pa) at y = 0 by an area-weighted straight line through all elements.
 fn base_stress(simulation: &Simulation, stress: &[[f64; 2]]) -> [f64; 2] {
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     [0, 1].map(|k| {
         let (mut w, mut y, mut s, mut yy, mut ys) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for (e, stress) in stress.iter().enumerate() {
@@ -115,7 +115,7 @@ fn base_stress(simulation: &Simulation, stress: &[[f64; 2]]) -> [f64; 2] {
 }
 
 fn profile(setup: &Setup, simulation: &Simulation, stress: &[[f64; 2]]) -> Plot {
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let [height, gamma, poisson] = ["height", "gamma", "poisson"].map(|name| setup.get(name));
     let computed =
         |k: usize| -> Vec<[f64; 2]> { stress.iter().zip(&covers.element_centroid).map(|(s, p)| [s[k], p.y]).collect() };

@@ -237,9 +237,9 @@ mod oblique {
             let (along, across) = ((x - middle).dot(&way), (x - middle).perp(&way));
             (-along.powi(2) - (across / 3.0).powi(2)).exp() * (2.0 * std::f64::consts::PI * along / 2.5).sin()
         };
-        let dt = simulation.slope().dt;
+        let dt = simulation.model().dt;
         let mut state = simulation.state().clone();
-        let stars = simulation.slope().covers.star_position.clone();
+        let stars = simulation.model().covers.star_position.clone();
         state.velocity = stars.iter().map(|x| motion * (1e-3 * packet(*x))).collect();
         // The displacement of f(t − q·x) is −∫ of its velocity along the way over the speed: summed along it.
         state.displacement = stars

@@ -170,7 +170,7 @@ fn found(simulation: &Simulation, r: f64, angle: f64) -> [f64; 2] {
 
 /// Radius (m) of a quarter ring about the opening that has the area of the rock that has yielded.
 fn yielded_radius(simulation: &Simulation, radius: f64) -> f64 {
-    let (covers, plastic) = (&simulation.slope().covers, &simulation.state().plastic);
+    let (covers, plastic) = (&simulation.model().covers, &simulation.state().plastic);
     let yielded = |e: &usize| plastic[*e] != [0.0; 4];
     let area: f64 = (0..covers.element_count()).filter(yielded).map(|e| covers.element_area[e]).sum();
     (radius * radius + 4.0 * area / std::f64::consts::PI).sqrt()

@@ -109,7 +109,7 @@ impl Block {
         let [toe, head] = [0, 1].map(|k| simulation.monitor(k));
         let side = upright + head.0 - toe.0;
         let turned = side.dot(&across).atan2(side.dot(&upright) / self.height);
-        let (slope, element) = (simulation.slope(), simulation.built().monitors[1].0);
+        let (slope, element) = (simulation.model(), simulation.built().monitors[1].0);
         let block = slope.covers.element_block[element] as usize;
         // Counter-clockwise is uphill.
         let spin = -block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block).2;
@@ -126,7 +126,7 @@ pub fn advance(
     time: f64,
     mut over: impl FnMut(&Simulation) -> bool,
 ) -> Result<StepReport, Trouble> {
-    while simulation.time() + 0.5 * simulation.slope().dt < time {
+    while simulation.time() + 0.5 * simulation.model().dt < time {
         simulation.advance(false)?;
         if over(simulation) {
             break;

@@ -100,7 +100,7 @@ impl Incline {
         let mut simulation = setup.simulation(name, self.text(setup.get("mesh")))?;
         run_stage(&mut simulation)?;
         simulation.next_stage()?;
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         let middle = turn(&[[0.52 * self.long(), 0.48]], -self.slope)[0];
         let element = covers.element_at(Point::from(middle)).ok_or(Trouble("the block is not there".to_owned()))?;
         let block = covers.element_block[element] as usize;
@@ -108,7 +108,7 @@ impl Incline {
             let mut state = simulation.state().clone();
             let kick = self.down() * speed;
             covers.covers_of(block).for_each(|i| state.velocity[i] += kick);
-            state.ledger.baseline += 0.5 * simulation.slope().mass_matrix.total[block] * speed * speed;
+            state.ledger.baseline += 0.5 * simulation.model().mass_matrix.total[block] * speed * speed;
             simulation.restore(state);
         }
         let mut slide = Slide { simulation, block, down: self.down(), start: 0.0, report: StepReport::default() };
@@ -128,7 +128,7 @@ struct Slide {
 
 impl Slide {
     fn place(&self) -> f64 {
-        let (slope, state) = (self.simulation.slope(), self.simulation.state());
+        let (slope, state) = (self.simulation.model(), self.simulation.state());
         block_motion(slope, state, &self.simulation.scratch().mass_matrix, self.block).0.dot(&self.down)
     }
 
@@ -281,7 +281,7 @@ fn stop(setup: &mut Setup, outcome: &mut Outcome) -> Result<(), Trouble> {
     let reason =
         "asked every 0.2 % of the run, and by whole steps; the shear of the last slip swings for some milliseconds";
     let time = Row::new("time until rest", "s", stopped.unwrap_or(f64::NAN), speed / brake);
-    let most = 0.01 * speed / brake + 2.0 * slide.simulation.slope().dt;
+    let most = 0.01 * speed / brake + 2.0 * slide.simulation.model().dt;
     outcome.rows.push(time.within(Tolerance::Absolute(most), reason));
     slide.advance(0.2)?;
     let row = Row::new("creep after that", "m", slide.way() - way, 0.0);

@@ -111,7 +111,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
     let slope = setup.get("a_deg");
     let (s, c) = slope.to_radians().sin_cos();
     let middle = Point::from(turned(&[[0.5 * BLOCK[0], 0.5 * BLOCK[1]]], slope)[0]);
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let element = covers.element_near(middle, 0.1).ok_or_else(|| Trouble("no rock in the block".into()))?;
     let block = covers.element_block[element] as usize;
     let third = simulation.steps_in(TRIAL / 3.0);
@@ -121,7 +121,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
         for step in 1..=third {
             report = simulation.advance(step == third)?;
         }
-        let motion = block_motion(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix, block);
+        let motion = block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, block);
         places.push(motion.0.dot(&Vector::new(c, -s)));
     }
     // From ½·a·t² at the last two times.

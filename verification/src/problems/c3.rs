@@ -105,12 +105,12 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     let (slope, length) = (setup.get("a_deg"), setup.get("length"));
     let middles = turned(&[[1.5 * length, 0.5 - STEP], [0.5 * length, 0.5]], slope);
     let (s, c) = slope.to_radians().sin_cos();
-    let covers = &simulation.slope().covers;
+    let covers = &simulation.model().covers;
     let block = |p: [f64; 2]| covers.element_near(Point::from(p), 0.1).map(|e| covers.element_block[e]);
     let blocks: Vec<u32> = middles.iter().filter_map(|p| block(*p)).collect();
     let along = |simulation: &Simulation, k: usize| {
         let motion =
-            block_motion(simulation.slope(), simulation.state(), &simulation.scratch().mass_matrix, blocks[k] as usize);
+            block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, blocks[k] as usize);
         motion.0.dot(&Vector::new(c, -s))
     };
     let start = [0, 1].map(|k| along(simulation, k));
@@ -138,7 +138,7 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
         places.push([along(simulation, 0), along(simulation, 1)]);
     }
     let push = pushes.iter().sum::<f64>() / pushes.len().max(1) as f64;
-    Ok(Slide { places, span: steps as f64 * simulation.slope().dt, push, curves, report })
+    Ok(Slide { places, span: steps as f64 * simulation.model().dt, push, curves, report })
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

@@ -130,7 +130,7 @@ fn modes(columns: &Columns, reduction: &Reduction, limit: f64) -> Vec<Row> {
 
 /// Modes by the motion of the failing blocks: none, turning by more than half of what its shift explains, or shifting.
 fn moving(columns: &Columns, reduction: &Reduction) -> Vec<Mode> {
-    let covers = &reduction.simulation.slope().covers;
+    let covers = &reduction.simulation.model().covers;
     let failing = reduction.first_unstable().map_or(&[][..], |trial| &trial.failing);
     let of = |(k, middle): (usize, &[f64; 2])| {
         let element = covers.element_at((*middle).into());

@@ -117,7 +117,7 @@ fn line_tractions(line: &[[f64; 2]], before: Field, after: Field, table: &str) -
 /// three and a half mesh sizes by least squares, weighted by area and nearness, and extrapolated where the point is
 /// on a boundary.
 pub fn stress_at(simulation: &Simulation, point: Point) -> [f64; 3] {
-    let (slope, state) = (simulation.slope(), simulation.state());
+    let (slope, state) = (simulation.model(), simulation.state());
     let covers = &slope.covers;
     let reach = REACH * covers.mesh.size;
     let (mut matrix, mut right) = ([[0.0; 6]; 6], [[0.0; 6]; 3]);
@@ -167,7 +167,7 @@ pub fn cartesian(p: Point, [rr, tt, rt]: [f64; 3]) -> [f64; 3] {
 /// Root mean square over the rock nearer than `reach` (m) to the origin of the difference between the stresses of the
 /// elements and a known field, by area.
 pub fn stress_error(simulation: &Simulation, reach: f64, field: Field) -> f64 {
-    let (slope, state) = (simulation.slope(), simulation.state());
+    let (slope, state) = (simulation.model(), simulation.state());
     let covers = &slope.covers;
     let (mut sum, mut area) = (0.0, 0.0);
     for e in (0..covers.element_count()).filter(|&e| covers.element_centroid[e].norm() < reach) {

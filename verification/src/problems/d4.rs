@@ -147,7 +147,7 @@ impl Test {
 /// lower.
 fn press(simulation: &mut Simulation, width: f64, total: f64, steps: u64) -> Result<Test, Trouble> {
     let upper: Vec<usize> =
-        (0..simulation.slope().supports.len()).filter(|&s| simulation.slope().supports[s].fix == 1).collect();
+        (0..simulation.model().supports.len()).filter(|&s| simulation.model().supports[s].fix == 1).collect();
     let height = height_of(simulation);
     let (mut curve, mut report) = (Vec::new(), StepReport::default());
     for step in 0..steps {
@@ -166,7 +166,7 @@ fn press(simulation: &mut Simulation, width: f64, total: f64, steps: u64) -> Res
 
 /// Height (m) of the sample up to the highest boundary point.
 fn height_of(simulation: &Simulation) -> f64 {
-    simulation.slope().boundary.reference.iter().fold(0.0, |a, p| a.max(p.y))
+    simulation.model().boundary.reference.iter().fold(0.0, |a, p| a.max(p.y))
 }
 
 fn test(setup: &mut Setup, strength: &Strength, b_deg: f64) -> Result<Test, Trouble> {
@@ -177,7 +177,7 @@ fn test(setup: &mut Setup, strength: &Strength, b_deg: f64) -> Result<Test, Trou
     let total = SHORTENING * height / setup.get("stiffness");
     let transit = height / (setup.get("stiffness") * strength.cap() / DENSITY).sqrt();
     let transits = if setup.quick { 500.0 } else { TRANSITS };
-    let steps = ((transits * transit / simulation.slope().dt / 20.0).ceil() as u64) * 20;
+    let steps = ((transits * transit / simulation.model().dt / 20.0).ceil() as u64) * 20;
     press(&mut simulation, width, total, steps)
 }
 

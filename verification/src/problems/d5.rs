@@ -61,7 +61,7 @@ fn case(setup: &Setup, solver: &str) -> String {
 
 /// Height (m) and velocity (m/s) of the mass.
 fn motion(simulation: &Simulation, height: f64) -> Result<(f64, f64), Trouble> {
-    let slope = simulation.slope();
+    let slope = simulation.model();
     let element = slope.covers.element_at(Point::new(0.51, height + 0.48));
     let block = slope.covers.element_block[element.ok_or_else(|| Trouble("D5: there is no mass".to_owned()))?];
     let (centre, velocity, ..) =

@@ -71,7 +71,7 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seco
         return Err(Trouble(format!("e2, {name}: has not come to rest in its time")));
     }
     simulation.next_stage()?;
-    let mass: f64 = simulation.slope().mass_matrix.total.iter().sum();
+    let mass: f64 = simulation.model().mass_matrix.total.iter().sum();
     let steps = simulation.steps_in(seconds);
     let (mut before, mut energy, mut last) = (Vec::new(), Vec::new(), None);
     for step in 0..steps {

@@ -17,7 +17,7 @@ pub struct Drive {
 impl Drive {
     /// The supports of a model along an axis.
     pub fn along(simulation: &Simulation, axis: usize) -> Self {
-        let supports = simulation.slope().supports.iter().enumerate();
+        let supports = simulation.model().supports.iter().enumerate();
         let rows = supports.filter(|(_, s)| s.direction[axis].abs() > 0.5).map(|(k, _)| k).collect();
         Self { rows, greatest: 0.0 }
     }

@@ -83,11 +83,11 @@ impl Slider<'_> {
         let (sin, cos) = self.dip.to_radians().sin_cos();
         let down = Vector::new(cos, -sin);
         let middle = Point::new(cos * 1.02 + sin * 0.48, cos * 0.48 - sin * 1.02);
-        let covers = &simulation.slope().covers;
+        let covers = &simulation.model().covers;
         let element = covers.element_near(middle, 1e-6).ok_or_else(|| Trouble("there is no block".into()))?;
         let block = covers.element_block[element] as usize;
         let motion = |simulation: &enmm::model::Simulation| {
-            let (slope, state) = (simulation.slope(), simulation.state());
+            let (slope, state) = (simulation.model(), simulation.state());
             let (centre, velocity, ..) = block_motion(slope, state, &simulation.scratch().mass_matrix, block);
             [centre.dot(&down), velocity.dot(&down)]
         };

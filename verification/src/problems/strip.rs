@@ -141,7 +141,7 @@ pub fn run(setup: &mut Setup, name: &str, strip: &Strip, until: f64) -> Result<M
 /// # Errors
 /// The run fails.
 pub fn follow(simulation: &mut Simulation, axis: usize, monitors: usize, until: f64) -> Result<Motion, Trouble> {
-    let dt = simulation.slope().dt;
+    let dt = simulation.model().dt;
     let steps = (until / dt).ceil() as u64;
     let mut motion = Motion { velocity: vec![Vec::new(); monitors], ..Motion::default() };
     for step in 0..steps {

@@ -14,7 +14,7 @@ use crate::types::*;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
     with_model(model.addr(), |model| {
-        let own = model.inner.simulation().slope().covers.block_count();
+        let own = model.inner.simulation().model().covers.block_count();
         // SAFETY: promised by the host.
         unsafe { pointers::write("count", count, own) }
     })

@@ -49,7 +49,7 @@ impl Model {
             velocity_max: totals.velocity_max,
             penetration_max: totals.penetration_max,
             unbalanced: totals.unbalanced,
-            critical_dt: self.inner.simulation().slope().critical_dt,
+            critical_dt: self.inner.simulation().model().critical_dt,
             open_contacts: totals.open_contacts,
             slipping_contacts: totals.slipping_contacts,
             locked_contacts: totals.locked_contacts,
@@ -62,7 +62,7 @@ impl Model {
     /// All contacts.
     pub fn contacts(&self) -> Vec<enmm_contact> {
         let simulation = self.inner.simulation();
-        let (places, boundary) = (simulation.places(), &simulation.slope().boundary);
+        let (places, boundary) = (simulation.places(), &simulation.model().boundary);
         let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
             let history = &contact.history;
@@ -152,7 +152,7 @@ impl Model {
     /// Boundary loops of the `wanted` blocks at their current places.
     fn loops(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, Vec<Point>)> {
         let simulation = self.inner.simulation();
-        let boundary = &simulation.slope().boundary;
+        let boundary = &simulation.model().boundary;
         let places = simulation.places();
         let mut loops = Vec::new();
         let mut k = 0;

@@ -83,7 +83,7 @@ impl Instance {
         }
         let loaded = resource::load(plan.resources).map_err(|error| error.to_string())?;
         let model = Cosimulation::new(&loaded).map_err(|error| error.to_string())?;
-        let blocks = model.simulation().slope().covers.block_count();
+        let blocks = model.simulation().model().covers.block_count();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, plan.version);
         if plan.token != table.token {
             let (given, own) = (plan.token, &table.token);

@@ -143,7 +143,7 @@ impl Instance {
     fn total(&mut self, total: Total) -> f64 {
         let model = &self.model;
         let last = model.simulation().state().events.list.len().checked_sub(1).and_then(|k| model.events().nth(k));
-        let slope = model.simulation().slope();
+        let slope = model.simulation().model();
         match total {
             Total::CriticalDt => slope.critical_dt,
             Total::InternalDt => model.internal_step(),

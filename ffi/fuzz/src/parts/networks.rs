@@ -57,7 +57,7 @@ fn attempt(random: &mut Random, trace: &mut Trace) -> Result<Outcome, String> {
             return Ok(Outcome::Done(1));
         }
     };
-    let (covers, noding) = (&model.slope().covers, &model.built().noding);
+    let (covers, noding) = (&model.model().covers, &model.built().noding);
     let blocks: f64 = (0..covers.block_count()).map(|b| covers.block_area(b)).sum();
     let elements: f64 = covers.element_area.iter().sum();
     let [wanted, around] = measures(outline);

@@ -118,7 +118,7 @@ pub struct FreeFieldPoint {
 
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
 #[derive(Debug, Clone)]
-pub struct Slope {
+pub struct Model {
     /// Covers, elements and blocks.
     pub covers: Covers,
     /// Covers and elements as a step passes over them.
@@ -193,7 +193,7 @@ pub struct Slope {
     pub failure_displacement: f64,
 }
 
-impl Slope {
+impl Model {
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
     pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
         cover::sample(&self.covers.element_covers[element], &self.covers.weights(element, p), field)
