@@ -35,13 +35,13 @@ fn search(criterion: &mut Criterion) {
     for model in [MODEL, Model::Slope(10_000, 4)] {
         let mut simulation = model.build().unwrap_or_else(|e| panic!("{e}"));
         simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        let (slope, scratch) = (simulation.model(), simulation.scratch());
+        let (slope, workspace) = (simulation.model(), simulation.workspace());
         let view = SearchView {
             boundary: &slope.boundary,
-            place: &scratch.place,
+            place: &workspace.place,
             cutoff: 0.25 * slope.covers.mesh.size,
             removed: &simulation.state().removed,
-            fixed: &scratch.mass_matrix.fixed,
+            fixed: &workspace.mass_matrix.fixed,
             serial: true,
         };
         let (mut grid, mut neighbours) = (SearchGrid::default(), NeighbourList::default());

@@ -40,14 +40,14 @@ fn stages(criterion: &mut Criterion) {
 
 /// Time (s) that a part of so many steps took.
 fn run(simulation: &mut Simulation, start: &State, steps: u64, part: fn(&Seconds) -> f64) -> f64 {
-    let before = part(&simulation.scratch().seconds);
+    let before = part(&simulation.workspace().seconds);
     for step in 0..steps {
         if step % STEPS == 0 {
             simulation.restore(start.clone());
         }
         simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
     }
-    part(&simulation.scratch().seconds) - before
+    part(&simulation.workspace().seconds) - before
 }
 
 criterion_group!(benches, stages);

@@ -45,7 +45,7 @@ fn every_point_falls_by_half_g_t_squared() {
             let block = block_at(&simulation, point);
             let slope = simulation.model();
             let (_, velocity, spin, _) =
-                block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block);
+                block_motion(slope, simulation.state(), &simulation.workspace().mass_matrix, block);
             // Rounding of v over the size of a block (0.4 m and more).
             assert!(spin.abs() <= 1e-11 * velocity.norm(), "spin {spin:e} at {point:?}");
         }

@@ -18,7 +18,7 @@ fn length(left: f64, right: f64, size: f64) -> f64 {
         rock(5e9, 2500.0)
     ));
     run_stage(&mut simulation);
-    simulation.scratch().contacts.iter().map(|c| c.length).sum()
+    simulation.workspace().contacts.iter().map(|c| c.length).sum()
 }
 
 /// The lengths of theory Eq. (13) add up exactly, also where corners meet nodes of the other face and where a corner is

@@ -79,7 +79,7 @@ fn the_upper_block_pushes_the_lower() {
                     blocks.contains(&c.pair.blocks[0]) && blocks.contains(&c.pair.blocks[1])
                 };
                 let push: f64 =
-                    simulation.scratch().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
+                    simulation.workspace().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
                 if window > 0 {
                     pushes.push(push / DENSITY);
                 }

@@ -95,7 +95,7 @@ fn fate(tangent: f64, seconds: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let mut simulation = slope(tangent);
     let (_, _, middles) = geometry();
     let blocks: Vec<usize> = middles.iter().map(|p| block_at(&simulation, *p)).collect();
-    let motion = |s: &Simulation, b: usize| block_motion(s.model(), s.state(), &s.scratch().mass_matrix, b);
+    let motion = |s: &Simulation, b: usize| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, b);
     let start: Vec<_> = blocks.iter().map(|&b| motion(&simulation, b).0).collect();
     let mut turned = vec![0.0; 16];
     let steps = simulation.steps_in(0.05);

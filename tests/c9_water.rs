@@ -54,8 +54,8 @@ fn pushed(simulation: &mut Simulation) -> (Vector, f64) {
     advance(simulation, 1);
     let (mut force, mut moment) = (Vector::zeros(), 0.0);
     for i in simulation.model().covers.covers_of(block) {
-        force += simulation.scratch().load_force[i];
-        moment += simulation.model().covers.star_position[i].perp(&simulation.scratch().load_force[i]);
+        force += simulation.workspace().load_force[i];
+        moment += simulation.model().covers.star_position[i].perp(&simulation.workspace().load_force[i]);
     }
     (force, moment)
 }
@@ -109,6 +109,6 @@ fn both_faces_of_a_joint_bear_opposite_forces_by_its_table_of_time() {
     );
     let mut simulation = slope.build(&load);
     let (force, _) = pushed(&mut simulation);
-    let total: Vector = simulation.scratch().load_force.iter().sum();
+    let total: Vector = simulation.workspace().load_force.iter().sum();
     assert!(total.norm() < 1e-6 && (force - Vector::new(-y, x) * 5e4).norm() < 1e-4, "{force} {total}");
 }

@@ -6,7 +6,7 @@ mod common;
 use common::simulation;
 use enmm::geometry::Vector;
 use enmm::io::bench::continuum_case;
-use enmm::state::{Model, Scratch, State};
+use enmm::state::{Model, State, Workspace};
 use enmm::step::{Regime, advance, prepare};
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.
@@ -45,9 +45,9 @@ fn kicked(slope: &Model, start: &State, displacement: impl Fn(usize) -> Vector) 
     let mut state = start.clone();
     (0..state.displacement.len()).for_each(|i| state.displacement[i] = displacement(i));
     let before = state.clone();
-    let mut scratch = Scratch::default();
-    prepare(slope, &state, &mut scratch);
-    advance(slope, Regime::Dynamic { damping: 0.0 }, &mut state, &mut scratch, false).expect("a step");
+    let mut workspace = Workspace::default();
+    prepare(slope, &state, &mut workspace);
+    advance(slope, Regime::Dynamic { damping: 0.0 }, &mut state, &mut workspace, false).expect("a step");
     (state.velocity, before)
 }
 

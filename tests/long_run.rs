@@ -30,7 +30,7 @@ fn kept(simulation: &mut Simulation) -> f64 {
     let with = |f: &dyn Fn(&Vector, &Vector) -> Vector| {
         let mut state = before.clone();
         state.velocity = before.velocity.iter().zip(after).map(|(a, b)| f(a, b)).collect();
-        energies(simulation.model(), &state, &simulation.scratch().mass_matrix)
+        energies(simulation.model(), &state, &simulation.workspace().mass_matrix)
     };
     let mean = with(&|a, b| (a + b) * 0.5);
     mean.kinetic - with(&|a, b| (b - a) * 0.5).kinetic + mean.strain

@@ -34,7 +34,7 @@ fn lighter_blocks_settle_to_the_same_place_in_fewer_steps() {
     let [long, short] = [&heavy, &light].map(|simulation| simulation.state().step);
     assert!(10 * short < 6 * long, "{short} of {long} steps");
     assert!(light.next_stage().unwrap());
-    let (own, rock) = (&light.scratch().mass_matrix, &light.model().mass_matrix);
+    let (own, rock) = (&light.workspace().mass_matrix, &light.model().mass_matrix);
     assert_eq!((own.lightness, rock.lightness), (1.0, 1.0));
     let free = (0..rock.polar.len()).filter(|&b| own.is_free(b));
     assert!(free.clone().count() > 1);

@@ -52,15 +52,15 @@ fn seconds() -> f64 {
 
 /// Bytes of model, state and buffers.
 fn bytes(simulation: &Simulation) -> [usize; 3] {
-    let (slope, state, scratch) = (simulation.model(), simulation.state(), simulation.scratch());
+    let (slope, state, workspace) = (simulation.model(), simulation.state(), simulation.workspace());
     let elements = slope.covers.element_count();
     println!("{} blocks, {elements} elements, {} covers", slope.covers.block_count(), slope.covers.cover_count());
-    for (heap, parts) in [("model", slope.memory()), ("state", state.memory()), ("buffers", scratch.memory())] {
+    for (heap, parts) in [("model", slope.memory()), ("state", state.memory()), ("buffers", workspace.memory())] {
         for (part, bytes) in parts.into_iter().filter(|part| part.1 > 0) {
             println!("{heap:<8} {part:<22} {:7.1} B an element", bytes as f64 / elements as f64);
         }
     }
-    [slope.bytes(), state.bytes(), scratch.bytes()]
+    [slope.bytes(), state.bytes(), workspace.bytes()]
 }
 
 /// Ten elements, sixteen boundary edges and as many contacts a block: the limits are 15 % above what was counted when

@@ -43,7 +43,7 @@ fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
         let far = if block % 50 == 7 { 30.0 } else { 1.0 };
         Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
     };
-    let place = simulation.scratch().place.iter().zip(&slope.boundary.block);
+    let place = simulation.workspace().place.iter().zip(&slope.boundary.block);
     place.map(|(p, &block)| p + away(block)).collect()
 }
 
@@ -55,7 +55,7 @@ fn the_search_finds_what_all_against_all_find() {
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
     let boundary = &simulation.model().boundary;
     assert!(boundary.partial.contains(&true), "there must be partial cuts");
-    let fixed = &simulation.scratch().mass_matrix.fixed;
+    let fixed = &simulation.workspace().mass_matrix.fixed;
     let removed: Vec<bool> = (0..fixed.len()).map(|block| block % 40 == 3).collect();
     let cutoff = 0.25 * simulation.model().covers.mesh.size;
     let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::geometry::Point;
 use crate::model::Simulation;
 use crate::model::build::ignored_traces;
-use crate::state::{Scratch, State};
+use crate::state::{State, Workspace};
 
 /// Share of a full cover's mass below which a cover counts as small.
 const SMALL_COVER: f64 = 1e-3;
@@ -66,7 +66,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     for (_, count) in covers.covers_by_star() {
         *stars_by_cover_count.entry(count).or_default() += 1;
     }
-    let (state, scratch) = simulation.look_ahead();
+    let (state, workspace) = simulation.look_ahead();
     let triangle = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
     Check {
         blocks: covers.block_count(),
@@ -78,15 +78,15 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         cover_masses: sorted(model.mass_matrix.row_sum.clone()),
         vertices: distinct(&covers.polygon_points),
         boundary_edges: built.boundary_pieces,
-        initial_contacts: scratch.contacts.len(),
+        initial_contacts: workspace.contacts.len(),
         critical_dt: model.critical_dt,
         small_covers_treated: small_covers(simulation, 2.0 * triangle),
         tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
         block_areas,
         merged_vertices: built.noding.merged_vertices,
         ignored_joints: ignored_traces(&built.noding).len(),
-        memory_bytes: (model.bytes() + 2 * state.bytes() + scratch.bytes()) as u64,
-        memory: memory(simulation, &state, &scratch),
+        memory_bytes: (model.bytes() + 2 * state.bytes() + workspace.bytes()) as u64,
+        memory: memory(simulation, &state, &workspace),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
 }
@@ -103,8 +103,8 @@ pub struct MemoryPart {
 }
 
 /// Memory of a model with this state and these buffers.
-fn memory(simulation: &Simulation, state: &State, scratch: &Scratch) -> Vec<MemoryPart> {
-    let heaps = [("model", simulation.model().memory()), ("state", state.memory()), ("buffers", scratch.memory())];
+fn memory(simulation: &Simulation, state: &State, workspace: &Workspace) -> Vec<MemoryPart> {
+    let heaps = [("model", simulation.model().memory()), ("state", state.memory()), ("buffers", workspace.memory())];
     let part = |heap| move |(part, bytes)| MemoryPart { heap, part, bytes };
     heaps.into_iter().flat_map(|(heap, parts)| parts.into_iter().map(part(heap))).collect()
 }

@@ -101,7 +101,7 @@ impl Simulation {
                 loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
                 Boundary {
                     block,
-                    fixed: self.scratch().mass_matrix.fixed[block as usize],
+                    fixed: self.workspace().mass_matrix.fixed[block as usize],
                     displacement: mean(model, &state.displacement, block as usize),
                     loops: polygons(&loops),
                 }
@@ -134,7 +134,7 @@ impl Simulation {
     pub fn motion_of(&self, block: usize) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
-        let mass_matrix = &self.scratch().mass_matrix;
+        let mass_matrix = &self.workspace().mass_matrix;
         let (_, velocity, spin, kinetic) = step::block_motion(model, state, mass_matrix, block);
         let displacement = mean(model, &state.displacement, block);
         let area = covers.block_area(block);

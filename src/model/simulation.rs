@@ -2,7 +2,7 @@
 
 use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Drive, Ledger, Model, Scratch, State};
+use crate::state::{Drive, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::build::{BuildStage, Built, build, index_of};
@@ -22,7 +22,7 @@ const MOVED_MIN: f64 = 1e-9;
 pub struct Simulation {
     case: Case,
     built: Built,
-    scratch: Scratch,
+    workspace: Workspace,
     regime: Regime,
 }
 
@@ -42,7 +42,7 @@ impl Simulation {
     pub fn build(case: Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Self, Invalid> {
         let built = build(&case, tell)?;
         let mut simulation =
-            Self { case, built, scratch: Scratch::default(), regime: Regime::Dynamic { damping: 0.0 } };
+            Self { case, built, workspace: Workspace::default(), regime: Regime::Dynamic { damping: 0.0 } };
         simulation.begin_stage(0, 0.0)?;
         Ok(simulation)
     }
@@ -75,8 +75,8 @@ impl Simulation {
     }
 
     /// Buffers of the last step: contacts and times.
-    pub fn scratch(&self) -> &Scratch {
-        &self.scratch
+    pub fn workspace(&self) -> &Workspace {
+        &self.workspace
     }
 
     /// The stage in progress.
@@ -92,7 +92,7 @@ impl Simulation {
 
     /// Whether steps keep to the calling thread.
     pub fn set_serial(&mut self, serial: bool) {
-        self.scratch.serial = serial;
+        self.workspace.serial = serial;
     }
 
     /// What a host has set, to be changed.
@@ -119,15 +119,15 @@ impl Simulation {
 
     /// Gives back the memory of the buffers, which the next step then fills anew: outputs need some of their own.
     pub fn drop_buffers(&mut self) {
-        let Scratch { serial, seconds, .. } = self.scratch;
-        self.scratch = Scratch { serial, seconds, ..Scratch::default() };
+        let Workspace { serial, seconds, .. } = self.workspace;
+        self.workspace = Workspace { serial, seconds, ..Workspace::default() };
         self.take_up();
     }
 
     /// Makes regime and buffers those of the state.
     fn take_up(&mut self) {
         self.regime = self.regime_of(self.built.state.stage as usize);
-        step::prepare(&self.built.model, &self.built.state, &mut self.scratch);
+        step::prepare(&self.built.model, &self.built.state, &mut self.workspace);
     }
 
     /// Begins every stage to come without taking a step, and goes back: what does not fit is told before the run.
@@ -161,7 +161,7 @@ impl Simulation {
     /// # Errors
     /// A numerical failure; the state is then spoilt and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
-        step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.scratch, report)
+        step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)
     }
 
     /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.
@@ -169,12 +169,12 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_part(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.scratch, dt)
+        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, dt)
     }
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances.
     pub fn report(&self) -> StepReport {
-        self.report_on(self.scratch.serial)
+        self.report_on(self.workspace.serial)
     }
 
     /// As [`Simulation::report`]; with `serial` on the calling thread alone.
@@ -190,18 +190,18 @@ impl Simulation {
     }
 
     /// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
-    pub fn look_ahead(&self) -> (State, Scratch) {
-        self.look_ahead_on(self.scratch.serial)
+    pub fn look_ahead(&self) -> (State, Workspace) {
+        self.look_ahead_on(self.workspace.serial)
     }
 
     /// As [`Simulation::look_ahead`]; with `serial` on the calling thread alone.
-    pub fn look_ahead_on(&self, serial: bool) -> (State, Scratch) {
+    pub fn look_ahead_on(&self, serial: bool) -> (State, Workspace) {
         step::look_ahead(self.model(), self.regime, self.state(), serial)
     }
 
     /// Shows [`Simulation::contacts`] one by one: all of them together can be larger than the model.
     pub fn each_contact(&self, mut see: impl FnMut(&VertexEdge)) {
-        step::each_contact(self.model(), self.regime, self.state(), self.scratch.serial, &mut see);
+        step::each_contact(self.model(), self.regime, self.state(), self.workspace.serial, &mut see);
     }
 
     /// Whether the stage has covered its duration, or is static and at rest by this report.
@@ -265,7 +265,7 @@ impl Simulation {
         self.regime = self.regime_of(stage);
         let (model, state) = (&self.built.model, &mut self.built.state);
         step::begin_stage(model, self.regime, state, stage as u32, start, at_rest);
-        step::prepare(model, state, &mut self.scratch);
+        step::prepare(model, state, &mut self.workspace);
         let after = self.energies();
         let sum = |l: &Ledger| l.kinetic + l.strain + l.potential;
         let ledger = &mut self.built.state.ledger;
@@ -274,10 +274,10 @@ impl Simulation {
     }
 
     fn energies(&self) -> Ledger {
-        if self.scratch.mass_matrix.mass.is_empty() {
+        if self.workspace.mass_matrix.mass.is_empty() {
             return Ledger::default();
         }
-        step::energies(self.model(), self.state(), &self.scratch.mass_matrix)
+        step::energies(self.model(), self.state(), &self.workspace.mass_matrix)
     }
 
     fn excavate(&mut self, stage: usize) -> Result<(), Invalid> {
@@ -366,7 +366,7 @@ impl Simulation {
 
     /// Linear and angular momentum of the free blocks, see [`step::momentum`].
     pub fn momentum(&self) -> (Vector, f64) {
-        step::momentum(self.model(), self.state(), &self.scratch.mass_matrix)
+        step::momentum(self.model(), self.state(), &self.workspace.mass_matrix)
     }
 }
 

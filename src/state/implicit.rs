@@ -28,7 +28,7 @@ pub struct Implicit {
 
 /// Buffers of the implicit integrator.
 #[derive(Debug, Clone, Default)]
-pub struct ImplicitScratch {
+pub struct ImplicitWorkspace {
     /// System matrix of the step.
     pub matrix: CoverMatrix,
     /// Places in the matrix of each element's pairs of covers.

@@ -4,7 +4,7 @@ use crate::contact::Boundary;
 use crate::cover::Covers;
 use crate::mechanics::MassMatrix;
 
-use super::{Events, ImplicitScratch, Inputs, Model, Scratch, State};
+use super::{Events, ImplicitWorkspace, Inputs, Model, State, Workspace};
 
 /// What a part of a heap is, and its bytes.
 pub type Part = (&'static str, usize);
@@ -72,7 +72,7 @@ impl State {
     }
 }
 
-impl Scratch {
+impl Workspace {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
         total(&self.memory())
@@ -134,8 +134,9 @@ fn events(events: &Events) -> usize {
     sum(&[&events.list, &events.touching, &events.detached, &events.slipped, &events.failed])
 }
 
-fn implicit(implicit: &ImplicitScratch) -> usize {
-    let ImplicitScratch { moved, offset, applied, applied_before, internal, internal_before, residual, .. } = implicit;
+fn implicit(implicit: &ImplicitWorkspace) -> usize {
+    let ImplicitWorkspace { moved, offset, applied, applied_before, internal, internal_before, residual, .. } =
+        implicit;
     sum(&[moved, offset, applied, applied_before, internal, internal_before, residual, &implicit.field])
         + sum(&[&implicit.unknowns, &implicit.held])
 }

@@ -1,4 +1,4 @@
-//! The three heaps: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Scratch`] (buffers).
+//! The three heaps: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Workspace`] (buffers).
 
 mod element;
 mod events;
@@ -7,17 +7,17 @@ mod inputs;
 mod ledger;
 mod memory;
 mod model;
-mod scratch;
+mod workspace;
 
 pub use events::{Event, EventKind, Events};
-pub use implicit::{Implicit, ImplicitScratch, Rule};
+pub use implicit::{Implicit, ImplicitWorkspace, Rule};
 pub use inputs::{Drive, Inputs};
 pub use ledger::Ledger;
 pub use memory::Part;
 pub use model::{
     BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
 };
-pub use scratch::{ContactOutcome, PatchSums, Scratch, Seconds};
+pub use workspace::{ContactOutcome, PatchSums, Seconds, Workspace};
 
 use serde::{Deserialize, Serialize};
 

@@ -349,7 +349,7 @@ impl Pass<'_> {
         (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
     }
 
-    /// Fills predicted velocities and block motions of the scratch, and the largest speed before.
+    /// Fills predicted velocities and block motions of the workspace, and the largest speed before.
     pub fn kick(&self, out: &mut KickOut) {
         let chunks = &self.model.chunks;
         let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };

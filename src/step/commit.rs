@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::mechanics;
-use crate::state::{Ledger, Scratch};
+use crate::state::{Ledger, Workspace};
 
 use super::blocks::{self, Finish, Finished, Totals};
 use super::{Regime, Step, StepReport, guard, report};
@@ -24,17 +24,17 @@ impl Step<'_> {
             self.drift(dt);
         }
         let state = &mut *self.state;
-        for row in &self.scratch.bolts {
+        for row in &self.workspace.bolts {
             let segment = &self.model.bolts[row.segment as usize];
             let bolt = &mut state.bolts[row.segment as usize];
             let length = segment.span(&self.model.covers.star_position, &state.displacement).norm();
             *bolt = segment.after(bolt, length, row.force);
         }
-        std::mem::swap(&mut state.velocity, &mut self.scratch.predicted);
+        std::mem::swap(&mut state.velocity, &mut self.workspace.predicted);
         state.ledger.add_works(&works, 1.0);
         state.dt_last = dt;
         self.time += dt;
-        self.scratch.seconds.commit += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
         report
     }
 
@@ -43,7 +43,7 @@ impl Step<'_> {
     fn finish(&mut self, dt: f64) -> Totals {
         let is_loaded = self.extra(dt) != Vector::zeros();
         let (model, state) = (self.model, &mut *self.state);
-        let Scratch {
+        let Workspace {
             mass_matrix,
             predicted,
             increment,
@@ -56,7 +56,7 @@ impl Step<'_> {
             movable,
             exposed,
             ..
-        } = &mut *self.scratch;
+        } = &mut *self.workspace;
         let finish = Finish {
             model,
             mass_matrix,
@@ -80,16 +80,16 @@ impl Step<'_> {
 
     /// Moves the covers with the final velocities after a report.
     fn drift(&mut self, dt: f64) {
-        for (u, v) in self.state.displacement.iter_mut().zip(&self.scratch.predicted) {
+        for (u, v) in self.state.displacement.iter_mut().zip(&self.workspace.predicted) {
             *u += v * dt;
         }
-        self.scratch.sums.iter_mut().for_each(|sums| sums.is_near = false);
+        self.workspace.sums.iter_mut().for_each(|sums| sums.is_near = false);
     }
 
     /// Velocities after damping and before any force.
     fn fill_damped(&mut self) {
         let (model, state) = (self.model, &*self.state);
-        let Scratch { mass_matrix, damped, .. } = &mut *self.scratch;
+        let Workspace { mass_matrix, damped, .. } = &mut *self.workspace;
         for block in 0..model.covers.block_count() {
             let covers = blocks::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
             let out = &mut damped[model.covers.covers_of(block)];
@@ -104,16 +104,17 @@ impl Step<'_> {
     /// Energies at the start of this sub-step and the unbalanced ratio.
     fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
         self.fill_damped();
-        let (model, state, scratch) = (self.model, &*self.state, &*self.scratch);
-        let kinetic = |velocity: &[Vector]| report::kinetic(model, &scratch.mass_matrix, &state.displacement, velocity);
+        let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
+        let kinetic =
+            |velocity: &[Vector]| report::kinetic(model, &workspace.mass_matrix, &state.displacement, velocity);
         let mut ledger = state.ledger;
         ledger.add_works(works, 0.5);
-        ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&scratch.predicted));
+        ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&workspace.predicted));
         ledger.strain = report::strain(model, state);
         ledger.potential = report::potential(model, state);
-        ledger.stored = report::stored(model, state, scratch);
+        ledger.stored = report::stored(model, state, workspace);
         ledger.bolt_stored = report::bolt_stored(model, state);
-        let contacts = scratch.contacts.iter();
+        let contacts = workspace.contacts.iter();
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
         StepReport {
             time: self.time,
@@ -129,13 +130,13 @@ impl Step<'_> {
 
     /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
     fn unbalanced(&self, dt: f64) -> f64 {
-        let (mass_matrix, scratch) = (&self.model.mass_matrix, &*self.scratch);
+        let (mass_matrix, workspace) = (&self.model.mass_matrix, &*self.workspace);
         let kick_dt = 0.5 * (self.state.dt_last + dt);
         let acceleration = self.acceleration(dt);
         let (mut net, mut applied) = (0.0, 0.0);
         for i in 0..mass_matrix.mass.len() {
-            net += ((scratch.predicted[i] - scratch.damped[i]) * (mass_matrix.mass[i] / kick_dt)).norm_squared();
-            applied += (scratch.load_force[i] + acceleration * mass_matrix.row_sum[i]).norm_squared();
+            net += ((workspace.predicted[i] - workspace.damped[i]) * (mass_matrix.mass[i] / kick_dt)).norm_squared();
+            applied += (workspace.load_force[i] + acceleration * mass_matrix.row_sum[i]).norm_squared();
         }
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
         report::unbalanced(net, applied.max(stage)).sqrt()
@@ -148,9 +149,9 @@ impl Step<'_> {
         }
         self.fill_damped();
         let kick_dt = 0.5 * (self.state.dt_last + dt);
-        let scratch = &*self.scratch;
+        let workspace = &*self.workspace;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {
-            *force = (scratch.predicted[i] - scratch.damped[i]) * (self.model.mass_matrix.mass[i] / kick_dt);
+            *force = (workspace.predicted[i] - workspace.damped[i]) * (self.model.mass_matrix.mass[i] / kick_dt);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::ContactState;
 use crate::geometry::Vector;
-use crate::state::{Event, EventKind, Model, Scratch, State};
+use crate::state::{Event, EventKind, Model, State, Workspace};
 
 use super::Regime;
 
@@ -10,8 +10,8 @@ use super::Regime;
 const SLIP_MIN: f64 = 1e-6;
 
 /// Notes what the step that ends at `time` (s) has brought; static stages bring nothing, since their path is no motion.
-pub fn note(model: &Model, regime: Regime, state: &mut State, scratch: &mut Scratch, time: f64) {
-    let touching = &mut scratch.touching;
+pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Workspace, time: f64) {
+    let touching = &mut workspace.touching;
     touching.clear();
     touching.resize(model.covers.block_count(), false);
     for contact in &state.contacts {
@@ -20,18 +20,18 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, scratch: &mut Scra
         touching[model.boundary.block[contact.edge as usize] as usize] = true;
     }
     if let Regime::Dynamic { .. } = regime {
-        note_detached(state, scratch, time);
+        note_detached(state, workspace, time);
         note_slipped(model, state, time);
-        note_failed(model, state, scratch, time);
+        note_failed(model, state, workspace, time);
     }
-    state.events.touching.copy_from_slice(&scratch.touching);
+    state.events.touching.copy_from_slice(&workspace.touching);
 }
 
-fn note_detached(state: &mut State, scratch: &Scratch, time: f64) {
+fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
     let events = &mut state.events;
-    for block in 0..scratch.touching.len() {
-        let free = !scratch.mass_matrix.fixed[block] && !state.removed[block];
-        let left = events.touching[block] && !scratch.touching[block];
+    for block in 0..workspace.touching.len() {
+        let free = !workspace.mass_matrix.fixed[block] && !state.removed[block];
+        let left = events.touching[block] && !workspace.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
             events.list.push(Event { kind: EventKind::Detached, subject: block as u32, time });
@@ -54,14 +54,14 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
     }
 }
 
-fn note_failed(model: &Model, state: &mut State, scratch: &mut Scratch, time: f64) {
+fn note_failed(model: &Model, state: &mut State, workspace: &mut Workspace, time: f64) {
     let limit = model.failure_displacement;
     for (first, chunk) in model.chunks.iter().enumerate().filter(|(_, chunk)| !chunk.blocks.is_empty()) {
         let parts = first..first + model.chunks.parts(first).len().max(1);
-        if scratch.sums[parts].iter().all(|sums| sums.is_near) {
+        if workspace.sums[parts].iter().all(|sums| sums.is_near) {
             continue;
         }
-        for block in chunk.blocks.clone().filter(|&b| !scratch.mass_matrix.fixed[b] && !state.removed[b]) {
+        for block in chunk.blocks.clone().filter(|&b| !workspace.mass_matrix.fixed[b] && !state.removed[b]) {
             if state.events.failed[block] {
                 continue;
             }
@@ -74,5 +74,5 @@ fn note_failed(model: &Model, state: &mut State, scratch: &mut Scratch, time: f6
         }
     }
     // An implicit step, which looks at no displacement, must not find these.
-    scratch.sums.iter_mut().for_each(|sums| sums.is_near = false);
+    workspace.sums.iter_mut().for_each(|sums| sums.is_near = false);
 }

@@ -63,13 +63,13 @@ impl Step<'_> {
             self.guard_speeds()?;
         }
         let limit = model.penetration_limit;
-        let scratch = &*self.scratch;
-        if scratch.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
+        let workspace = &*self.workspace;
+        if workspace.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
             return Ok(());
         }
-        match scratch.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
+        match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let place = scratch.place[model.boundary.node_point[contact.history.node as usize] as usize];
+                let place = workspace.place[model.boundary.node_point[contact.history.node as usize] as usize];
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
                 Err(self.failed(contact.pair.blocks[0], place, failure))
             }

@@ -23,7 +23,7 @@ pub(crate) use touch::CUTOFF;
 
 use crate::contact::{SolverReport, VertexEdge};
 use crate::mechanics::Damping;
-use crate::state::{Model, Scratch, State};
+use crate::state::{Model, State, Workspace};
 
 use touch::CONTACTS;
 
@@ -62,11 +62,11 @@ pub fn advance(
     model: &Model,
     regime: Regime,
     state: &mut State,
-    scratch: &mut Scratch,
+    workspace: &mut Workspace,
     report: bool,
 ) -> Result<StepReport, StepError> {
     let rest = model.dt - state.part;
-    let mut step = Step::new(model, regime, state, scratch);
+    let mut step = Step::new(model, regime, state, workspace);
     step.report = report;
     let outcome = step.on_threads(rest);
     step.guard()?;
@@ -74,7 +74,7 @@ pub fn advance(
     state.step += 1;
     state.part = 0.0;
     let time = state.stage_start + state.stage_step as f64 * model.dt;
-    events::note(model, regime, state, scratch, time);
+    events::note(model, regime, state, workspace, time);
     Ok(outcome)
 }
 
@@ -86,10 +86,10 @@ pub fn advance_part(
     model: &Model,
     regime: Regime,
     state: &mut State,
-    scratch: &mut Scratch,
+    workspace: &mut Workspace,
     dt: f64,
 ) -> Result<StepReport, StepError> {
-    let mut step = Step::new(model, regime, state, scratch);
+    let mut step = Step::new(model, regime, state, workspace);
     let outcome = step.on_threads(dt);
     step.guard()?;
     state.part += dt;
@@ -99,10 +99,10 @@ pub fn advance_part(
 /// Energies and the unbalanced ratio that the next step will find at its start; nothing advances. With `serial` it
 /// keeps to the calling thread.
 pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) -> StepReport {
-    let mut scratch = Scratch { serial, ..Scratch::default() };
-    prepare(model, &state, &mut scratch);
+    let mut workspace = Workspace { serial, ..Workspace::default() };
+    prepare(model, &state, &mut workspace);
     let rest = model.dt - state.part;
-    let mut step = Step::new(model, regime, &mut state, &mut scratch);
+    let mut step = Step::new(model, regime, &mut state, &mut workspace);
     step.report = true;
     match &model.implicit {
         Some(implicit) => step.implicit_outlook(implicit, rest),
@@ -111,35 +111,35 @@ pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) ->
 }
 
 /// A copy of the state, with buffers of its own.
-fn beside(model: &Model, state: &State, serial: bool) -> (State, Scratch) {
-    let mut scratch = Scratch { serial, ..Scratch::default() };
-    prepare(model, state, &mut scratch);
-    (state.clone(), scratch)
+fn beside(model: &Model, state: &State, serial: bool) -> (State, Workspace) {
+    let mut workspace = Workspace { serial, ..Workspace::default() };
+    prepare(model, state, &mut workspace);
+    (state.clone(), workspace)
 }
 
 /// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
 /// it keeps to the calling thread.
-pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) -> (State, Scratch) {
-    let (mut state, mut scratch) = beside(model, state, serial);
+pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) -> (State, Workspace) {
+    let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
-    let mut step = Step::new(model, regime, &mut state, &mut scratch);
+    let mut step = Step::new(model, regime, &mut state, &mut workspace);
     if model.implicit.is_some() {
         step.implicit_contacts(dt);
     } else {
         step.set_out(dt);
         step.touch(dt);
     }
-    (state, scratch)
+    (state, workspace)
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
 pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
-    let (mut state, mut scratch) = beside(model, state, serial);
+    let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
-    let mut step = Step::new(model, regime, &mut state, &mut scratch);
+    let mut step = Step::new(model, regime, &mut state, &mut workspace);
     if model.implicit.is_some() {
         step.implicit_contacts(dt);
-        return scratch.contacts.iter().for_each(see);
+        return workspace.contacts.iter().for_each(see);
     }
     step.set_out(dt);
     step.entrance_by_pieces(dt, see);
@@ -161,7 +161,7 @@ struct Step<'a> {
     model: &'a Model,
     regime: Regime,
     state: &'a mut State,
-    scratch: &'a mut Scratch,
+    workspace: &'a mut Workspace,
     time: f64,
     report: bool,
     damping: Damping,
@@ -172,13 +172,13 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    fn new(model: &'a Model, regime: Regime, state: &'a mut State, scratch: &'a mut Scratch) -> Self {
+    fn new(model: &'a Model, regime: Regime, state: &'a mut State, workspace: &'a mut Workspace) -> Self {
         let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
         Self {
             model,
             regime,
             state,
-            scratch,
+            workspace,
             time,
             report: false,
             damping: Damping::Deformation(0.0),
@@ -193,7 +193,7 @@ impl Step<'_> {
     /// dearer for every parallel part by itself.
     fn on_threads(&mut self, dt: f64) -> StepReport {
         let is_small = self.model.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
-        if self.scratch.serial || is_small { self.interval(dt, 0) } else { rayon::scope(|_| self.interval(dt, 0)) }
+        if self.workspace.serial || is_small { self.interval(dt, 0) } else { rayon::scope(|_| self.interval(dt, 0)) }
     }
 
     /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
@@ -235,7 +235,7 @@ impl Step<'_> {
             self.state.neighbours.pairs.clear();
             self.state.neighbours.pairs.extend_from_slice(piece);
             self.touch(dt);
-            self.scratch.contacts.iter().for_each(&mut *see);
+            self.workspace.contacts.iter().for_each(&mut *see);
             rest = others;
         }
     }

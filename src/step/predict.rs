@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::geometry::Vector;
 use crate::mechanics::Damping;
-use crate::state::Scratch;
+use crate::state::Workspace;
 
 use super::blocks::KickOut;
 use super::{DECAY_MAX, Regime, Step, applied, blocks, ramp, yielding};
@@ -13,8 +13,8 @@ impl Step<'_> {
     /// Plastic strain at the current displacements.
     pub(super) fn yield_rock(&mut self) {
         let clock = Instant::now();
-        yielding::update(self.model, self.state, self.scratch, self.time);
-        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        yielding::update(self.model, self.state, self.workspace, self.time);
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
     /// Internal forces, loads and the kick of every block without contact forces.
@@ -24,10 +24,10 @@ impl Step<'_> {
         self.load();
         self.damping = self.damping_of(dt);
         let (acceleration, grain, is_loaded) =
-            (self.acceleration(dt), blocks::grain(self.scratch.serial), self.scratch.is_loaded);
+            (self.acceleration(dt), blocks::grain(self.workspace.serial), self.workspace.is_loaded);
         self.damp_blocks();
-        let Scratch { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
-            &mut *self.scratch;
+        let Workspace { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
+            &mut *self.workspace;
         let pass = blocks::Pass {
             model: self.model,
             state: &*self.state,
@@ -41,18 +41,18 @@ impl Step<'_> {
             load_force: if is_loaded { load_force } else { &[] },
         };
         pass.kick(&mut KickOut { predicted, motion, start, sums });
-        self.scratch.speed_max = self.scratch.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
+        self.workspace.speed_max = self.workspace.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
         self.kick_columns(dt);
-        for (spin, motion) in self.scratch.mass_matrix.spin.iter_mut().zip(&self.scratch.motion) {
+        for (spin, motion) in self.workspace.mass_matrix.spin.iter_mut().zip(&self.workspace.motion) {
             *spin = motion.spin;
         }
-        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
     }
 
     /// Damping of every block, when the step or the masses are no longer those of the step before.
     fn damp_blocks(&mut self) {
         let (model, damping) = (self.model, self.damping);
-        let Scratch { mass_matrix, damping: of_blocks, damping_of, .. } = &mut *self.scratch;
+        let Workspace { mass_matrix, damping: of_blocks, damping_of, .. } = &mut *self.workspace;
         if *damping_of != Some(damping) {
             *damping_of = Some(damping);
             let blocks = 0..model.covers.block_count();
@@ -63,14 +63,14 @@ impl Step<'_> {
 
     /// Forces of loads, when there are any.
     fn load(&mut self) {
-        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
-        let was_loaded = std::mem::replace(&mut scratch.is_loaded, applied::pushes(model, state));
-        if was_loaded || scratch.is_loaded {
-            scratch.load_force.fill(Vector::zeros());
+        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
+        let was_loaded = std::mem::replace(&mut workspace.is_loaded, applied::pushes(model, state));
+        if was_loaded || workspace.is_loaded {
+            workspace.load_force.fill(Vector::zeros());
         }
-        if scratch.is_loaded {
+        if workspace.is_loaded {
             let ramp = ramp(self.regime, self.time - state.stage_start);
-            applied::push_forces(model, state, self.time, ramp, &mut scratch.load_force);
+            applied::push_forces(model, state, self.time, ramp, &mut workspace.load_force);
         }
     }
 

@@ -2,30 +2,31 @@
 
 use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
-use crate::state::{Model, Scratch, State};
+use crate::state::{Model, State, Workspace};
 
 use super::{Regime, applied, implicit, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
-pub fn prepare(model: &Model, state: &State, scratch: &mut Scratch) {
+pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     let covers = model.covers.cover_count();
-    for field in [&mut scratch.load_force, &mut scratch.predicted, &mut scratch.damped, &mut scratch.increment] {
+    for field in [&mut workspace.load_force, &mut workspace.predicted, &mut workspace.damped, &mut workspace.increment]
+    {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
-    scratch.motion.resize(model.covers.block_count(), Default::default());
-    scratch.start.resize(model.covers.block_count(), Default::default());
-    scratch.sums.resize(model.chunks.len(), Default::default());
-    scratch.push.resize(model.covers.block_count(), Default::default());
-    scratch.columns.clear();
-    scratch.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
-    scratch.trace_law.clear();
-    scratch.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law as usize]));
-    hold(model, state, scratch);
-    expose(model, &mut scratch.exposed);
-    scratch.open_close.prepare(&scratch.mass_matrix, &model.supports, &scratch.rows);
-    implicit::prepare(model, &scratch.mass_matrix, &mut scratch.implicit);
+    workspace.motion.resize(model.covers.block_count(), Default::default());
+    workspace.start.resize(model.covers.block_count(), Default::default());
+    workspace.sums.resize(model.chunks.len(), Default::default());
+    workspace.push.resize(model.covers.block_count(), Default::default());
+    workspace.columns.clear();
+    workspace.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
+    workspace.trace_law.clear();
+    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law as usize]));
+    hold(model, state, workspace);
+    expose(model, &mut workspace.exposed);
+    workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
+    implicit::prepare(model, &workspace.mass_matrix, &mut workspace.implicit);
 }
 
 /// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
@@ -41,9 +42,9 @@ fn expose(model: &Model, exposed: &mut Vec<bool>) {
 }
 
 /// Masses and support rows under the fixities that hold and the blocks that are gone.
-fn hold(model: &Model, state: &State, scratch: &mut Scratch) {
-    scratch.mass_matrix.clone_from(&model.mass_matrix);
-    let mass_matrix = &mut scratch.mass_matrix;
+fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
+    workspace.mass_matrix.clone_from(&model.mass_matrix);
+    let mass_matrix = &mut workspace.mass_matrix;
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
             mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize] as usize);
@@ -54,12 +55,12 @@ fn hold(model: &Model, state: &State, scratch: &mut Scratch) {
         mass_matrix.hold_block(&model.covers, block);
         model.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
-    scratch.rows.clear();
+    workspace.rows.clear();
     let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
     for (_, support) in model.supports.iter().enumerate().filter(holds) {
         mass_matrix.hold_block(&model.covers, support.block as usize);
     }
-    scratch.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
+    workspace.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
         displacement: 0.0,
         target: 0.0,
@@ -73,10 +74,10 @@ fn hold(model: &Model, state: &State, scratch: &mut Scratch) {
         mass_matrix.lighten(model.mass_scaling);
     }
     mass_matrix.mark_fixed(&model.covers);
-    scratch.damping_of = None;
+    workspace.damping_of = None;
     let is_movable = |i: usize| mass_matrix.inverse[i].x > 0.0 && mass_matrix.inverse[i].y > 0.0;
-    scratch.movable.clear();
-    scratch.movable.extend(model.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
+    workspace.movable.clear();
+    workspace.movable.extend(model.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.

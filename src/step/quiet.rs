@@ -62,7 +62,7 @@ impl Step<'_> {
             };
             let drive = ColumnDrive { acceleration, wave, kick: length };
             let decay = |block: u32| (-(damping * dt * model.block_frequency[block as usize]).min(DECAY_MAX)).exp();
-            column.kick(&state.columns[k], &drive, decay, &mut self.scratch.columns[k]);
+            column.kick(&state.columns[k], &drive, decay, &mut self.workspace.columns[k]);
         }
     }
 
@@ -71,7 +71,7 @@ impl Step<'_> {
         if !matches!(self.regime, Regime::Dynamic { .. }) {
             return;
         }
-        for (column, velocity) in self.state.columns.iter_mut().zip(&self.scratch.columns) {
+        for (column, velocity) in self.state.columns.iter_mut().zip(&self.workspace.columns) {
             column.velocity.copy_from_slice(velocity);
             column.displacement.iter_mut().zip(velocity).for_each(|(u, v)| *u += v * dt);
         }
@@ -82,14 +82,14 @@ impl Step<'_> {
     pub(super) fn load_supports(&mut self, dt: f64) {
         let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));
         let regime = self.regime;
-        let scratch = &mut *self.scratch;
+        let workspace = &mut *self.workspace;
         let mut wave = (u32::MAX, Vector::zeros());
         let mut beside = model.free_field.iter().peekable();
-        for row in &mut scratch.rows {
+        for row in &mut workspace.rows {
             let k = row.support as usize;
             let support = &model.supports[k];
             row.displacement = support.sample(&state.displacement) - state.support_rest[k];
-            row.approach = support.sample(&scratch.predicted);
+            row.approach = support.sample(&workspace.predicted);
             row.force = state.support_force[k];
             let Resistance::Dashpot(quiet) = support.resistance else {
                 row.target = support.preload - support.stiffness * row.displacement;
@@ -106,7 +106,7 @@ impl Step<'_> {
             if let (Some(point), Some(column)) =
                 (beside.next_if(|point| point.support == row.support), model.quiets[quiet as usize].column)
             {
-                let (own, after) = (&state.columns[column as usize], &scratch.columns[column as usize]);
+                let (own, after) = (&state.columns[column as usize], &workspace.columns[column as usize]);
                 let velocity = point.at.sample(&own.velocity) + point.at.sample(after);
                 let [a, b] = point.ends.map(|end| end.sample(&own.displacement));
                 row.target += row.viscosity * velocity.dot(&support.direction) + (b - a).dot(&point.stiffness);

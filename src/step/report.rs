@@ -3,7 +3,7 @@
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, MassMatrix};
-use crate::state::{Ledger, Model, Scratch, State};
+use crate::state::{Ledger, Model, State, Workspace};
 
 use super::blocks::block_covers;
 use super::{implicit, quiet};
@@ -70,7 +70,7 @@ pub(super) fn potential(model: &Model, state: &State) -> f64 {
 }
 
 /// Energy (J/m) stored in the springs of contacts and supports.
-pub(super) fn stored(model: &Model, state: &State, scratch: &Scratch) -> f64 {
+pub(super) fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64 {
     let support = |row: &crate::contact::SupportRow| {
         let support = &model.supports[row.support as usize];
         if support.is_dashpot() {
@@ -78,8 +78,8 @@ pub(super) fn stored(model: &Model, state: &State, scratch: &Scratch) -> f64 {
         }
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
-    let contacts = scratch.contacts.iter().map(VertexEdge::stored_energy).sum::<f64>();
-    let supports = scratch.rows.iter().map(support).sum::<f64>();
+    let contacts = workspace.contacts.iter().map(VertexEdge::stored_energy).sum::<f64>();
+    let supports = workspace.rows.iter().map(support).sum::<f64>();
     let kept = |(k, s): (usize, &Support)| 0.5 * state.support_force[k].powi(2) / s.stiffness;
     contacts + supports + quiet::frozen(model, state).map(kept).sum::<f64>()
 }

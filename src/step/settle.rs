@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::contact::{ContactHistory, ContactState, JointLaw, VertexEdge};
 use crate::geometry::Vector;
-use crate::state::{ContactOutcome, Scratch};
+use crate::state::{ContactOutcome, Workspace};
 
 use super::Step;
 use super::touch::CONTACTS;
@@ -82,7 +82,7 @@ impl Step<'_> {
     /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
     pub(super) fn settle_contacts(&mut self, dt: f64) {
         let state = &mut *self.state;
-        let Scratch { contacts, predicted, outcomes, serial, .. } = &mut *self.scratch;
+        let Workspace { contacts, predicted, outcomes, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
         let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
@@ -103,7 +103,7 @@ impl Step<'_> {
             counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
             counters.penetration_max = counters.penetration_max.max(outcome.penetration);
         }
-        for row in &self.scratch.rows {
+        for row in &self.workspace.rows {
             state.support_force[row.support as usize] = row.force;
         }
     }

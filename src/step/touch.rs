@@ -9,7 +9,7 @@ use crate::contact::{
 };
 use crate::cover::Weights;
 use crate::geometry::Point;
-use crate::state::Scratch;
+use crate::state::Workspace;
 
 use super::{Regime, Step};
 
@@ -27,49 +27,49 @@ impl Step<'_> {
     /// Current places of boundary points, and edges and nodes at them.
     pub(super) fn locate(&mut self) {
         let clock = Instant::now();
-        let (model, scratch) = (self.model, &mut *self.scratch);
+        let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let star = &model.covers.star_position;
         let displacement = &self.state.displacement;
         let place = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum()
         };
-        if scratch.serial {
-            scratch.place.clear();
-            scratch.place.extend(boundary.covers.iter().zip(&boundary.weights).map(place));
+        if workspace.serial {
+            workspace.place.clear();
+            workspace.place.extend(boundary.covers.iter().zip(&boundary.weights).map(place));
         } else {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
-            points.map(place).collect_into_vec(&mut scratch.place);
+            points.map(place).collect_into_vec(&mut workspace.place);
         }
-        scratch.frames.update(boundary, &scratch.place, model.entrance.flush_sine, scratch.serial);
-        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+        workspace.frames.update(boundary, &workspace.place, model.entrance.flush_sine, workspace.serial);
+        workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
     /// Near pairs, when nodes have moved.
     pub(super) fn search(&mut self) {
         let clock = Instant::now();
-        let (model, scratch) = (self.model, &mut *self.scratch);
+        let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let size = model.covers.mesh.size;
-        if self.state.neighbours.is_stale(boundary, &scratch.place, SKIN * size) {
+        if self.state.neighbours.is_stale(boundary, &workspace.place, SKIN * size) {
             let view = SearchView {
                 boundary,
-                place: &scratch.place,
+                place: &workspace.place,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
-                fixed: &scratch.mass_matrix.fixed,
-                serial: scratch.serial,
+                fixed: &workspace.mass_matrix.fixed,
+                serial: workspace.serial,
             };
-            scratch.search.search(&view, &mut self.state.neighbours);
-            scratch.open_close.forget_order();
+            workspace.search.search(&view, &mut self.state.neighbours);
+            workspace.open_close.forget_order();
             self.state.counters.searches += 1;
         }
-        scratch.seconds.search += clock.elapsed().as_secs_f64();
+        workspace.seconds.search += clock.elapsed().as_secs_f64();
     }
 
     /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
     pub(super) fn reach(&self, dt: f64) -> f64 {
-        REACH * self.model.covers.mesh.size + 8.0 * dt * self.scratch.speed_max
+        REACH * self.model.covers.mesh.size + 8.0 * dt * self.workspace.speed_max
     }
 
     /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
@@ -85,28 +85,28 @@ impl Step<'_> {
             Regime::Dynamic { damping } => Some(damping),
             Regime::Static { .. } => None,
         };
-        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
+        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let size = model.covers.mesh.size;
-        scratch.contact_cache.index(&state.contacts, model.boundary.node_count());
-        scratch.penetrating.index(&model.boundary, &scratch.frames, &state.contacts);
-        let approach = |dt| Approach { predicted: &scratch.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
+        workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
+        workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
+        let approach = |dt| Approach { predicted: &workspace.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = NarrowPhase {
             boundary: &model.boundary,
-            place: &scratch.place,
-            frames: &scratch.frames,
+            place: &workspace.place,
+            frames: &workspace.frames,
             star: &model.covers.star_position,
             displacement: &state.displacement,
-            mass_matrix: &scratch.mass_matrix,
-            motion: &scratch.motion,
+            mass_matrix: &workspace.mass_matrix,
+            motion: &workspace.motion,
             laws: &state.laws,
-            trace_law: &scratch.trace_law,
+            trace_law: &workspace.trace_law,
             strength: state.drive.strength_factor(state.drive.share(self.time)),
             default_law: state.law_switch.get(model.default_law as usize).copied().unwrap_or_default(),
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,
-            cache: &scratch.contact_cache,
-            penetrating: &scratch.penetrating,
+            cache: &workspace.contact_cache,
+            penetrating: &workspace.penetrating,
             approach: dt.map(approach),
             size,
             rule: model.entrance,
@@ -115,11 +115,11 @@ impl Step<'_> {
             theta: model.theta,
             first: state.step == 0,
             in_situ: model.in_situ.as_ref(),
-            serial: scratch.serial,
+            serial: workspace.serial,
         };
         let near_pairs = &state.neighbours.pairs;
-        contact::entrance_edges(&narrow, near_pairs, &mut scratch.accepted, &mut scratch.contacts);
-        scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+        contact::entrance_edges(&narrow, near_pairs, &mut workspace.accepted, &mut workspace.contacts);
+        workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
     /// How supports and bolts answer in a step of `dt` (s).
@@ -127,38 +127,38 @@ impl Step<'_> {
         let clock = Instant::now();
         self.load_supports(dt);
         self.load_bolts();
-        self.scratch.seconds.entrance += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
     /// Bolts that bear in this step.
     pub(super) fn load_bolts(&mut self) {
-        let (model, state, scratch) = (self.model, &*self.state, &mut *self.scratch);
+        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let view = BoltView {
             star: &model.covers.star_position,
             displacement: &state.displacement,
-            predicted: &scratch.predicted,
-            mass_matrix: &scratch.mass_matrix,
-            motion: &scratch.motion,
+            predicted: &workspace.predicted,
+            mass_matrix: &workspace.mass_matrix,
+            motion: &workspace.motion,
         };
         let rows = model.bolts.iter().zip(&state.bolts).enumerate();
         let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
-        scratch.bolts.clear();
-        scratch.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
+        workspace.bolts.clear();
+        workspace.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
     }
 
     /// Open–close iteration on the predicted velocities.
     pub(super) fn open_close(&mut self, dt: f64) -> SolverReport {
         let clock = Instant::now();
         let kick = 0.5 * (self.state.dt_last + dt);
-        let (model, scratch) = (self.model, &mut *self.scratch);
-        let Scratch { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = scratch;
+        let (model, workspace) = (self.model, &mut *self.workspace);
+        let Workspace { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = workspace;
         let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
         let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
         let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &model.covers.block_covers);
         open_close.arrange(&model.boundary, near_pairs, mass_matrix, block_covers, contacts);
         let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
         open_close.impulses(mass_matrix, increment, push);
-        scratch.seconds.sweep += clock.elapsed().as_secs_f64();
+        workspace.seconds.sweep += clock.elapsed().as_secs_f64();
         swept
     }
 }

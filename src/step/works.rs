@@ -14,30 +14,30 @@ impl Step<'_> {
 
     /// Loads times velocities before and after the step (W/m).
     fn load_power(&self) -> f64 {
-        if !self.scratch.is_loaded {
+        if !self.workspace.is_loaded {
             return 0.0;
         }
-        let velocities = self.state.velocity.iter().zip(&self.scratch.predicted);
-        self.scratch.load_force.iter().zip(velocities).map(|(f, (before, after))| f.dot(&(before + after))).sum()
+        let velocities = self.state.velocity.iter().zip(&self.workspace.predicted);
+        self.workspace.load_force.iter().zip(velocities).map(|(f, (before, after))| f.dot(&(before + after))).sum()
     }
 
     /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
     pub(super) fn works(&self, dt: f64, finished: &Totals) -> Ledger {
-        let (model, state, scratch) = (self.model, &*self.state, &*self.scratch);
+        let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
         let mut works = Ledger { damping: finished.damping, ..Ledger::default() };
         let kick_dt = 0.5 * (state.dt_last + dt);
-        for outcome in &scratch.outcomes {
+        for outcome in &workspace.outcomes {
             works.contact_work += outcome.work;
             works.friction -= outcome.friction;
         }
-        for row in &scratch.rows {
+        for row in &workspace.rows {
             let support = &model.supports[row.support as usize];
-            let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&scratch.predicted));
+            let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&workspace.predicted));
             let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
             *work += row.force * velocity * kick_dt;
         }
-        for row in &scratch.bolts {
-            let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&scratch.predicted);
+        for row in &workspace.bolts {
+            let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&workspace.predicted);
             works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick_dt);
         }
         works.external_work += 0.5 * kick_dt * (self.extra(dt).dot(&finished.row_sum) + self.load_power());

@@ -4,32 +4,32 @@ use rayon::prelude::*;
 
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, PlasticStrain, YieldSurface};
-use crate::state::{Model, Scratch, State};
+use crate::state::{Model, State, Workspace};
 
 /// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
 const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of time `time` (s), and
 /// books what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
-pub fn update(model: &Model, state: &mut State, scratch: &mut Scratch, time: f64) {
+pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time: f64) {
     if state.plastic.is_empty() {
         return;
     }
     let factor = state.drive.strength_factor(state.drive.share(time));
-    scratch.surfaces.clear();
-    scratch.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
-    scratch.yielded.clear();
-    scratch.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
+    workspace.surfaces.clear();
+    workspace.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
+    workspace.yielded.clear();
+    workspace.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    let pass = Pass { model, surfaces: &scratch.surfaces, displacement, velocity, dt_last: *dt_last, removed };
-    let runs = scratch.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
-    if scratch.serial {
+    let pass = Pass { model, surfaces: &workspace.surfaces, displacement, velocity, dt_last: *dt_last, removed };
+    let runs = workspace.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
+    if workspace.serial {
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
     } else {
-        let runs = scratch.yielded.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate();
+        let runs = workspace.yielded.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate();
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
     }
-    state.ledger.yielding += scratch.yielded.iter().sum::<f64>();
+    state.ledger.yielding += workspace.yielded.iter().sum::<f64>();
 }
 
 /// What all runs share.

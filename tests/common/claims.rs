@@ -88,7 +88,7 @@ pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
 /// Centroid (m), its velocity (m/s), spin (rad/s) and kinetic energy (J/m) of the block that holds a reference point.
 pub fn motion(simulation: &Simulation, point: [f64; 2]) -> (Point, Vector, f64, f64) {
     let block = block_at(simulation, point);
-    block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, block)
+    block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, block)
 }
 
 /// The block that holds a reference point.

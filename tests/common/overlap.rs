@@ -25,7 +25,7 @@ impl Overlap {
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
         let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
-        let contacts = simulation.scratch().contacts.iter().filter(is_between);
+        let contacts = simulation.workspace().contacts.iter().filter(is_between);
         self.depth - 1.2 * contacts.map(closure).fold(0.0, f64::max)
     }
 }
@@ -75,7 +75,7 @@ impl Audit {
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
-        let (boundary, place) = (&simulation.model().boundary, &simulation.scratch().place);
+        let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().place);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {

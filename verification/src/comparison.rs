@@ -179,14 +179,14 @@ impl Run {
 
 /// Bytes of matrix and factor, of the fields over covers and of the contacts.
 fn bytes(simulation: &Simulation) -> usize {
-    let scratch = simulation.scratch();
-    let [matrix, factor] = scratch.implicit.matrix.bytes();
-    let vectors = [&scratch.load_force, &scratch.predicted, &scratch.damped, &scratch.increment];
-    let implicit = [&scratch.implicit.moved, &scratch.implicit.offset, &scratch.implicit.applied];
+    let workspace = simulation.workspace();
+    let [matrix, factor] = workspace.implicit.matrix.bytes();
+    let vectors = [&workspace.load_force, &workspace.predicted, &workspace.damped, &workspace.increment];
+    let implicit = [&workspace.implicit.moved, &workspace.implicit.offset, &workspace.implicit.applied];
     let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
     let state = 2 * simulation.state().displacement.len();
-    let places = scratch.implicit.contact_places.len() * 144 + scratch.implicit.element_places.len() * 24;
-    let contacts = scratch.contacts.len() * size_of::<enmm::contact::VertexEdge>();
+    let places = workspace.implicit.contact_places.len() * 144 + workspace.implicit.element_places.len() * 24;
+    let contacts = workspace.contacts.len() * size_of::<enmm::contact::VertexEdge>();
     matrix + factor + (fields + state) * size_of::<Vector>() + contacts + places
 }
 

@@ -184,7 +184,7 @@ impl Windows {
 }
 
 fn stage_seconds(simulation: &Simulation) -> [f64; 5] {
-    let Seconds { search, elements, entrance, sweep, commit } = simulation.scratch().seconds;
+    let Seconds { search, elements, entrance, sweep, commit } = simulation.workspace().seconds;
     [search, elements, entrance, sweep, commit]
 }
 
@@ -229,7 +229,7 @@ fn first_second(model: &Model) -> Result<f64, BenchError> {
 }
 
 fn sizes(simulation: &Simulation) -> Measured {
-    let (slope, mass_matrix) = (simulation.model(), &simulation.scratch().mass_matrix);
+    let (slope, mass_matrix) = (simulation.model(), &simulation.workspace().mass_matrix);
     let covers = &slope.covers;
     let free = (0..covers.block_count()).filter(|&block| !mass_matrix.fixed[block]);
     let (mut blocks, mut elements) = (0, 0);
@@ -273,9 +273,9 @@ impl Measured {
     }
 
     fn take_heaps(&mut self, simulation: &Simulation) {
-        let (slope, state, scratch) = (simulation.model(), simulation.state(), simulation.scratch());
-        self.heap_bytes = [slope.bytes(), state.bytes(), scratch.bytes()];
-        let parts = state.memory().into_iter().chain(scratch.memory());
+        let (slope, state, workspace) = (simulation.model(), simulation.state(), simulation.workspace());
+        self.heap_bytes = [slope.bytes(), state.bytes(), workspace.bytes()];
+        let parts = state.memory().into_iter().chain(workspace.memory());
         let of_contacts: usize = parts.filter(|part| OF_CONTACTS.contains(&part.0)).map(|part| part.1).sum();
         self.bytes_per_contact = (self.contacts > 0).then(|| of_contacts as f64 / self.contacts as f64);
     }

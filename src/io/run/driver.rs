@@ -353,7 +353,7 @@ impl<'a> Driver<'a> {
     }
 
     fn wall(&self) -> WallSeconds {
-        let parts: &Seconds = &self.simulation.scratch().seconds;
+        let parts: &Seconds = &self.simulation.workspace().seconds;
         WallSeconds::of(parts, self.clock.elapsed().as_secs_f64())
     }
 

@@ -176,7 +176,7 @@ impl Base {
     /// Motion of all free blocks since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
         let (model, state) = (simulation.model(), simulation.state());
-        let mass_matrix = &simulation.scratch().mass_matrix;
+        let mass_matrix = &simulation.workspace().mass_matrix;
         self.moving()
             .map(|b| {
                 let (_, velocity, spin, _) = block_motion(model, state, mass_matrix, b);
@@ -213,7 +213,7 @@ impl Base {
 
 /// Which blocks can move.
 fn free(simulation: &Simulation) -> Vec<bool> {
-    let (fixed, removed) = (&simulation.scratch().mass_matrix.fixed, &simulation.state().removed);
+    let (fixed, removed) = (&simulation.workspace().mass_matrix.fixed, &simulation.state().removed);
     fixed.iter().zip(removed).map(|(fixed, removed)| !fixed && !removed).collect()
 }
 
@@ -254,7 +254,7 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let fall = (height / gravity).sqrt();
     let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
     let still_speed = STILL * tolerance * gravity * window;
-    let free = (0..model.covers.block_count()).filter(|&b| !simulation.scratch().mass_matrix.fixed[b]);
+    let free = (0..model.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
     let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
     let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
     let elastic = (ELASTIC * height).max(given_way);

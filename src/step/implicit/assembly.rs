@@ -11,14 +11,14 @@ impl Step<'_> {
     ///
     /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
     pub(super) fn implicit_places(&mut self) {
-        if self.scratch.implicit.matrix.is_empty() {
+        if self.workspace.implicit.matrix.is_empty() {
             self.set_pattern();
         }
-        let scratch = &mut *self.scratch;
-        let buffers = &mut scratch.implicit;
+        let workspace = &mut *self.workspace;
+        let buffers = &mut workspace.implicit;
         let matrix = &buffers.matrix;
         buffers.contact_places.clear();
-        buffers.contact_places.extend(scratch.contacts.iter().map(|contact| {
+        buffers.contact_places.extend(workspace.contacts.iter().map(|contact| {
             let ids = six(contact);
             std::array::from_fn(|k| {
                 let (row, column) = (ids[k / 6], ids[k % 6]);
@@ -30,7 +30,7 @@ impl Step<'_> {
     fn set_pattern(&mut self) {
         let covers = &self.model.covers;
         let boundary = &self.model.boundary;
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         let free = |i: u32| !(buffers.held[2 * i as usize] && buffers.held[2 * i as usize + 1]);
         let pairs = &mut buffers.pairs;
         pairs.clear();
@@ -63,7 +63,7 @@ impl Step<'_> {
 
     /// Assembles the matrix at the places reached and the contacts as they are judged, and factorises it.
     pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
-        self.scratch.implicit.matrix.zero();
+        self.workspace.implicit.matrix.zero();
         self.add_elements(inertia.factor, 1.0);
         self.add_contacts();
         self.add_supports();
@@ -72,7 +72,7 @@ impl Step<'_> {
 
     /// Holds what is held and factorises.
     pub(super) fn finish_matrix(&mut self) -> Result<(), NotPositive> {
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         if buffers.any_held {
             buffers.matrix.hold(&buffers.held);
         }
@@ -83,7 +83,7 @@ impl Step<'_> {
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, mass: f64, stiffness: f64) {
         let (model, state) = (self.model, &*self.state);
-        let (covers, buffers) = (&model.covers, &mut self.scratch.implicit);
+        let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
         let Some(implicit) = &model.implicit else { return };
         for (e, places) in buffers.element_places.iter().enumerate() {
             let ids = covers.element_covers[e];
@@ -105,10 +105,10 @@ impl Step<'_> {
 
     /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
     fn add_contacts(&mut self) {
-        let scratch = &mut *self.scratch;
-        let buffers = &mut scratch.implicit;
+        let workspace = &mut *self.workspace;
+        let buffers = &mut workspace.implicit;
         buffers.factored.clear();
-        for (contact, places) in scratch.contacts.iter().zip(&buffers.contact_places) {
+        for (contact, places) in workspace.contacts.iter().zip(&buffers.contact_places) {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,
@@ -129,8 +129,8 @@ impl Step<'_> {
 
     fn add_supports(&mut self) {
         let model = self.model;
-        let matrix = &mut self.scratch.implicit.matrix;
-        for row in &self.scratch.rows {
+        let matrix = &mut self.workspace.implicit.matrix;
+        for row in &self.workspace.rows {
             let support = &model.supports[row.support as usize];
             let d = support.direction;
             let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);

@@ -10,7 +10,7 @@ impl Step<'_> {
     /// Internal forces at the places reached (Eq. 7).
     pub(super) fn implicit_internal(&mut self) {
         let (model, state) = (self.model, &*self.state);
-        let (covers, buffers) = (&model.covers, &mut self.scratch.implicit);
+        let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
         buffers.internal.fill(Vector::zeros());
         for e in 0..covers.element_count() {
             let ids = covers.element_covers[e];
@@ -27,10 +27,10 @@ impl Step<'_> {
 
     /// Judges all contacts at the places reached; returns whether one is not as the factor holds it.
     pub(super) fn implicit_judge(&mut self) -> bool {
-        let scratch = &mut *self.scratch;
-        let buffers = &scratch.implicit;
-        let mut changed = buffers.factored.len() != scratch.contacts.len();
-        for (k, contact) in scratch.contacts.iter_mut().enumerate() {
+        let workspace = &mut *self.workspace;
+        let buffers = &workspace.implicit;
+        let mut changed = buffers.factored.len() != workspace.contacts.len();
+        for (k, contact) in workspace.contacts.iter_mut().enumerate() {
             judge(contact, &buffers.moved);
             changed |= buffers.factored.get(k) != Some(&contact.history.state);
         }
@@ -40,9 +40,9 @@ impl Step<'_> {
 
     /// Forces of all contacts at the places reached, friction under the pressure kept in `pressing`.
     pub(super) fn implicit_probe(&mut self) {
-        let scratch = &mut *self.scratch;
-        let buffers = &scratch.implicit;
-        for (contact, pressing) in scratch.contacts.iter_mut().zip(&buffers.pressing) {
+        let workspace = &mut *self.workspace;
+        let buffers = &workspace.implicit;
+        for (contact, pressing) in workspace.contacts.iter_mut().zip(&buffers.pressing) {
             judge_under(contact, &buffers.moved, *pressing);
         }
         self.bear();
@@ -50,10 +50,10 @@ impl Step<'_> {
 
     /// Forces of all supports at the places reached.
     fn bear(&mut self) {
-        let scratch = &mut *self.scratch;
-        for row in &mut scratch.rows {
+        let workspace = &mut *self.workspace;
+        for row in &mut workspace.rows {
             let support = &self.model.supports[row.support as usize];
-            let moved = support.sample(&scratch.implicit.moved);
+            let moved = support.sample(&workspace.implicit.moved);
             row.force = support.preload - support.stiffness * (row.displacement + moved);
         }
     }
@@ -62,7 +62,7 @@ impl Step<'_> {
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
         let model = self.model;
         self.push_bearing();
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         let mut scale = norm(&buffers.residual).max(norm(&buffers.applied));
         for (i, acceleration) in buffers.field.iter_mut().enumerate() {
             *acceleration = buffers.moved[i] * -inertia.factor - buffers.offset[i];
@@ -82,14 +82,14 @@ impl Step<'_> {
             }
         }
         self.drop_held();
-        let buffers = &self.scratch.implicit;
+        let buffers = &self.workspace.implicit;
         [norm(&buffers.residual), scale]
     }
 
     /// Forces out of balance at the start of the sub-step, by the contact forces of the last one; into the residual.
     pub(super) fn start_balance(&mut self) {
         self.push_bearing();
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         let others = buffers.applied_before.iter().zip(&buffers.internal_before);
         buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
         self.drop_held();
@@ -97,7 +97,7 @@ impl Step<'_> {
 
     /// Takes what acts on held rows out of the residual.
     fn drop_held(&mut self) {
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         if !buffers.any_held {
             return;
         }
@@ -110,10 +110,10 @@ impl Step<'_> {
 
     /// Forces of contacts and supports on the covers, into the residual.
     pub(super) fn push_bearing(&mut self) {
-        let scratch = &mut *self.scratch;
-        let residual = &mut scratch.implicit.residual;
+        let workspace = &mut *self.workspace;
+        let residual = &mut workspace.implicit.residual;
         residual.fill(Vector::zeros());
-        for contact in &scratch.contacts {
+        for contact in &workspace.contacts {
             if contact.history.normal_force == 0.0 && contact.history.shear_force == 0.0 {
                 continue;
             }
@@ -121,7 +121,7 @@ impl Step<'_> {
             mechanics::spread(&contact.pair.covers[0], &contact.pair.weights[0], force, residual);
             mechanics::spread(&contact.pair.covers[1], &contact.pair.weights[1], -force, residual);
         }
-        for row in &scratch.rows {
+        for row in &workspace.rows {
             let support = &self.model.supports[row.support as usize];
             mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
         }

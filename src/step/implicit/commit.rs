@@ -16,8 +16,8 @@ impl Step<'_> {
         let Some(implicit) = &model.implicit else { return };
         let clock = Instant::now();
         let mut works = self.implicit_works(implicit, inertia);
-        let scratch = &mut *self.scratch;
-        for (mean, moved) in scratch.predicted.iter_mut().zip(&scratch.implicit.moved) {
+        let workspace = &mut *self.workspace;
+        for (mean, moved) in workspace.predicted.iter_mut().zip(&workspace.implicit.moved) {
             *mean = moved / inertia.dt;
         }
         self.settle_contacts(inertia.dt);
@@ -28,16 +28,16 @@ impl Step<'_> {
         self.state.ledger.add_works(&works, 1.0);
         self.state.dt_last = 0.0;
         self.time += inertia.dt;
-        self.scratch.seconds.commit += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
     }
 
     /// Places, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
     fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
-        let (state, scratch) = (&mut *self.state, &*self.scratch);
-        let buffers = &scratch.implicit;
+        let (state, workspace) = (&mut *self.state, &*self.workspace);
+        let buffers = &workspace.implicit;
         for i in 0..buffers.moved.len() {
             state.displacement[i] += buffers.moved[i];
-            let mean = scratch.predicted[i];
+            let mean = workspace.predicted[i];
             let velocity = if inertia.rests { mean } else { mean * 2.0 - state.velocity[i] };
             for axis in 0..2 {
                 state.velocity[i][axis] = if buffers.held[2 * i + axis] { 0.0 } else { velocity[axis] };
@@ -54,14 +54,14 @@ impl Step<'_> {
     fn implicit_works(&mut self, implicit: &Implicit, inertia: &Inertia) -> Ledger {
         let mut works = self.bearing_works(inertia);
         works.external_work = self.load_work(inertia);
-        let buffers = &self.scratch.implicit;
+        let buffers = &self.workspace.implicit;
         let change = buffers.internal_before.iter().zip(&buffers.internal).zip(&buffers.moved);
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
-            self.scratch.implicit.field.clone_from(&self.scratch.implicit.moved);
+            self.workspace.implicit.field.clone_from(&self.workspace.implicit.moved);
             self.mass_times_field(implicit);
-            let buffers = &self.scratch.implicit;
+            let buffers = &self.workspace.implicit;
             let spent: f64 = buffers.residual.iter().zip(&buffers.moved).map(|(p, u)| p.dot(u)).sum();
             works.damping += inertia.factor * spent;
         }
@@ -69,11 +69,11 @@ impl Step<'_> {
     }
 
     fn bearing_works(&self, inertia: &Inertia) -> Ledger {
-        let scratch = &*self.scratch;
-        let buffers = &scratch.implicit;
+        let workspace = &*self.workspace;
+        let buffers = &workspace.implicit;
         let mut works = Ledger::default();
         let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
-        for (contact, before) in scratch.contacts.iter().zip(&buffers.forces_before) {
+        for (contact, before) in workspace.contacts.iter().zip(&buffers.forces_before) {
             let [opened, sheared] = contact.relative(&buffers.moved);
             let shear = mean(contact.history.shear_force, before[1]) * sheared;
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
@@ -83,7 +83,7 @@ impl Step<'_> {
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }
         }
-        for (row, before) in scratch.rows.iter().zip(&buffers.bearing_before) {
+        for (row, before) in workspace.rows.iter().zip(&buffers.bearing_before) {
             let support = &self.model.supports[row.support as usize];
             works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
@@ -92,7 +92,7 @@ impl Step<'_> {
 
     /// Work of loads, and of gravity beyond what the potential holds.
     fn load_work(&self, inertia: &Inertia) -> f64 {
-        let (model, buffers) = (self.model, &self.scratch.implicit);
+        let (model, buffers) = (self.model, &self.workspace.implicit);
         let mut work = 0.0;
         for (i, moved) in buffers.moved.iter().enumerate() {
             let mut force = buffers.applied[i] * inertia.end;
@@ -109,15 +109,15 @@ impl Step<'_> {
         let model = self.model;
         let Some(implicit) = &model.implicit else { return StepReport::default() };
         let unbalanced = self.implicit_unbalanced();
-        let (state, scratch) = (&*self.state, &*self.scratch);
+        let (state, workspace) = (&*self.state, &*self.workspace);
         let mut ledger = state.ledger;
-        ledger.kinetic = kinetic_energy(model, implicit, &scratch.mass_matrix, &state.velocity);
+        ledger.kinetic = kinetic_energy(model, implicit, &workspace.mass_matrix, &state.velocity);
         if let Regime::Static { .. } = self.regime {
             ledger.damping -= ledger.kinetic;
         }
         ledger.strain = strain(model, state);
         ledger.potential = potential(model, state);
-        ledger.stored = stored(model, state, scratch);
+        ledger.stored = stored(model, state, workspace);
         StepReport {
             time: self.time,
             dt,
@@ -125,7 +125,7 @@ impl Step<'_> {
             unbalanced,
             locked: self.count_contacts(ContactState::Lock),
             slipping: self.count_contacts(ContactState::Slip),
-            penetration_max: scratch.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
+            penetration_max: workspace.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
             speed_max: speed_max(model, state),
         }
     }
@@ -133,7 +133,7 @@ impl Step<'_> {
     /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
     fn implicit_unbalanced(&mut self) -> f64 {
         self.start_balance();
-        let (state, buffers) = (&*self.state, &self.scratch.implicit);
+        let (state, buffers) = (&*self.state, &self.workspace.implicit);
         let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
         unbalanced(norm(&buffers.residual), applied)
     }

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::{Implicit, Model, Rule, Scratch};
+use crate::state::{Implicit, Model, Rule, Workspace};
 
 use super::touch::{CUTOFF, REACH};
 use super::{Regime, Step, StepReport, applied, ramp};
@@ -26,29 +26,29 @@ const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
 /// Sizes the buffers; the matrix gets its pattern in the next step.
-pub(super) fn prepare(model: &Model, mass_matrix: &MassMatrix, scratch: &mut crate::state::ImplicitScratch) {
+pub(super) fn prepare(model: &Model, mass_matrix: &MassMatrix, workspace: &mut crate::state::ImplicitWorkspace) {
     if model.implicit.is_none() {
         return;
     }
     let covers = model.covers.cover_count();
     for field in [
-        &mut scratch.moved,
-        &mut scratch.offset,
-        &mut scratch.applied,
-        &mut scratch.applied_before,
-        &mut scratch.internal,
-        &mut scratch.internal_before,
-        &mut scratch.residual,
-        &mut scratch.field,
+        &mut workspace.moved,
+        &mut workspace.offset,
+        &mut workspace.applied,
+        &mut workspace.applied_before,
+        &mut workspace.internal,
+        &mut workspace.internal_before,
+        &mut workspace.residual,
+        &mut workspace.field,
     ] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
-    scratch.unknowns.resize(2 * covers, 0.0);
-    scratch.held.clear();
-    scratch.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
-    scratch.any_held = scratch.held.contains(&true);
-    scratch.matrix.clear();
+    workspace.unknowns.resize(2 * covers, 0.0);
+    workspace.held.clear();
+    workspace.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
+    workspace.any_held = workspace.held.contains(&true);
+    workspace.matrix.clear();
 }
 
 /// How inertia enters a sub-step.
@@ -128,17 +128,17 @@ impl Step<'_> {
         let loaded_at_once = first && self.regime == Regime::Static { ramp: 0.0 };
         self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
         self.implicit_internal();
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         buffers.internal_before.copy_from_slice(&buffers.internal);
         if loaded_at_once {
             self.start_balance();
-            self.state.stage_force.copy_from_slice(&self.scratch.implicit.residual);
+            self.state.stage_force.copy_from_slice(&self.workspace.implicit.residual);
         }
         let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
         if trapezoidal && self.state.acceleration.is_empty() {
             self.implicit_start_acceleration();
         }
-        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         if self.report { self.implicit_report(dt) } else { StepReport::default() }
     }
 
@@ -148,26 +148,26 @@ impl Step<'_> {
         self.locate();
         self.search();
         if self.state.counters.searches != searches {
-            self.scratch.implicit.matrix.clear();
+            self.workspace.implicit.matrix.clear();
         }
-        let scratch = &mut *self.scratch;
-        scratch.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * scratch.speed_max;
+        let workspace = &mut *self.workspace;
+        workspace.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
         let moved_for = if self.state.step > 0 { self.model.dt } else { 0.0 };
         self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), moved_for, None);
         self.load_supports(dt);
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         buffers.forces_before.clear();
-        let forces = self.scratch.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
         buffers.forces_before.extend(forces);
         buffers.bearing_before.clear();
-        buffers.bearing_before.extend(self.scratch.rows.iter().map(|row| row.force));
+        buffers.bearing_before.extend(self.workspace.rows.iter().map(|row| row.force));
         buffers.moved.fill(Vector::zeros());
     }
 
     /// Forces of loads and gravity at the end of the sub-step, and at its start where they are needed.
     fn implicit_loads(&mut self, before: bool, dt: f64) {
-        let Scratch { implicit: buffers, .. } = &mut *self.scratch;
+        let Workspace { implicit: buffers, .. } = &mut *self.workspace;
         for (wanted, force, time) in
             [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.applied_before, self.time)]
         {

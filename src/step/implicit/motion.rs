@@ -40,18 +40,20 @@ impl Step<'_> {
     /// M·a = forces at the start of the sub-step, solved for a; contacts are judged by the limits that hold now.
     pub(super) fn implicit_start_acceleration(&mut self) {
         self.implicit_judge();
-        let forces = self.scratch.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
-        self.scratch.implicit.forces_before.clear();
-        self.scratch.implicit.forces_before.extend(forces);
+        let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        self.workspace.implicit.forces_before.clear();
+        self.workspace.implicit.forces_before.extend(forces);
         self.start_balance();
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         buffers.matrix.zero();
         self.add_elements(1.0, 0.0);
         if self.finish_matrix().is_err() {
             self.singular = true;
         }
         self.solve();
-        self.state.acceleration.extend(self.scratch.implicit.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
+        self.state
+            .acceleration
+            .extend(self.workspace.implicit.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
     }
 
     /// Damps the velocities of the state relative to the rigid motion of every block by exp(−2ξπ·cs/√A·dt) (Eq. 11);
@@ -63,7 +65,7 @@ impl Step<'_> {
         let model = self.model;
         let mut taken = 0.0;
         for block in 0..model.covers.block_count() {
-            if self.scratch.mass_matrix.fixed[block] {
+            if self.workspace.mass_matrix.fixed[block] {
                 continue;
             }
             let before = block_energy(model, implicit, &self.state.velocity, block);
@@ -76,7 +78,7 @@ impl Step<'_> {
 
     fn damp_block(&mut self, implicit: &Implicit, block: usize, factor: f64) {
         let model = self.model;
-        let (state, buffers) = (&mut *self.state, &mut self.scratch.implicit);
+        let (state, buffers) = (&mut *self.state, &mut self.workspace.implicit);
         let range = model.covers.covers_of(block);
         let mass = &model.mass_matrix.row_sum;
         let total: f64 = model.mass_matrix.total[block];
@@ -106,7 +108,7 @@ impl Step<'_> {
 
     /// M times a cover field, into the residual.
     pub(super) fn mass_times_field(&mut self, implicit: &Implicit) {
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         buffers.residual.fill(Vector::zeros());
         for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
             push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);

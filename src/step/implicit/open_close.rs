@@ -56,11 +56,11 @@ impl Step<'_> {
     /// Iterates to the end of a sub-step; returns whether it has settled within the limits.
     pub(super) fn implicit_open_close(&mut self, implicit: &Implicit, inertia: &Inertia) -> bool {
         self.set_offset(implicit, inertia);
-        self.scratch.implicit.factored.clear();
+        self.workspace.implicit.factored.clear();
         let (mut factors, mut solutions, mut last) = (0, 0, f64::INFINITY);
         let most = implicit.iterations_max * if inertia.rests { STATIC_ITERATIONS } else { 1 };
         let tolerance = if inertia.rests { BALANCED_STATIC } else { BALANCED };
-        self.scratch.implicit.cautious = false;
+        self.workspace.implicit.cautious = false;
         let mut balance = self.evaluate(inertia);
         self.presume_closed();
         let settled = loop {
@@ -114,14 +114,14 @@ impl Step<'_> {
         self.implicit_internal();
         let changed = self.implicit_judge();
         let [residual, scale] = self.implicit_residual(inertia);
-        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         Balance { changed, residual, scale }
     }
 
     /// New contacts that touch count as locked in the first factor: whether they open is then judged.
     fn presume_closed(&mut self) {
         let touching = TOUCHING * self.model.covers.mesh.size;
-        for contact in self.scratch.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
+        for contact in self.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
             contact.history.state = ContactState::Lock;
         }
     }
@@ -131,9 +131,9 @@ impl Step<'_> {
     /// Springs that only press and friction under a given pressure derive from a convex energy, of which the forces
     /// out of balance are the descent: a way after which they point back by more than half was too long.
     fn search_line(&mut self, inertia: &Inertia) -> Balance {
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         buffers.pressing.clear();
-        buffers.pressing.extend(self.scratch.contacts.iter().map(|c| c.history.normal_force));
+        buffers.pressing.extend(self.workspace.contacts.iter().map(|c| c.history.normal_force));
         let start = self.along();
         let (mut low, mut high) = ([0.0, start], None);
         let (mut share, mut reached) = (1.0, 0.0);
@@ -150,7 +150,7 @@ impl Step<'_> {
                 high = Some([share, here]);
             }
             let Some(far) = high else { break };
-            self.scratch.implicit.cautious = true;
+            self.workspace.implicit.cautious = true;
             share = (low[0] * far[1] - far[0] * low[1]) / (far[1] - low[1]);
             share = share.clamp(low[0] + 0.05 * (far[0] - low[0]), far[0] - 0.05 * (far[0] - low[0]));
         }
@@ -165,19 +165,19 @@ impl Step<'_> {
         self.implicit_internal();
         self.implicit_probe();
         self.implicit_residual(inertia);
-        self.scratch.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         self.along()
     }
 
     /// Product of the forces out of balance and the solution.
     fn along(&self) -> f64 {
-        let buffers = &self.scratch.implicit;
+        let buffers = &self.workspace.implicit;
         buffers.residual.iter().zip(buffers.unknowns.chunks_exact(2)).map(|(f, d)| f.x * d[0] + f.y * d[1]).sum()
     }
 
     /// Adds a share of the solution to what has moved.
     fn go(&mut self, share: f64) {
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         for (moved, d) in buffers.moved.iter_mut().zip(buffers.unknowns.chunks_exact(2)) {
             *moved += Vector::new(d[0], d[1]) * share;
         }
@@ -186,7 +186,7 @@ impl Step<'_> {
     /// What inertia sees besides the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
     fn set_offset(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let state = &*self.state;
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         if inertia.rests {
             buffers.offset.fill(Vector::zeros());
             return;
@@ -203,7 +203,7 @@ impl Step<'_> {
     fn refactor(&mut self, inertia: &Inertia) -> bool {
         let clock = Instant::now();
         let done = self.implicit_factorise(inertia).is_ok();
-        self.scratch.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
         self.singular = !done;
         done
     }
@@ -211,20 +211,20 @@ impl Step<'_> {
     /// Solves for the forces out of balance.
     pub(super) fn solve(&mut self) {
         let clock = Instant::now();
-        let buffers = &mut self.scratch.implicit;
+        let buffers = &mut self.workspace.implicit;
         for (i, force) in buffers.residual.iter().enumerate() {
             (buffers.unknowns[2 * i], buffers.unknowns[2 * i + 1]) = (force.x, force.y);
         }
         buffers.matrix.solve(&mut buffers.unknowns);
-        self.scratch.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
     }
 
     fn largest_move(&self) -> f64 {
-        self.scratch.implicit.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt()
+        self.workspace.implicit.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt()
     }
 
     fn count_implicit(&mut self, dt: f64, solutions: u32) {
-        let contacts = self.scratch.contacts.len() as u64;
+        let contacts = self.workspace.contacts.len() as u64;
         let counters = &mut self.state.counters;
         counters.substeps += 1;
         counters.sweeps += u64::from(solutions);
@@ -236,6 +236,6 @@ impl Step<'_> {
 
     /// Contacts that carry force, for the report.
     pub(super) fn count_contacts(&self, which: ContactState) -> u32 {
-        self.scratch.contacts.iter().filter(|c| c.history.state == which).count() as u32
+        self.workspace.contacts.iter().filter(|c| c.history.state == which).count() as u32
     }
 }

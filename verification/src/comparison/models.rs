@@ -133,7 +133,7 @@ impl Totals {
     }
 
     fn now(simulation: &Simulation, places: &[Vector]) -> Self {
-        let ledger = energies(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix);
+        let ledger = energies(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix);
         let moved = block_displacements(simulation);
         let mass = &simulation.model().mass_matrix.total;
         let way: f64 = moved.iter().zip(places).zip(mass).map(|((now, then), mass)| mass * (now - then).norm()).sum();

@@ -145,7 +145,7 @@ impl Runner {
         let mut steps = explicit_steps / self.ratio;
         if self.simulation.state().step == 0 {
             self.simulation.advance(false)?;
-            self.laid_out = self.simulation.scratch().seconds;
+            self.laid_out = self.simulation.workspace().seconds;
             steps -= 1;
         }
         let clock = cpu_seconds();
@@ -173,7 +173,7 @@ impl Runner {
         let counts = [counters.factorisations, counters.sweeps].map(|n| n as f64 / steps);
         let [factor, solve] = self.kernels();
         let step = self.cpu / (steps - 1.0);
-        let (now, first) = (&self.simulation.scratch().seconds, &self.laid_out);
+        let (now, first) = (&self.simulation.workspace().seconds, &self.laid_out);
         let sum = |s: &Seconds| s.elements + s.search + s.entrance + s.sweep + s.commit;
         let matrix = (now.sweep - first.sweep) / (sum(now) - sum(first));
         let assembly = (step * matrix - counts[1] * solve) / counts[0] - factor;
@@ -191,7 +191,7 @@ impl Runner {
 
     /// Processor time (s) of a numeric factorisation and of a solution, least of several.
     fn kernels(&self) -> [f64; 2] {
-        let buffers = &self.simulation.scratch().implicit;
+        let buffers = &self.simulation.workspace().implicit;
         let (mut matrix, mut unknowns) = (buffers.matrix.clone(), buffers.unknowns.clone());
         if matrix.is_empty() {
             return [0.0; 2];

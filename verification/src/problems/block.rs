@@ -112,7 +112,7 @@ impl Block {
         let (slope, element) = (simulation.model(), simulation.built().monitors[1].0);
         let block = slope.covers.element_block[element] as usize;
         // Counter-clockwise is uphill.
-        let spin = -block_motion(slope, simulation.state(), &simulation.scratch().mass_matrix, block).2;
+        let spin = -block_motion(slope, simulation.state(), &simulation.workspace().mass_matrix, block).2;
         Fate { time: simulation.time(), turned, spin, slides: toe.1.dot(&down) }
     }
 }

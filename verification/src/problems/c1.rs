@@ -129,7 +129,7 @@ struct Slide {
 impl Slide {
     fn place(&self) -> f64 {
         let (slope, state) = (self.simulation.model(), self.simulation.state());
-        block_motion(slope, state, &self.simulation.scratch().mass_matrix, self.block).0.dot(&self.down)
+        block_motion(slope, state, &self.simulation.workspace().mass_matrix, self.block).0.dot(&self.down)
     }
 
     /// Way since the start (m).

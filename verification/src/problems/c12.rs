@@ -121,7 +121,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
         for step in 1..=third {
             report = simulation.advance(step == third)?;
         }
-        let motion = block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, block);
+        let motion = block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, block);
         places.push(motion.0.dot(&Vector::new(c, -s)));
     }
     // From ½·a·t² at the last two times.

@@ -109,8 +109,12 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     let block = |p: [f64; 2]| covers.element_near(Point::from(p), 0.1).map(|e| covers.element_block[e]);
     let blocks: Vec<u32> = middles.iter().filter_map(|p| block(*p)).collect();
     let along = |simulation: &Simulation, k: usize| {
-        let motion =
-            block_motion(simulation.model(), simulation.state(), &simulation.scratch().mass_matrix, blocks[k] as usize);
+        let motion = block_motion(
+            simulation.model(),
+            simulation.state(),
+            &simulation.workspace().mass_matrix,
+            blocks[k] as usize,
+        );
         motion.0.dot(&Vector::new(c, -s))
     };
     let start = [0, 1].map(|k| along(simulation, k));
@@ -128,7 +132,8 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
             }
             report = found;
             let between = |c: &&VertexEdge| c.pair.blocks.iter().all(|b| blocks.contains(b));
-            let push: f64 = simulation.scratch().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
+            let push: f64 =
+                simulation.workspace().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
             if window > 0 {
                 pushes.push(push / (DENSITY * length));
             }

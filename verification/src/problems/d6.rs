@@ -82,7 +82,7 @@ fn lower(setup: &mut Setup, ratio: f64) -> Result<Lowering, Trouble> {
     let thrust = |c: &enmm::contact::VertexEdge| {
         (c.normal.x * c.history.normal_force + c.tangent().x * c.history.shear_force).abs()
     };
-    let initial = 0.5 * simulation.scratch().contacts.iter().map(thrust).sum::<f64>();
+    let initial = 0.5 * simulation.workspace().contacts.iter().map(thrust).sum::<f64>();
     let mut drive = Drive::along(&simulation, 1);
     let (mut curve, mut report, mut greatest) = (vec![[0.0, 0.0]], StepReport::default(), 0.0f64);
     let steps = POINTS * 5 / 4;

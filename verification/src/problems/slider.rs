@@ -88,7 +88,7 @@ impl Slider<'_> {
         let block = covers.element_block[element] as usize;
         let motion = |simulation: &enmm::model::Simulation| {
             let (slope, state) = (simulation.model(), simulation.state());
-            let (centre, velocity, ..) = block_motion(slope, state, &simulation.scratch().mass_matrix, block);
+            let (centre, velocity, ..) = block_motion(slope, state, &simulation.workspace().mass_matrix, block);
             [centre.dot(&down), velocity.dot(&down)]
         };
         let start = motion(&simulation)[0];

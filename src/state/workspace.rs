@@ -8,11 +8,11 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
 
-use super::ImplicitScratch;
+use super::ImplicitWorkspace;
 
 /// Buffers, sized at the first step and reused.
 #[derive(Debug, Clone, Default)]
-pub struct Scratch {
+pub struct Workspace {
     /// Masses with the fixities of the stage.
     pub mass_matrix: MassMatrix,
     /// Forces of loads on covers (N/m).
@@ -74,7 +74,7 @@ pub struct Scratch {
     /// Whether each block touches another.
     pub touching: Vec<bool>,
     /// Buffers of the implicit integrator.
-    pub implicit: ImplicitScratch,
+    pub implicit: ImplicitWorkspace,
     /// Largest speed of a cover (m/s).
     pub speed_max: f64,
     /// Whether the step keeps to the calling thread; the bits are the same.
