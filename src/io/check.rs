@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::geometry::Point;
 use crate::model::Simulation;
-use crate::model::build::ignored_traces;
+use crate::model::assemble::ignored_traces;
 use crate::state::{State, Workspace};
 
 /// Share of a full cover's mass below which a cover counts as small.

@@ -11,7 +11,7 @@ mod search;
 use crate::geometry::{Point, Vector};
 
 use super::Simulation;
-use super::build::outlines;
+use super::assemble::outlines;
 use super::case::{Case, Invalid};
 use contact::Contact;
 use model::{Body, Strengths};

@@ -1,6 +1,6 @@
 //! What the user wrote ([`Case`]), how it is built, and the façade that callers hold ([`Simulation`]).
 
-pub mod build;
+pub mod assemble;
 pub mod case;
 pub mod fit;
 pub mod limit_analysis;
@@ -9,7 +9,7 @@ mod simulation;
 pub mod snapshot;
 pub mod strength_reduction;
 
-pub use build::{BuildStage, Built, build};
+pub use assemble::{BuildStage, Built, build};
 pub use case::Case;
 pub use fit::Unfit;
 pub use observe::BlockState;

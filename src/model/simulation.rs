@@ -5,7 +5,7 @@ use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
-use super::build::{BuildStage, Built, build, index_of};
+use super::assemble::{BuildStage, Built, build, index_of};
 use super::case::{Case, Invalid, Stage, StageKind};
 
 /// Unbalanced ratio at which a static stage that names none ends.

@@ -6,7 +6,7 @@ use crate::mechanics::LoadedFace;
 use crate::model::case::{Case, Invalid, Load};
 use crate::state::{Port, PortKind, Water};
 
-use super::place::Places;
+use super::locator::Locator;
 
 /// Finds boundary edges by their place in the reference configuration.
 pub(super) struct Faces<'a> {
@@ -76,7 +76,7 @@ fn nothing_on(key: &str, [[a, b], [c, d]]: [[f64; 2]; 2], joints: bool) -> Inval
 }
 
 /// The ports of a case.
-pub(super) fn ports(case: &Case, places: &Places, faces: &Faces) -> Result<Vec<Port>, Invalid> {
+pub(super) fn ports(case: &Case, places: &Locator, faces: &Faces) -> Result<Vec<Port>, Invalid> {
     let mut ports = Vec::new();
     for (k, port) in case.ports.iter().enumerate() {
         let key = |name: &str| format!("port[{k}].{name}");

@@ -4,7 +4,7 @@ use crate::contact::BoltSegment;
 use crate::geometry::{NONE, Point, Vector};
 use crate::model::case::{Anchorage, Bolt, Case, Invalid};
 
-use super::place::Places;
+use super::locator::Locator;
 
 /// Free length of a grouted bar at a joint, relative to the mesh size.
 const FREE_LENGTH: f64 = 0.1;
@@ -12,7 +12,7 @@ const FREE_LENGTH: f64 = 0.1;
 const BESIDE: f64 = 1e-3;
 
 /// Segments of all bolts, and what the user should know of them.
-pub(super) fn bolts(case: &Case, places: &Places) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
+pub(super) fn bolts(case: &Case, places: &Locator) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
     let (mut segments, mut warnings) = (Vec::new(), Vec::new());
     for (k, bolt) in case.bolts.iter().enumerate() {
         let line = Line::new(&format!("bolt[{k}]"), bolt, places)?;
@@ -50,7 +50,7 @@ struct Crossing {
 
 /// A bolt on the reference configuration.
 struct Line<'a> {
-    places: &'a Places<'a>,
+    places: &'a Locator<'a>,
     ends: [Point; 2],
     elements: [usize; 2],
     direction: Vector,
@@ -60,7 +60,7 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(key: &str, bolt: &Bolt, places: &'a Places) -> Result<Self, Invalid> {
+    fn new(key: &str, bolt: &Bolt, places: &'a Locator) -> Result<Self, Invalid> {
         let ends = bolt.points.map(Point::from);
         let mut elements = [0; 2];
         for (k, element) in elements.iter_mut().enumerate() {

@@ -7,7 +7,7 @@ use crate::model::case::{Case, Invalid, Plane, Rock};
 use crate::state::Model;
 
 use super::geometry::points;
-use super::place::Places;
+use super::locator::Locator;
 
 /// Elastic constants of a rock of the case.
 pub(super) fn elasticity(rock: &Rock) -> Elasticity {
@@ -102,7 +102,7 @@ pub(super) fn coarse(case: &Case) -> Option<String> {
 }
 
 /// Rock of each element: by block, else by region, else the rock that names neither.
-pub(super) fn assign(case: &Case, places: &Places) -> Result<Vec<u16>, Invalid> {
+pub(super) fn assign(case: &Case, places: &Locator) -> Result<Vec<u16>, Invalid> {
     let background = case.rocks.values().position(|r| r.region.is_none() && r.blocks.is_empty());
     let mut owner: Vec<Option<usize>> = vec![None; places.covers.element_count()];
     for (k, (name, rock)) in case.rocks.iter().enumerate() {
@@ -136,7 +136,7 @@ fn claim(
     rock: usize,
     case: &Case,
     key: &str,
-    places: &Places,
+    places: &Locator,
 ) -> Result<(), Invalid> {
     if let Some(other) = owner[element].filter(|&other| other != rock) {
         let at = places.covers.element_centroid[element];
@@ -153,7 +153,7 @@ fn claim(
     Ok(())
 }
 
-fn unassigned(places: &Places, element: usize) -> Invalid {
+fn unassigned(places: &Locator, element: usize) -> Invalid {
     let at = places.covers.element_centroid[element];
     Invalid {
         key: "rock".into(),

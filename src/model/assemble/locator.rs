@@ -5,7 +5,7 @@ use crate::geometry::{NONE, Point, Vector, segment};
 use crate::model::case::Invalid;
 
 /// Finds places of a case on the covers of its model.
-pub(super) struct Places<'a> {
+pub(super) struct Locator<'a> {
     pub covers: &'a Covers,
     pub outlines: &'a Outlines,
     /// Distance (m) within which a place counts as on the rock or on a boundary.
@@ -64,7 +64,7 @@ impl OuterPiece {
     }
 }
 
-impl Places<'_> {
+impl Locator<'_> {
     /// The element at a point.
     pub fn element(&self, key: &str, point: [f64; 2]) -> Result<usize, Invalid> {
         self.covers.element_near(Point::from(point), self.tolerance).ok_or_else(|| Invalid {

@@ -6,7 +6,7 @@ use crate::model::case::key::Key;
 use crate::model::case::{Case, Invalid};
 use crate::state::Model;
 
-use super::place::Places;
+use super::locator::Locator;
 
 /// Young's modulus of soft soil and of the hardest rock (Pa).
 const YOUNG: [f64; 2] = [1e5, 5e11];
@@ -63,7 +63,7 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
 }
 
 /// What is unusual about values of the case.
-pub(super) fn of_values(case: &Case, model: &Model, places: &Places) -> Vec<String> {
+pub(super) fn of_values(case: &Case, model: &Model, places: &Locator) -> Vec<String> {
     let mut warnings = rocks(case);
     warnings.extend(extent(case, model));
     warnings.extend(gravity(case));
@@ -134,7 +134,7 @@ fn unheld(case: &Case) -> Option<String> {
 }
 
 /// Fixed edges that lie off the rock for the most part.
-fn long_edges(case: &Case, places: &Places) -> Vec<String> {
+fn long_edges(case: &Case, places: &Locator) -> Vec<String> {
     let mut warnings = Vec::new();
     for (k, fix) in case.fixes.iter().enumerate() {
         let Some([a, b]) = fix.edge else { continue };

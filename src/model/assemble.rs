@@ -3,8 +3,8 @@
 mod bolts;
 mod geometry;
 mod implicit;
+mod locator;
 mod memory;
-mod place;
 mod ports;
 mod quiet;
 mod rock;
@@ -22,7 +22,7 @@ use crate::mechanics::{
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Model, State};
 
-use place::Places;
+use locator::Locator;
 
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
@@ -64,7 +64,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     tell(BuildStage::Start);
     quiet::check_columns(&model)?;
     warnings::check_stages(case, &model)?;
-    let places = Places { covers: &model.covers, outlines: &outlines, tolerance };
+    let places = Locator { covers: &model.covers, outlines: &outlines, tolerance };
     let monitors = monitors(case, &places)?;
     let state = initial_state(case, &model, &places)?;
     warnings.extend(rock::overstressed(case, &model));
@@ -106,7 +106,7 @@ fn model(
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Places { covers: &covers, outlines, tolerance };
+    let places = Locator { covers: &covers, outlines, tolerance };
     let element_rock = rock::assign(case, &places)?;
     let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
@@ -262,7 +262,7 @@ fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
     in_situ(case).map_or_else(Vec::new, |field| covers.element_centroid.iter().map(|p| field.at(*p)).collect())
 }
 
-fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
+fn fixities(case: &Case, places: &Locator, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
     let (mut fixities, mut supports) = (Vec::new(), Vec::new());
     for (k, fix) in case.fixes.iter().enumerate() {
         let key = format!("fix[{k}]");
@@ -284,7 +284,7 @@ fn fixities(case: &Case, places: &Places, stiffness: f64) -> Result<(Vec<Fixity>
             fixity.covers.extend(places.covers.covers_of(block).map(|i| (i as u32, axes)));
         }
         for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| axes[*axis]) {
-            supports.extend(held.iter().map(|h: &place::Hold| Support {
+            supports.extend(held.iter().map(|h: &locator::Hold| Support {
                 fix: k as u32,
                 block: h.block,
                 covers: h.covers,
@@ -314,7 +314,7 @@ pub(super) fn in_situ(case: &Case) -> Option<StressField> {
     case.in_situ.as_ref().map(field)
 }
 
-fn loads(case: &Case, places: &Places, faces: &ports::Faces) -> Result<Vec<Load>, Invalid> {
+fn loads(case: &Case, places: &Locator, faces: &ports::Faces) -> Result<Vec<Load>, Invalid> {
     let vector = |v: Option<[f64; 2]>| Vector::from(v.unwrap_or_default());
     let mut loads = Vec::new();
     for (k, load) in case.loads.iter().enumerate() {
@@ -345,7 +345,7 @@ fn loads(case: &Case, places: &Places, faces: &ports::Faces) -> Result<Vec<Load>
     Ok(loads)
 }
 
-fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid> {
+fn monitors(case: &Case, places: &Locator) -> Result<Vec<(usize, Point)>, Invalid> {
     let of = |(k, monitor): (usize, &case::Monitor)| {
         let element = places.element(&format!("monitor[{k}].point"), monitor.point)?;
         Ok((element, Point::from(monitor.point)))
@@ -353,7 +353,7 @@ fn monitors(case: &Case, places: &Places) -> Result<Vec<(usize, Point)>, Invalid
     case.monitors.iter().enumerate().map(of).collect()
 }
 
-fn initial_state(case: &Case, model: &Model, places: &Places) -> Result<State, Invalid> {
+fn initial_state(case: &Case, model: &Model, places: &Locator) -> Result<State, Invalid> {
     let covers = model.covers.cover_count();
     let mut velocity = vec![Vector::zeros(); covers];
     for (k, start) in case.initial_velocities.iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::mechanics::{Column, Elasticity, Foot, Record};
 use crate::model::case::{self, Axes, Axis, BaseMotionKind, Case, Invalid};
 use crate::state::{BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, QuietBoundary, TimedRecord};
 
-use super::place::{OuterPiece, Places};
+use super::locator::{Locator, OuterPiece};
 use super::{EDGE_RATIO, in_situ, stiffness_over};
 
 /// Height of a lattice row over the mesh size: cells of columns are about as high, so that waves in both travel alike.
@@ -17,7 +17,7 @@ const INSIDE: f64 = 1e-3;
 /// What the quiet boundaries of a case are made from.
 pub(super) struct Ground<'a> {
     pub case: &'a Case,
-    pub places: &'a Places<'a>,
+    pub places: &'a Locator<'a>,
     pub rocks: &'a [Elasticity],
     pub element_rock: &'a [u16],
 }
