@@ -38,7 +38,7 @@ fn search(criterion: &mut Criterion) {
         let (slope, workspace) = (simulation.model(), simulation.workspace());
         let view = SearchView {
             boundary: &slope.boundary,
-            place: &workspace.place,
+            position: &workspace.position,
             cutoff: 0.25 * slope.covers.mesh.size,
             removed: &simulation.state().removed,
             fixed: &workspace.mass_matrix.fixed,

@@ -24,9 +24,9 @@ fn all_against_all(view: &SearchView) -> Vec<[u32; 3]> {
     let edges: Vec<_> = (0..boundary.len()).filter(|&edge| counts(edge)).collect();
     let mut pairs = Vec::new();
     for node in (0..boundary.node_count()).filter(|&node| counts(boundary.node_point[node] as usize)) {
-        let p = view.place[boundary.node_point[node] as usize];
+        let p = view.position[boundary.node_point[node] as usize];
         for &edge in &edges {
-            let (a, b) = (view.place[edge], view.place[boundary.after(edge)]);
+            let (a, b) = (view.position[edge], view.position[boundary.after(edge)]);
             if segment::distance(p, a, b) < view.cutoff && may_meet(boundary, view.fixed, node, edge) {
                 pairs.push([node as u32, boundary.side[edge], edge as u32]);
             }
@@ -43,8 +43,8 @@ fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
         let far = if block % 50 == 7 { 30.0 } else { 1.0 };
         Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
     };
-    let place = simulation.workspace().place.iter().zip(&slope.boundary.block);
-    place.map(|(p, &block)| p + away(block)).collect()
+    let position = simulation.workspace().position.iter().zip(&slope.boundary.block);
+    position.map(|(p, &block)| p + away(block)).collect()
 }
 
 #[test]
@@ -60,8 +60,8 @@ fn the_search_finds_what_all_against_all_find() {
     let cutoff = 0.25 * simulation.model().covers.mesh.size;
     let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();
     for share in [0.0, 0.1, 0.3] {
-        let place = push(&simulation, share);
-        let view = |serial| SearchView { boundary, place: &place, cutoff, removed: &removed, fixed, serial };
+        let position = push(&simulation, share);
+        let view = |serial| SearchView { boundary, position: &position, cutoff, removed: &removed, fixed, serial };
         let expected = all_against_all(&view(true));
         assert!(expected.len() > 5000, "{} pairs", expected.len());
         for (serial, (grid, neighbours)) in [true, false].into_iter().zip(&mut grids) {

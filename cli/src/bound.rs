@@ -59,7 +59,10 @@ fn mechanism(bound: &Bound) -> String {
         return "none".to_owned();
     }
     let names = listed(moving.iter().map(|b| {
-        format!("{} at ({:.2}, {:.2}) m by ({:.2}, {:.2})", b.block, b.place.x, b.place.y, b.velocity.x, b.velocity.y)
+        format!(
+            "{} at ({:.2}, {:.2}) m by ({:.2}, {:.2})",
+            b.block, b.position.x, b.position.y, b.velocity.x, b.velocity.y
+        )
     }));
     let mass: f64 = moving.iter().map(|b| b.mass).sum();
     let blocks = if moving.len() == 1 { "block" } else { "blocks" };

@@ -166,7 +166,7 @@ fn result(reduction: &Reduction, found: &Found) -> String {
     }
     if let Some(trial) = reduction.first_unstable() {
         tell("mechanism", mechanism(trial, reduction, found));
-        let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.place.x, b.place.y);
+        let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.position.x, b.position.y);
         tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
     lines.extend(reduction.warnings.iter().map(|warning| format!("warning: {warning}")));

@@ -17,7 +17,7 @@ pub struct BoltSegment {
     pub covers: [[u32; 3]; 2],
     /// Weights of those covers at the points.
     pub weights: [Weights; 2],
-    /// Reference places of both points (m).
+    /// Reference positions of both points (m).
     pub points: [Point; 2],
     /// Stiffness EA over free length and spacing (N/m per metre).
     pub stiffness: f64,
@@ -74,13 +74,13 @@ pub struct BoltRow {
 impl BoltSegment {
     /// From the second point to the first (m), for stars at `star` that are displaced by `displacement`.
     pub fn span(&self, star: &[Point], displacement: &[Vector]) -> Vector {
-        let [a, b] = [0, 1].map(|k| self.place(k, star, displacement));
+        let [a, b] = [0, 1].map(|k| self.position(k, star, displacement));
         a - b
     }
 
-    fn place(&self, k: usize, star: &[Point], displacement: &[Vector]) -> Point {
-        let place = |i: u32| star[i as usize] + displacement[i as usize];
-        self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| place(i) * w).sum()
+    fn position(&self, k: usize, star: &[Point], displacement: &[Vector]) -> Point {
+        let position = |i: u32| star[i as usize] + displacement[i as usize];
+        self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| position(i) * w).sum()
     }
 
     /// The state of a segment that is installed at its present length (m): it bears its pretension (Eq. 40).
@@ -98,11 +98,11 @@ impl BoltSegment {
     /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without
     /// forces.
     pub fn row(&self, index: u32, state: &BoltState, view: &BoltView) -> BoltRow {
-        let places = [0, 1].map(|k| self.place(k, view.star, view.displacement));
-        let span = places[0] - places[1];
+        let positions = [0, 1].map(|k| self.position(k, view.star, view.displacement));
+        let span = positions[0] - positions[1];
         let length = span.norm();
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
-        let arms = [0, 1].map(|k| places[k] - view.motion[self.blocks[k] as usize].centre);
+        let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k] as usize].centre);
         let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
         let [compliance] = pair.weigh(view.mass_matrix, [direction]);
         BoltRow {

@@ -144,7 +144,7 @@ impl Boundary {
         if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.node_edge_before[node] as usize] }
     }
 
-    /// Covers that may carry places on an edge: its own and those of both of its ends.
+    /// Covers that may carry positions on an edge: its own and those of both of its ends.
     pub fn covers_on(&self, edge: usize) -> impl Iterator<Item = u32> {
         [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
     }

@@ -39,13 +39,13 @@ pub struct NeighbourList {
 
 impl NeighbourList {
     /// Whether a node has moved more than `slack` (m) since the last search.
-    pub fn is_stale(&self, boundary: &Boundary, place: &[Point], slack: f64) -> bool {
+    pub fn is_stale(&self, boundary: &Boundary, position: &[Point], slack: f64) -> bool {
         self.found_at.len() != boundary.node_count()
             || boundary
                 .node_point
                 .iter()
                 .zip(&self.found_at)
-                .any(|(&p, old)| (place[p as usize] - old).norm_squared() > slack * slack)
+                .any(|(&p, old)| (position[p as usize] - old).norm_squared() > slack * slack)
     }
 
     /// Where the nodes were at the last search (m); empty when the next step has to search anew.
@@ -78,7 +78,7 @@ impl NeighbourList {
             runs.iter().for_each(|run| self.pairs.extend_from_slice(&run.near_pairs));
         }
         self.found_at.clear();
-        self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.place[point as usize]));
+        self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point as usize]));
     }
 }
 
@@ -86,8 +86,8 @@ impl NeighbourList {
 pub struct SearchView<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
-    /// Current places of the boundary points (m).
-    pub place: &'a [Point],
+    /// Current positions of the boundary points (m).
+    pub position: &'a [Point],
     /// Distance (m) within which a pair is near.
     pub cutoff: f64,
     /// Blocks that do not count.

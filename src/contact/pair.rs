@@ -11,7 +11,7 @@ pub struct Pair {
     pub blocks: [u32; 2],
     /// Covers of both points.
     pub covers: [[u32; 3]; 2],
-    /// Weights of those covers at the points' current places.
+    /// Weights of those covers at the points' current positions.
     pub weights: [Weights; 2],
     /// Arms from the blocks' centroids to the points (m).
     pub arms: [Vector; 2],

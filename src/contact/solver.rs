@@ -30,7 +30,7 @@ const LIGHT: f64 = 0.02;
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolverOptions {
-    /// Step (s) over which places move.
+    /// Step (s) over which slots move.
     pub dt: f64,
     /// Time (s) over which forces act: the mean of this step and the one before it (Eq. 10).
     pub kick: f64,
@@ -93,12 +93,12 @@ pub struct OpenClose {
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let Sequence { wide_pairs, ends, first_turn, contacts, places } = &self.sequence;
+        let Sequence { wide_pairs, ends, first_turn, contacts, slots } = &self.sequence;
         let sequence = size_of_val(wide_pairs.as_slice())
             + size_of_val(ends.as_slice())
             + size_of_val(first_turn.as_slice())
             + size_of_val(contacts.as_slice())
-            + size_of_val(places.as_slice());
+            + size_of_val(slots.as_slice());
         let cover_impulse = size_of_val(self.cover_impulse.as_slice()) + size_of_val(self.roots.as_slice());
         let block_impulse = size_of_val(self.block_impulse.as_slice());
         size_of_val(self.rows.as_slice())
@@ -260,17 +260,17 @@ impl OpenClose {
 
     /// Forces and states of all contacts.
     fn finish(&self, contacts: &mut [VertexEdge], serial: bool) {
-        let finish = |(contacts, places): (&mut [VertexEdge], &[u32])| {
-            for (contact, &place) in contacts.iter_mut().zip(places) {
-                let place = place as usize;
-                self.rows[place / LANES].finish(place % LANES, contact);
+        let finish = |(contacts, slots): (&mut [VertexEdge], &[u32])| {
+            for (contact, &slot) in contacts.iter_mut().zip(slots) {
+                let slot = slot as usize;
+                self.rows[slot / LANES].finish(slot % LANES, contact);
             }
         };
-        let places = &self.sequence.places;
+        let slots = &self.sequence.slots;
         if serial || contacts.len() <= CONTACTS {
-            finish((contacts, places));
+            finish((contacts, slots));
         } else {
-            contacts.par_chunks_mut(CONTACTS).zip(places.par_chunks(CONTACTS)).for_each(finish);
+            contacts.par_chunks_mut(CONTACTS).zip(slots.par_chunks(CONTACTS)).for_each(finish);
         }
     }
 

@@ -28,7 +28,7 @@ pub struct Spring {
     pub forward: f64,
     /// Motion (m) that is added to what it feels: minus a share of that of the last step.
     pub lag: f64,
-    /// Time (s) for which places move.
+    /// Time (s) for which positions move.
     pub dt: f64,
     /// Time (s) for which forces act.
     pub kick: f64,

@@ -53,7 +53,7 @@ pub struct ContactHistory {
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
 pub struct VertexEdge {
-    /// The node and the place on the edge that it faces.
+    /// The node and the position on the edge that it faces.
     pub pair: Pair,
     /// Outward unit normal of the edge.
     pub normal: Vector,

@@ -63,7 +63,7 @@ impl Cosimulation {
     }
 
     /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise); they take the
-    /// place of those that a port of the case has at the start.
+    /// position of those that a port of the case has at the start.
     ///
     /// # Errors
     /// A value that is not finite or too large, or a block that does not exist.

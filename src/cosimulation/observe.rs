@@ -103,13 +103,13 @@ impl Cosimulation {
     fn block_port(&self, block: u32) -> PortState {
         let state = self.simulation.motion_of(block as usize);
         let boundary = &self.simulation.model().boundary;
-        let places = self.simulation.places();
+        let positions = self.simulation.positions();
         let mut contact_force = Vector::zeros();
         for contact in &self.simulation.state().contacts {
             let [of_node, of_edge] = contact_blocks(boundary, contact);
             let sign = f64::from(i8::from(of_node == block) - i8::from(of_edge == block));
             if sign != 0.0 {
-                contact_force += force_on_node(boundary, &places, contact) * sign;
+                contact_force += force_on_node(boundary, &positions, contact) * sign;
             }
         }
         PortState {
@@ -167,9 +167,9 @@ fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [u32; 2] {
 }
 
 /// Force of a contact on its node (N/m); its edge feels the opposite.
-fn force_on_node(boundary: &Boundary, places: &[Point], contact: &ContactHistory) -> Vector {
+fn force_on_node(boundary: &Boundary, positions: &[Point], contact: &ContactHistory) -> Vector {
     let edge = contact.edge as usize;
-    let along = (places[boundary.after(edge)] - places[edge]).normalize();
+    let along = (positions[boundary.after(edge)] - positions[edge]).normalize();
     let normal = Vector::new(along.y, -along.x);
     normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force
 }

@@ -43,7 +43,7 @@ pub struct Covers {
     pub block_covers: Vec<u32>,
     /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
     pub host: Vec<u32>,
-    /// Elements in the order of their lattice triangles, row by row, for finding them by place.
+    /// Elements in the order of their lattice triangles, row by row, for finding them by position.
     by_triangle: Vec<u32>,
 }
 
@@ -108,7 +108,7 @@ impl Covers {
         self.around(p, 0.0).filter(|&e| polygon::contains(self.polygon(e), p)).min()
     }
 
-    /// Bytes of the index by place.
+    /// Bytes of the index by position.
     pub fn index_bytes(&self) -> usize {
         size_of_val(self.by_triangle.as_slice())
     }
@@ -197,11 +197,11 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
 /// See [`Covers::by_triangle`].
 fn by_triangle(covers: &Covers) -> Vec<u32> {
     let mut elements: Vec<u32> = (0..covers.element_count() as u32).collect();
-    let place = |e: u32| {
+    let position = |e: u32| {
         let triangle = &covers.element_triangle[e as usize];
         (triangle.j, triangle.i)
     };
-    elements.sort_unstable_by_key(|&e| (place(e), e));
+    elements.sort_unstable_by_key(|&e| (position(e), e));
     elements
 }
 
@@ -435,8 +435,8 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
         let (block, [i, j]) = (blocks.block[s as usize / 3], star_of(s));
         let tile = (counts[block as usize] >= order::TILED).then(|| order::tile([i, j]));
         let node = tile.map_or([i, j], order::tile_centre);
-        let place = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
-        (block, place, tile, [j, i], s)
+        let position = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
+        (block, position, tile, [j, i], s)
     });
     let mut cover_of_root = vec![NONE; joined.slot_root.len()];
     for (k, &s) in roots.iter().enumerate() {

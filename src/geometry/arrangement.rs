@@ -112,7 +112,7 @@ pub struct NodingReport {
     pub tolerance: f64,
     /// Rounds of splitting and crossing until nothing changed.
     pub passes: usize,
-    /// Segment ends that became one with another end at a different place.
+    /// Segment ends that became one with another end at a different position.
     pub merged_vertices: usize,
     /// Dead ends removed.
     pub trimmed_edges: usize,
@@ -236,8 +236,8 @@ impl Copies {
         };
         let groups = Groups::build(traces, of_trace);
         let compare = |s: u32, t: u32| {
-            let places = |t: u32| groups.get(t as usize).iter().map(|&k| place(&segments[k as usize]));
-            places(s).cmp(places(t))
+            let positions = |t: u32| groups.get(t as usize).iter().map(|&k| position(&segments[k as usize]));
+            positions(s).cmp(positions(t))
         };
         let pure = |t: &u32| {
             let own = groups.get(*t as usize);
@@ -277,14 +277,14 @@ impl Copies {
 }
 
 /// Start and end of a segment as numbers that compare.
-fn place(segment: &Segment) -> [u64; 4] {
+fn position(segment: &Segment) -> [u64; 4] {
     [segment.a.x, segment.a.y, segment.b.x, segment.b.y].map(f64::to_bits)
 }
 
 /// Cuts the plane along segments: merges what lies within `tolerance` (m), inserts crossings, trims dead ends, walks
 /// round the faces and floods the winding from outside.
 ///
-/// Vertices within 1.5 tolerances become one, at the place of the first in input order; edges are split at vertices
+/// Vertices within 1.5 tolerances become one, at the position of the first in input order; edges are split at vertices
 /// nearer than one tolerance. Mesh edges may meet each other in shared ends only. Traces are cut off far outside the
 /// box of outline and mesh, where they can bound no rock.
 ///

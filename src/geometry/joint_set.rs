@@ -62,8 +62,9 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
     let (low, high) = bounds(&region);
     let (along, normal) = (Vector::new(set.dip.cos(), set.dip.sin()), Vector::new(-set.dip.sin(), set.dip.cos()));
     let range = |axis: Vector| {
-        let places = region.iter().map(|p| p.dot(&axis));
-        places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)))
+        let positions = region.iter().map(|p| p.dot(&axis));
+        positions
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), position| (low.min(position), high.max(position)))
     };
     let (start, end) = range(along);
     let (bottom, top) = range(normal);
@@ -76,19 +77,19 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
     let margin = half * (DIP_DEVIATIONS_MAX * set.dip_sd).sin();
     let mut line = bottom - margin + set.spacing * random.uniform();
     while line < top + margin {
-        let mut place = first_start(set, start, &mut random);
-        while place < end {
+        let mut position = first_start(set, start, &mut random);
+        while position < end {
             tried += 1;
             if tried > TRACES_MAX {
                 return Err(GeometryError::TooManyTraces { spacing: set.spacing, limit: TRACES_MAX });
             }
             let length = set.trace_length.map_or(end - start, |mean| random.near(mean, set.trace_length_sd));
-            let middle = normal * line + along * (place + 0.5 * length);
+            let middle = normal * line + along * (position + 0.5 * length);
             let turn = random.direction(set.dip_sd);
             let stretch = if set.trace_length.is_none() { 1.0 / turn.x } else { 1.0 };
             let half = (along * turn.x + normal * turn.y) * (0.5 * length * stretch);
             clip_to(&region, middle - half, middle + half, piece_min, &mut traces);
-            place += length + set.gap;
+            position += length + set.gap;
         }
         line += random.near(set.spacing, set.spacing_sd);
     }

@@ -18,7 +18,7 @@ pub use arrangement::{
 };
 pub use error::GeometryError;
 
-/// A place in the plane (m).
+/// A position in the plane (m).
 pub type Point = nalgebra::Vector2<f64>;
 /// A direction, a displacement, a velocity or a force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;

@@ -19,7 +19,7 @@ const MARGIN_RATIO: f64 = 1.0;
 const ROUND_OFF_RATIO: f64 = 64.0;
 /// Hits of one pass over the edges allowed; many hits may fall on one vertex.
 const HITS_RATIO: usize = 4;
-/// Places in cells of the grid over the edges allowed.
+/// Positions in cells of the grid over the edges allowed.
 const PLACES_RATIO: usize = 100;
 
 /// An edge in the making.
@@ -40,7 +40,7 @@ pub(super) struct WorkEdge {
 struct Hit {
     edge: u32,
     vertex: u32,
-    /// Place along the edge, 0 to 1.
+    /// Position along the edge, 0 to 1.
     at: f64,
     /// Whether the vertex lies off the line.
     bends: bool,
@@ -125,11 +125,11 @@ impl Noder {
 
     /// Refuses edges that pass through too many cells of the grid, as dense ones across the whole plane do.
     fn check_places(&self) -> Result<(), GeometryError> {
-        let mut places = 0;
+        let mut positions = 0;
         for (id, edge) in (0u32..).zip(&self.edges) {
             let (a, b) = self.ends(edge);
-            places += self.grid.cells_along(a, b);
-            self.check_count(places, PLACES_RATIO.saturating_mul(self.edges_max), id)?;
+            positions += self.grid.cells_along(a, b);
+            self.check_count(positions, PLACES_RATIO.saturating_mul(self.edges_max), id)?;
         }
         Ok(())
     }
@@ -248,8 +248,8 @@ impl Noder {
                 }
             });
             for &f in &near {
-                if let Some(place) = self.crossing(&edge, &self.edges[f as usize]) {
-                    crossings.push(Crossing { vertex: self.vertex(place), edges: [e, f] });
+                if let Some(position) = self.crossing(&edge, &self.edges[f as usize]) {
+                    crossings.push(Crossing { vertex: self.vertex(position), edges: [e, f] });
                 }
             }
             self.check_count(crossings.len(), HITS_RATIO.saturating_mul(self.edges_max), e)?;
@@ -365,6 +365,6 @@ fn clip(segment: &Segment, reach: &Reach) -> Option<Segment> {
     if start > end {
         return None;
     }
-    let place = |t: f64, whole: Point| if t > 0.0 && t < 1.0 { segment.a + along * t } else { whole };
-    Some(Segment { a: place(start, segment.a), b: place(end, segment.b), label: segment.label })
+    let position = |t: f64, whole: Point| if t > 0.0 && t < 1.0 { segment.a + along * t } else { whole };
+    Some(Segment { a: position(start, segment.a), b: position(end, segment.b), label: segment.label })
 }

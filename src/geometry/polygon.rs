@@ -22,7 +22,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Integrates over a polygon about a place (m) by Green's theorem: ½Σc, Σc(p+q)/6 and Σc(p⊗p+q⊗q+½(p⊗q+q⊗p))/12
+    /// Integrates over a polygon about a position (m) by Green's theorem: ½Σc, Σc(p+q)/6 and Σc(p⊗p+q⊗q+½(p⊗q+q⊗p))/12
     /// over the sides pq with c = p×q. The sums run about the first point: a far origin costs no digits.
     pub fn of(polygon: &[Point], about: Point) -> Self {
         let mut sum = Self { area: 0.0, first: Vector::zeros(), second: [0.0; 3] };
@@ -277,10 +277,10 @@ mod tests {
 
     #[test]
     fn moments_of_a_far_rectangle_match_the_closed_form() {
-        // ∫x² over [0,w] is w³h/3, ∫xy is w²h²/4; the far place must not cost digits of area and centroid.
+        // ∫x² over [0,w] is w³h/3, ∫xy is w²h²/4; the far position must not cost digits of area and centroid.
         let (w, h, far) = (3.0, 2.0, Vector::new(4.0e6, 6.0e6));
-        let place = |k: &Point| k + far;
-        let shape: Vec<Point> = rectangle(0.0, 0.0, w, h).iter().map(place).collect();
+        let position = |k: &Point| k + far;
+        let shape: Vec<Point> = rectangle(0.0, 0.0, w, h).iter().map(position).collect();
         let m = Moments::of(&shape, far);
         assert_eq!(m.area, 6.0);
         assert_eq!(m.first, Vector::new(9.0, 6.0));

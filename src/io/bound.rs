@@ -56,8 +56,8 @@ fn collapse(collapse: &Collapse) -> Value {
     let block = |b: &limit_analysis::MovingBlock| {
         json!({
             "block": b.block,
-            "x": b.place.x,
-            "y": b.place.y,
+            "x": b.position.x,
+            "y": b.position.y,
             "vx": b.velocity.x,
             "vy": b.velocity.y,
             "spin": b.spin,

@@ -34,7 +34,7 @@ pub enum CaseError {
         file: String,
         /// Line, counted from 1.
         line: usize,
-        /// Place in the file, such as `rock.granite.young`.
+        /// Position in the file, such as `rock.granite.young`.
         key: String,
         /// What is wrong, the value, the limit and the remedy.
         message: String,
@@ -65,7 +65,7 @@ pub fn read_text(path: &Path) -> Result<String, String> {
         return Err(format!("the file has more than {SIZE_MAX} bytes, the limit; split or thin it"));
     }
     String::from_utf8(bytes).map_err(|error| {
-        let place = error.utf8_error().valid_up_to();
-        format!("byte {place} is not UTF-8 text, which input files must be; save the file as UTF-8 text")
+        let position = error.utf8_error().valid_up_to();
+        format!("byte {position} is not UTF-8 text, which input files must be; save the file as UTF-8 text")
     })
 }

@@ -11,8 +11,8 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
     let (model, case) = (simulation.model(), simulation.case());
     let covers = &model.covers;
     let supports = model.supports.iter().map(|support| {
-        let place = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
-        support.covers.iter().zip(support.weights).map(place).sum()
+        let position = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
+        support.covers.iter().zip(support.weights).map(position).sum()
     });
     let mut fixed: Vec<Point> = supports.collect();
     fixed.dedup();

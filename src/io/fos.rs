@@ -256,7 +256,7 @@ fn search_record(reduction: &Reduction) -> Value {
 fn block_record(block: &FailingBlock) -> Value {
     json!({
         "block": block.block,
-        "place": [block.place.x, block.place.y],
+        "place": [block.position.x, block.position.y],
         "area": block.area,
         "mass": block.mass,
         "displacement": block.displacement,

@@ -88,7 +88,7 @@ pub struct FailureRecord {
 
 impl From<&StepError> for FailureRecord {
     fn from(error: &StepError) -> Self {
-        let place = [error.place.x, error.place.y];
+        let place = [error.position.x, error.position.y];
         Self { block: error.block, place, time: error.time, cause: error.failure.to_string() }
     }
 }

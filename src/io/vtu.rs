@@ -21,7 +21,7 @@ const VERTEX: u8 = 1;
 const POLY_VERTEX: u8 = 2;
 const POLYGON: u8 = 7;
 
-/// Writes the elements of a snapshot: one polygon each, with its own points at their current place.
+/// Writes the elements of a snapshot: one polygon each, with its own points at their current position.
 ///
 /// Point data: `displacement` (m), `velocity` (m/s), three components each. Cell data: `stress_xx`, `stress_yy`,
 /// `stress_xy` (Pa, tension positive), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (both Pa, in

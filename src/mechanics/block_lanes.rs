@@ -1,7 +1,7 @@
 //! Velocities of a block's covers, eight side by side: the sums that its rigid motion follows from, and the writing of
 //! the kick (Eqs. 3, 5, 10–12).
 //!
-//! Places count from one cover of the block and velocities from that cover's, so that one pass gives all sums without
+//! Positions count from one cover of the block and velocities from that cover's, so that one pass gives all sums without
 //! loss of digits wherever the block is and however fast it flies.
 
 use std::ops::{AddAssign, Range};
@@ -28,13 +28,13 @@ fn totals<L: Lanes, const N: usize>(lanes: L, sums: &[L::F; N]) -> [f64; N] {
 /// What sums count from.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reference {
-    /// Place (m).
-    pub place: Point,
+    /// Position (m).
+    pub position: Point,
     /// Velocity (m/s).
     pub velocity: Vector,
 }
 
-/// Sums over covers of a block: place q and velocity w count from a reference.
+/// Sums over covers of a block: position q and velocity w count from a reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockSums {
     /// Σμq (kg).
@@ -102,7 +102,7 @@ fn splat<L: Lanes>(lanes: L, v: Vector) -> [L::F; 2] {
 impl<F: Arithmetic> Chunk<F> {
     #[inline(always)]
     fn new<L: Lanes<F = F>>(lanes: L, from: &Reference, [star, u, v]: [[F; 2]; 3], [mass, inertial]: [F; 2]) -> Self {
-        let (at, with) = (splat(lanes, from.place), splat(lanes, from.velocity));
+        let (at, with) = (splat(lanes, from.position), splat(lanes, from.velocity));
         let q = [star[0] + u[0] - at[0], star[1] + u[1] - at[1]];
         Self { q, w: [v[0] - with[0], v[1] - with[1]], mass, inertial }
     }
@@ -132,7 +132,7 @@ impl Span<'_> {
     /// Covers beyond the end are at the reference and have no inertial mass.
     #[inline(always)]
     fn chunk<L: Lanes>(&self, lanes: L, range: Range<usize>, from: &Reference) -> Chunk<L::F> {
-        let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+        let star = lanes.load_some_pairs(&self.star[range.clone()], from.position);
         let u = lanes.load_some_pairs(&self.displacement[range.clone()], Vector::zeros());
         let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
         let (mass, inertial) = (&self.mass[range.clone()], &self.inertial[range]);
@@ -141,7 +141,7 @@ impl Span<'_> {
 
     /// What sums of this block count from, when this span begins it.
     pub fn reference(&self) -> Reference {
-        Reference { place: self.star[0] + self.displacement[0], velocity: self.velocity[0] }
+        Reference { position: self.star[0] + self.displacement[0], velocity: self.velocity[0] }
     }
 
     /// Sums over the span, with those of `force` (N/m) where they are asked for.
@@ -219,7 +219,7 @@ impl<F: Arithmetic> Tally<F> {
     }
 }
 
-/// A velocity that all covers of a block share but for place and mass: a + (μ/m)·b + spin·J90·q.
+/// A velocity that all covers of a block share but for position and mass: a + (μ/m)·b + spin·J90·q.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Common {
     /// a (m/s).
@@ -231,7 +231,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// A spin about a place q, and a translation.
+    /// A spin about a position q, and a translation.
     pub fn about(velocity: Vector, spin: f64, centre: Vector) -> Self {
         Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
     }
@@ -484,7 +484,7 @@ pub struct End<'a> {
 /// What is wanted of the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Wants {
-    /// Time (s) by which places move.
+    /// Time (s) by which positions move.
     pub dt: f64,
     /// Whether contacts push the block.
     pub is_pushed: bool,
@@ -520,7 +520,7 @@ impl End<'_> {
             let u = lanes.load_some_pairs(&displacement[range.clone()], still);
             let mut v = lanes.load_some_pairs(&velocity[range.clone()], still);
             // Covers beyond the end are at the reference; a mass of 1 keeps their ratio μ/m a number.
-            let star = lanes.load_some_pairs(&self.star[range.clone()], from.place);
+            let star = lanes.load_some_pairs(&self.star[range.clone()], from.position);
             let old = lanes.load_some_pairs(&before[range.clone()], from.velocity);
             let m = [lanes.load_some(&mass[range.clone()], 1.0), lanes.load_some(&inertial[range.clone()], 0.0)];
             let chunk = Chunk::new(lanes, from, [star, u, old], m);

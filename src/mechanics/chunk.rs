@@ -5,7 +5,7 @@
 //! eight in a row and those at their tips are runs of slots. Such a group needs no gather and no scatter.
 //!
 //! Elements that touch covers of two parts of a block belong to both, so that every part finds the whole force on its
-//! own covers and no two threads write to the same place.
+//! own covers and no two threads write to the same position.
 
 use std::ops::Range;
 
@@ -344,11 +344,11 @@ impl Cutter<'_> {
 
     /// Rows of elements whose covers are in runs of slots; returns the other elements.
     fn push_rows(&mut self, set: u8, elements: &[u32]) -> Vec<u32> {
-        let place = |&e: &u32| {
+        let position = |&e: &u32| {
             let [left, right, tip] = self.row_slots(set, e);
             (right == left + 1, tip.wrapping_sub(left), left, e)
         };
-        let mut sorted: Vec<_> = elements.iter().map(place).collect();
+        let mut sorted: Vec<_> = elements.iter().map(position).collect();
         sorted.sort_unstable();
         let (apart, mut rest) = sorted.split_at(sorted.partition_point(|s| !s.0));
         let mut others: Vec<u32> = apart.iter().map(|s| s.3).collect();

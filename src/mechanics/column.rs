@@ -56,9 +56,9 @@ pub struct Column {
     pub foot: Foot,
 }
 
-/// A place in a column: a cell and the share of its height.
+/// A position in a column: a cell and the share of its height.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ColumnPlace {
+pub struct ColumnPosition {
     cell: u32,
     share: f64,
 }
@@ -86,11 +86,11 @@ impl Column {
         self.rocks.iter().map(through).fold(f64::INFINITY, f64::min)
     }
 
-    /// The place at a height y (m).
-    pub fn place(&self, y: f64) -> ColumnPlace {
+    /// The position at a height y (m).
+    pub fn position(&self, y: f64) -> ColumnPosition {
         let height = ((y - self.foot_height) / self.spacing).clamp(0.0, self.rocks.len() as f64);
         let cell = (height as usize).min(self.rocks.len() - 1);
-        ColumnPlace { cell: cell as u32, share: height - cell as f64 }
+        ColumnPosition { cell: cell as u32, share: height - cell as f64 }
     }
 
     /// Mass of a node (kg/m per metre of width).
@@ -146,8 +146,8 @@ impl Column {
     }
 }
 
-impl ColumnPlace {
-    /// A field of the nodes at this place.
+impl ColumnPosition {
+    /// A field of the nodes at this position.
     pub fn sample(&self, field: &[Vector]) -> Vector {
         let cell = self.cell as usize;
         field[cell] + (field[cell + 1] - field[cell]) * self.share
@@ -206,7 +206,7 @@ mod tests {
         let column = column(Foot::Rigid);
         let field: Vec<Vector> = (0..41).map(|k| Vector::new(f64::from(k), 0.0)).collect();
         for (y, expected) in [(1.0, 0.0), (1.2, 0.4), (21.0, 40.0), (30.0, 40.0)] {
-            assert!((column.place(y).sample(&field).x - expected).abs() < 1e-12);
+            assert!((column.position(y).sample(&field).x - expected).abs() < 1e-12);
         }
     }
 }

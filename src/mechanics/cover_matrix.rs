@@ -9,7 +9,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-/// Place of a pair of covers that the matrix does not hold.
+/// Slot of a pair of covers that the matrix does not hold.
 pub const UNCOUPLED: u32 = u32::MAX;
 
 /// The matrix is not positive definite to working precision.
@@ -92,8 +92,8 @@ impl CoverMatrix {
         self.symbolic = None;
     }
 
-    /// Place of the block of a pair of covers, row not before column; [`UNCOUPLED`] when the pattern lacks it.
-    pub fn place(&self, row: u32, column: u32) -> u32 {
+    /// Slot of the block of a pair of covers, row not before column; [`UNCOUPLED`] when the pattern lacks it.
+    pub fn slot(&self, row: u32, column: u32) -> u32 {
         let first = self.block_start[column as usize] as usize;
         let rows = &self.block_row[first..self.block_start[column as usize + 1] as usize];
         match rows.binary_search(&row) {
@@ -107,17 +107,17 @@ impl CoverMatrix {
         self.value.fill(0.0);
     }
 
-    /// Adds a block (row by row) at the `place` of a pair of covers; `diagonal` when both are the same.
+    /// Adds a block (row by row) at the `slot` of a pair of covers; `diagonal` when both are the same.
     #[inline]
-    pub fn add(&mut self, place: u32, column: u32, block: [f64; 4], diagonal: bool) {
-        if place == UNCOUPLED {
+    pub fn add(&mut self, slot: u32, column: u32, block: [f64; 4], diagonal: bool) {
+        if slot == UNCOUPLED {
             return;
         }
-        let place = place as usize;
+        let slot = slot as usize;
         let second =
-            place + (self.column_start[2 * column as usize + 1] - self.column_start[2 * column as usize]) as usize - 1;
-        self.value[place] += block[0];
-        self.value[place + 1] += block[2];
+            slot + (self.column_start[2 * column as usize + 1] - self.column_start[2 * column as usize]) as usize - 1;
+        self.value[slot] += block[0];
+        self.value[slot + 1] += block[2];
         if !diagonal {
             self.value[second] += block[1];
         }
@@ -194,12 +194,12 @@ mod tests {
         let mut matrix = CoverMatrix::default();
         matrix.set_pattern(3, &[[0, 1], [1, 2]]);
         for i in 0..3u32 {
-            matrix.add(matrix.place(i, i), i, [4.0, 0.5, 0.5, 3.0], true);
+            matrix.add(matrix.slot(i, i), i, [4.0, 0.5, 0.5, 3.0], true);
         }
         for i in 0..2u32 {
-            matrix.add(matrix.place(i + 1, i), i, [-1.0, 0.25, -0.5, -1.0], false);
+            matrix.add(matrix.slot(i + 1, i), i, [-1.0, 0.25, -0.5, -1.0], false);
         }
-        assert_eq!(matrix.place(2, 0), UNCOUPLED);
+        assert_eq!(matrix.slot(2, 0), UNCOUPLED);
         matrix.factorise().unwrap();
         let x = [1.0, -2.0, 0.5, 3.0, -1.0, 2.0];
         let mut b = [0.0; 6];

@@ -19,7 +19,7 @@ pub struct StressField {
 }
 
 impl StressField {
-    /// Stress (Pa) at a place.
+    /// Stress (Pa) at a position.
     pub fn at(&self, p: Point) -> PreStress {
         [0, 1, 2].map(|k| self.value[k] + self.gradient[k] * (p.y - self.y_reference))
     }

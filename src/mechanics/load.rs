@@ -72,11 +72,11 @@ impl Load {
 
     /// Adds the forces of this load at time `t` (s) to `force` (N/m per cover).
     ///
-    /// `place` gives the current position of a cover's star, `block` the covers of a block.
+    /// `position` gives the current position of a cover's star, `block` the covers of a block.
     pub fn push(
         &self,
         t: f64,
-        place: impl Fn(usize) -> Point,
+        position: impl Fn(usize) -> Point,
         block: impl Fn(u32) -> std::ops::Range<usize>,
         mass_matrix: &MassMatrix,
         force: &mut [Vector],
@@ -90,7 +90,7 @@ impl Load {
             }
             LoadAction::Pressure(list, pressure) => {
                 for (covers, ends) in list {
-                    let [a, b] = ends.map(|w| (0..3).map(|k| place(covers[k] as usize) * w[k]).sum::<Point>());
+                    let [a, b] = ends.map(|w| (0..3).map(|k| position(covers[k] as usize) * w[k]).sum::<Point>());
                     let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
                     spread(covers, &middle, inward(a, b) * (pressure * factor), force);
                 }
@@ -98,14 +98,14 @@ impl Load {
             LoadAction::Faces(faces) => {
                 for LoadedFace { covers, weights, span, pressure } in faces {
                     let [a, b] =
-                        [0, 1].map(|e| (0..3).map(|k| place(covers[e][k] as usize) * weights[e][k]).sum::<Point>());
+                        [0, 1].map(|e| (0..3).map(|k| position(covers[e][k] as usize) * weights[e][k]).sum::<Point>());
                     let forces = part(inward(a, b), *span, pressure.map(|p| p * factor));
                     (0..2).for_each(|e| spread(&covers[e], &weights[e], forces[e], force));
                 }
             }
             LoadAction::Body(_) => {}
             LoadAction::Block(id, f, moment) => {
-                push_block(block(*id), &place, mass_matrix, f * factor, moment * factor, force);
+                push_block(block(*id), &position, mass_matrix, f * factor, moment * factor, force);
             }
         }
     }
@@ -121,17 +121,17 @@ pub fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vect
 /// Spreads a force and a moment over a block so that it moves as a rigid body: μ·f/M and m·(x − x_D)^⊥·τ/J_D.
 pub fn push_block(
     covers: std::ops::Range<usize>,
-    place: &impl Fn(usize) -> Point,
+    position: &impl Fn(usize) -> Point,
     mass_matrix: &MassMatrix,
     f: Vector,
     moment: f64,
     force: &mut [Vector],
 ) {
     let total: f64 = mass_matrix.row_sum[covers.clone()].iter().sum();
-    let centre = covers.clone().map(|i| place(i) * mass_matrix.mass[i]).sum::<Point>() / total;
-    let polar: f64 = covers.clone().map(|i| mass_matrix.mass[i] * (place(i) - centre).norm_squared()).sum();
+    let centre = covers.clone().map(|i| position(i) * mass_matrix.mass[i]).sum::<Point>() / total;
+    let polar: f64 = covers.clone().map(|i| mass_matrix.mass[i] * (position(i) - centre).norm_squared()).sum();
     for i in covers {
-        let arm = place(i) - centre;
+        let arm = position(i) - centre;
         let spin = Vector::new(-arm.y, arm.x) * (mass_matrix.mass[i] * moment / polar);
         force[i] += f * (mass_matrix.row_sum[i] / total) + spin;
     }
@@ -150,12 +150,12 @@ mod tests {
 
     #[test]
     fn a_block_moment_has_no_resultant_force() {
-        let places = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
+        let positions = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
         let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
         let mass_matrix = MassMatrix { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..MassMatrix::default() };
-        load.push(0.0, |i| places[i], |_| 0..3, &mass_matrix, &mut force);
-        let torque: f64 = places.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
+        load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force);
+        let torque: f64 = positions.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
         assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
     }
 }

@@ -30,7 +30,7 @@ pub struct MassMatrix {
     /// Polar inertia of the lumped masses about their own centroid (kg·m²/m).
     pub polar_lumped: Vec<f64>,
     /// The C of Eq. 3 (1/(kg·m)), no angular velocity; 0 of a held block. As built it is 1/J − 1/J_D; every step
-    /// writes that of the current places, [`BlockMotion::spin`](super::BlockMotion::spin).
+    /// writes that of the current positions, [`BlockMotion::spin`](super::BlockMotion::spin).
     pub spin: Vec<f64>,
     /// How many times lighter free blocks are as rigid bodies than their rock; their weights are not.
     pub lightness: f64,

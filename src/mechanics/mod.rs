@@ -17,7 +17,7 @@ pub mod pressure;
 mod record;
 
 pub use chunk::{Chunk, Chunks};
-pub use column::{Column, ColumnDrive, ColumnPlace, ColumnState, Foot};
+pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use consistent::{PAIRS, element_mass, push_mass, stiffness_block};
 pub use cover_matrix::{CoverMatrix, NotPositive, UNCOUPLED};
 pub use elasticity::{Elasticity, critical_dt};

@@ -24,7 +24,7 @@ pub enum Damping {
 pub struct BlockMotion {
     /// Centroid (m).
     pub centre: Point,
-    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current places; 0 of a held one.
+    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current positions; 0 of a held one.
     pub spin: f64,
 }
 
@@ -33,11 +33,11 @@ struct Sums {
     velocity: Vector,
     linear: Vector,
     moment: f64,
-    /// Polar inertia of the lumped masses about their own centroid at the current places (kg·m²/m).
+    /// Polar inertia of the lumped masses about their own centroid at the current positions (kg·m²/m).
     polar: f64,
 }
 
-/// One block's slices of the cover arrays, and the block's place in the metric.
+/// One block's slices of the cover arrays, and the block's position in the metric.
 pub struct BlockCovers<'a> {
     /// Masses of all covers and blocks.
     pub mass_matrix: &'a MassMatrix,
@@ -54,13 +54,13 @@ pub struct BlockCovers<'a> {
 }
 
 impl BlockCovers<'_> {
-    fn place(&self, i: usize) -> Point {
+    fn position(&self, i: usize) -> Point {
         self.star[i] + self.displacement[i]
     }
 
     /// Centroid of the block in its metric.
     fn centre(&self) -> Point {
-        let first: Point = self.range.clone().map(|i| self.place(i) * self.mass_matrix.inertial[i]).sum();
+        let first: Point = self.range.clone().map(|i| self.position(i) * self.mass_matrix.inertial[i]).sum();
         first / self.mass_matrix.total[self.block]
     }
 
@@ -71,7 +71,7 @@ impl BlockCovers<'_> {
         let velocity = self.range.clone().map(|i| field[i] * mass_matrix.inertial[i]).sum::<Vector>() / total;
         let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
         for i in self.range.clone() {
-            let (m, d, u) = (mass_matrix.mass[i], self.place(i) - centre, field[i] - velocity);
+            let (m, d, u) = (mass_matrix.mass[i], self.position(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
@@ -118,7 +118,7 @@ pub fn rigid_motion(covers: &BlockCovers) -> (Point, Vector, f64) {
 pub fn rigid_velocity(covers: &BlockCovers, velocity: Vector, spin: f64, out: &mut [Vector]) {
     let centre = covers.centre();
     for (k, i) in covers.range.clone().enumerate() {
-        out[k] = velocity + turned(covers.place(i) - centre) * spin;
+        out[k] = velocity + turned(covers.position(i) - centre) * spin;
     }
 }
 
@@ -131,7 +131,7 @@ pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
             let sums = covers.sums(covers.velocity, centre);
             let spin = sums.moment / sums.polar;
             for (k, i) in covers.range.clone().enumerate() {
-                let rigid = sums.velocity + turned(covers.place(i) - centre) * spin;
+                let rigid = sums.velocity + turned(covers.position(i) - centre) * spin;
                 let held = covers.mass_matrix.inverse[i].map(|v| f64::from(u8::from(v > 0.0)));
                 damped[k] = (rigid + (own[k] - rigid) * factor).component_mul(&held);
             }
@@ -145,7 +145,7 @@ pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
     }
 }
 
-/// How a block moves at the start of a step, in its metric; places and velocities count from the reference.
+/// How a block moves at the start of a step, in its metric; positions and velocities count from the reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockStart {
     /// What the rest counts from.
@@ -180,7 +180,7 @@ impl BlockStart {
 
     /// What contacts see of the block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
     pub fn motion(&self, mass_matrix: &MassMatrix, block: usize) -> BlockMotion {
-        let centre = self.from.place + self.centre;
+        let centre = self.from.position + self.centre;
         if !mass_matrix.is_free(block) {
             return BlockMotion { centre, spin: 0.0 };
         }

@@ -33,8 +33,8 @@ pub fn hydrostatic(a: Point, b: Point, level: f64, weight: f64) -> [Vector; 2] {
 /// is crossed.
 pub fn under_table(a: Point, b: Point, table: &[Point], rise: f64, weight: f64) -> [Vector; 2] {
     let normal = inward(a, b) * weight;
-    let place = |s: f64| a + (b - a) * s;
-    let depth = |s: f64| surface(table, place(s).x) + rise - place(s).y;
+    let position = |s: f64| a + (b - a) * s;
+    let depth = |s: f64| surface(table, position(s).x) + rise - position(s).y;
     let run = b.x - a.x;
     let mut forces = [Vector::zeros(); 2];
     let mut from = 0.0;

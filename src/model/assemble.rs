@@ -49,7 +49,7 @@ pub struct Built {
 /// Builds the model of a case; `tell` hears of every part of the build as it begins.
 ///
 /// # Errors
-/// The first key of the case that does not fit the model: geometry, references to places without rock, memory.
+/// The first key of the case that does not fit the model: geometry, references to positions without rock, memory.
 pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
     case.validate()?;
     implicit::know(case)?;
@@ -64,14 +64,14 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     tell(BuildStage::Start);
     quiet::check_columns(&model)?;
     warnings::check_stages(case, &model)?;
-    let places = Locator { covers: &model.covers, outlines: &outlines, tolerance };
-    let monitors = monitors(case, &places)?;
-    let state = initial_state(case, &model, &places)?;
+    let positions = Locator { covers: &model.covers, outlines: &outlines, tolerance };
+    let monitors = monitors(case, &positions)?;
+    let state = initial_state(case, &model, &positions)?;
     warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
-    warnings.extend(warnings::of_values(case, &model, &places));
+    warnings.extend(warnings::of_values(case, &model, &positions));
     Ok(Built {
         model,
         state,
@@ -106,17 +106,17 @@ fn model(
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
-    let places = Locator { covers: &covers, outlines, tolerance };
-    let element_rock = rock::assign(case, &places)?;
-    let ground = quiet::Ground { case, places: &places, rocks: &rocks, element_rock: &element_rock };
+    let positions = Locator { covers: &covers, outlines, tolerance };
+    let element_rock = rock::assign(case, &positions)?;
+    let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
-    let (bolts, bolt_warnings) = bolts::bolts(case, &places)?;
-    let faces = ports::Faces { boundary: &boundary, tolerance: places.tolerance };
-    let loads = loads(case, &places, &faces)?;
-    let (ports, water) = (ports::ports(case, &places, &faces)?, ports::water(case, &faces)?);
+    let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
+    let faces = ports::Faces { boundary: &boundary, tolerance: positions.tolerance };
+    let loads = loads(case, &positions, &faces)?;
+    let (ports, water) = (ports::ports(case, &positions, &faces)?, ports::water(case, &faces)?);
     let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
@@ -160,7 +160,7 @@ fn model(
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
 fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
-    let (mut fixities, mut supports) = fixities(ground.case, ground.places, ground.stiffness())?;
+    let (mut fixities, mut supports) = fixities(ground.case, ground.positions, ground.stiffness())?;
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))
@@ -171,7 +171,7 @@ fn shortest_critical_dt(covers: &Covers, rocks: &[Elasticity]) -> f64 {
     rocks.iter().map(|r| critical_dt(covers.mesh.size, r)).fold(f64::INFINITY, f64::min)
 }
 
-/// Distance (m) within which a place of the case counts as on the rock.
+/// Distance (m) within which a position of the case counts as on the rock.
 fn places_tolerance(noding: &NodingReport) -> f64 {
     2.0 * noding.tolerance
 }
@@ -262,7 +262,7 @@ fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
     in_situ(case).map_or_else(Vec::new, |field| covers.element_centroid.iter().map(|p| field.at(*p)).collect())
 }
 
-fn fixities(case: &Case, places: &Locator, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
+fn fixities(case: &Case, positions: &Locator, stiffness: f64) -> Result<(Vec<Fixity>, Vec<Support>), Invalid> {
     let (mut fixities, mut supports) = (Vec::new(), Vec::new());
     for (k, fix) in case.fixes.iter().enumerate() {
         let key = format!("fix[{k}]");
@@ -270,18 +270,18 @@ fn fixities(case: &Case, places: &Locator, stiffness: f64) -> Result<(Vec<Fixity
         let mut fixity = Fixity { name: fix.name.clone(), covers: Vec::new(), active: fix.active };
         let mut held = Vec::new();
         if let Some(point) = fix.point {
-            let stiff = fix.stiffness.unwrap_or(POINT_RATIO * stiffness * places.covers.mesh.size);
-            held.push(places.point(&format!("{key}.point"), point)?.support(stiff));
+            let stiff = fix.stiffness.unwrap_or(POINT_RATIO * stiffness * positions.covers.mesh.size);
+            held.push(positions.point(&format!("{key}.point"), point)?.support(stiff));
         } else if let Some(edge) = fix.edge {
             let stiff = fix.stiffness.unwrap_or(EDGE_RATIO * stiffness);
             let stress = |p: Point| in_situ(case).map_or([0.0; 3], |field| field.at(p));
-            held.extend(places.boundary(&format!("{key}.edge"), edge)?.iter().map(|p| p.support(stiff, &stress)));
+            held.extend(positions.boundary(&format!("{key}.edge"), edge)?.iter().map(|p| p.support(stiff, &stress)));
         } else if let Some(region) = fix.region {
-            let covers = places.covers_in(&format!("{key}.box"), region)?;
+            let covers = positions.covers_in(&format!("{key}.box"), region)?;
             fixity.covers.extend(covers.into_iter().map(|i| (i, axes)));
         } else if let Some(point) = fix.block {
-            let block = places.block(&format!("{key}.block"), point)?;
-            fixity.covers.extend(places.covers.covers_of(block).map(|i| (i as u32, axes)));
+            let block = positions.block(&format!("{key}.block"), point)?;
+            fixity.covers.extend(positions.covers.covers_of(block).map(|i| (i as u32, axes)));
         }
         for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| axes[*axis]) {
             supports.extend(held.iter().map(|h: &locator::Hold| Support {
@@ -314,16 +314,16 @@ pub(super) fn in_situ(case: &Case) -> Option<StressField> {
     case.in_situ.as_ref().map(field)
 }
 
-fn loads(case: &Case, places: &Locator, faces: &ports::Faces) -> Result<Vec<Load>, Invalid> {
+fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<Load>, Invalid> {
     let vector = |v: Option<[f64; 2]>| Vector::from(v.unwrap_or_default());
     let mut loads = Vec::new();
     for (k, load) in case.loads.iter().enumerate() {
         let key = format!("load[{k}]");
         let point = || (format!("{key}.point"), load.point.unwrap_or_default());
-        let edge = || places.boundary(&format!("{key}.edge"), load.edge.unwrap_or_default());
+        let edge = || positions.boundary(&format!("{key}.edge"), load.edge.unwrap_or_default());
         let action = match load.kind {
             LoadKind::Point => {
-                let at = places.point(&point().0, point().1)?;
+                let at = positions.point(&point().0, point().1)?;
                 LoadAction::Forces(vec![(at.covers, at.weights, vector(load.force))])
             }
             LoadKind::Traction => LoadAction::Forces(
@@ -336,7 +336,7 @@ fn loads(case: &Case, places: &Locator, faces: &ports::Faces) -> Result<Vec<Load
             LoadKind::Body => LoadAction::Body(vector(load.acceleration)),
             LoadKind::Joint => LoadAction::Faces(faces.loaded(&key, load)?),
             LoadKind::Block => {
-                let block = places.block(&point().0, point().1)?;
+                let block = positions.block(&point().0, point().1)?;
                 LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
             }
         };
@@ -345,21 +345,21 @@ fn loads(case: &Case, places: &Locator, faces: &ports::Faces) -> Result<Vec<Load
     Ok(loads)
 }
 
-fn monitors(case: &Case, places: &Locator) -> Result<Vec<(usize, Point)>, Invalid> {
+fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(usize, Point)>, Invalid> {
     let of = |(k, monitor): (usize, &case::Monitor)| {
-        let element = places.element(&format!("monitor[{k}].point"), monitor.point)?;
+        let element = positions.element(&format!("monitor[{k}].point"), monitor.point)?;
         Ok((element, Point::from(monitor.point)))
     };
     case.monitors.iter().enumerate().map(of).collect()
 }
 
-fn initial_state(case: &Case, model: &Model, places: &Locator) -> Result<State, Invalid> {
+fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<State, Invalid> {
     let covers = model.covers.cover_count();
     let mut velocity = vec![Vector::zeros(); covers];
     for (k, start) in case.initial_velocities.iter().enumerate() {
         let blocks = match start.block {
             Some(point) => {
-                let block = places.block(&format!("initial_velocity[{k}].block"), point)?;
+                let block = positions.block(&format!("initial_velocity[{k}].block"), point)?;
                 block..block + 1
             }
             None => 0..model.covers.block_count(),

@@ -26,7 +26,7 @@ pub struct Unfit {
 /// Outcome of a check.
 pub type Fit = Result<(), Unfit>;
 
-/// Greatest magnitude of places and lengths (m).
+/// Greatest magnitude of positions and lengths (m).
 pub const LENGTH: f64 = 1e12;
 /// Greatest magnitude of times (s).
 pub const TIME: f64 = 1e12;

@@ -61,7 +61,7 @@ pub struct MovingBlock {
     /// Block.
     pub block: u32,
     /// Its mass centroid (m).
-    pub place: Point,
+    pub position: Point,
     /// Velocity of the centroid over the speed of the fastest block.
     pub velocity: Vector,
     /// Angular velocity over the speed of the fastest block (rad/m), counter-clockwise.
@@ -192,7 +192,7 @@ fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse
     let mut mechanism: Vec<MovingBlock> = moving
         .map(|b| MovingBlock {
             block: b as u32,
-            place: bodies[b].centre,
+            position: bodies[b].centre,
             velocity: motions[b].0 / fastest,
             spin: motions[b].1 / fastest,
             speed: speed(b) / fastest,

@@ -75,20 +75,20 @@ impl Simulation {
             snapshot.block.push(covers.element_block[e]);
             snapshot.rock.push(u32::from(model.element_rock[e]));
         }
-        let places = places(model, state);
-        snapshot.boundaries = self.boundaries(&places);
-        self.each_contact(|contact| snapshot.joints.push(joint_point(model, &places, contact)));
+        let positions = positions(model, state);
+        snapshot.boundaries = self.boundaries(&positions);
+        self.each_contact(|contact| snapshot.joints.push(joint_point(model, &positions, contact)));
         snapshot
     }
 
-    /// Loops of all blocks that are there, at the current `places` of the boundary points.
-    fn boundaries(&self, places: &[Point]) -> Vec<Boundary> {
+    /// Loops of all blocks that are there, at the current `positions` of the boundary points.
+    fn boundaries(&self, positions: &[Point]) -> Vec<Boundary> {
         let (model, state) = (self.model(), self.state());
         let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
         let mut k = 0;
         while k < model.boundary.len() {
             let end = loop_end(model, k);
-            let (block, points) = (model.boundary.block[k], places[k..end].to_vec());
+            let (block, points) = (model.boundary.block[k], positions[k..end].to_vec());
             match by_block.last_mut() {
                 Some((last, loops)) if *last == block => loops.push(points),
                 _ => by_block.push((block, vec![points])),
@@ -111,13 +111,13 @@ impl Simulation {
 
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
-        let places = places(self.model(), self.state());
+        let positions = positions(self.model(), self.state());
         let mut states: Vec<BlockState> =
             (0..self.model().covers.block_count()).map(|block| self.motion_of(block)).collect();
         let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
             let node = boundary.node_point[contact.node as usize] as usize;
-            let depth = penetration(self.model(), &places, contact);
+            let depth = penetration(self.model(), &positions, contact);
             for block in [boundary.block[node], boundary.block[contact.edge as usize]] {
                 let state = &mut states[block as usize];
                 state.contact_count += u32::from(contact.state != ContactState::Open);
@@ -182,9 +182,9 @@ impl Simulation {
         there.filter(|(plastic, _)| **plastic != [0.0; 4]).count()
     }
 
-    /// Current places of the boundary points (m).
-    pub fn places(&self) -> Vec<Point> {
-        places(self.model(), self.state())
+    /// Current positions of the boundary points (m).
+    pub fn positions(&self) -> Vec<Point> {
+        positions(self.model(), self.state())
     }
 }
 
@@ -206,11 +206,12 @@ fn polygons(loops: &[Vec<Point>]) -> Polygons {
     polygons
 }
 
-/// Current places of the boundary points (m).
-fn places(model: &Model, state: &State) -> Vec<Point> {
+/// Current positions of the boundary points (m).
+fn positions(model: &Model, state: &State) -> Vec<Point> {
     let boundary = &model.boundary;
-    let place = |i: u32| model.covers.star_position[i as usize] + state.displacement[i as usize];
-    let sum = |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| place(i) * *w).sum();
+    let position = |i: u32| model.covers.star_position[i as usize] + state.displacement[i as usize];
+    let sum =
+        |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum();
     boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
 }
 
@@ -234,10 +235,10 @@ fn rotation(model: &Model, state: &State, block: usize) -> f64 {
     sine.atan2(cosine)
 }
 
-fn joint_point(model: &Model, places: &[Point], contact: &VertexEdge) -> JointPoint {
+fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> JointPoint {
     let history = &contact.history;
     JointPoint {
-        position: places[model.boundary.node_point[history.node as usize] as usize],
+        position: positions[model.boundary.node_point[history.node as usize] as usize],
         normal: contact.normal,
         length: contact.length,
         normal_stress: -history.normal_force / contact.length,
@@ -248,9 +249,9 @@ fn joint_point(model: &Model, places: &[Point], contact: &VertexEdge) -> JointPo
 }
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
-fn penetration(model: &Model, places: &[Point], contact: &ContactHistory) -> f64 {
+fn penetration(model: &Model, positions: &[Point], contact: &ContactHistory) -> f64 {
     let edge = contact.edge as usize;
-    let (a, b) = (places[edge], places[model.boundary.after(edge)]);
-    let node = places[model.boundary.node_point[contact.node as usize] as usize];
+    let (a, b) = (positions[edge], positions[model.boundary.after(edge)]);
+    let node = positions[model.boundary.node_point[contact.node as usize] as usize];
     ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

@@ -58,7 +58,7 @@ pub struct JointPoint {
 pub struct Snapshot {
     /// Simulated time (s).
     pub time: f64,
-    /// Manifold elements at their current place.
+    /// Manifold elements at their current position.
     pub elements: Polygons,
     /// Displacement (m) of each point of `elements`.
     pub displacement: Vec<Vector>,
@@ -72,7 +72,7 @@ pub struct Snapshot {
     pub block: Vec<u32>,
     /// Rock of each element.
     pub rock: Vec<u32>,
-    /// Outline of each block at its current place: all its boundary loops, outer first.
+    /// Outline of each block at its current position: all its boundary loops, outer first.
     pub boundaries: Vec<Boundary>,
     /// Contacts that carry force or have just opened.
     pub joints: Vec<JointPoint>,

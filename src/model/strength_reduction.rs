@@ -104,7 +104,7 @@ pub struct FailingBlock {
     /// Block.
     pub block: u32,
     /// Its centroid in the reference configuration (m).
-    pub place: Point,
+    pub position: Point,
     /// Area (m²).
     pub area: f64,
     /// Mass (kg/m).

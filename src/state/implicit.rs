@@ -4,7 +4,7 @@ use crate::contact::ContactState;
 use crate::geometry::Vector;
 use crate::mechanics::CoverMatrix;
 
-/// Newmark's rule: velocities and places from the accelerations at both ends of a step (Eq. 67).
+/// Newmark's rule: velocities and positions from the accelerations at both ends of a step (Eq. 67).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// β = ½, γ = 1: the acceleration of the end holds throughout; damps fast motion.
@@ -31,10 +31,10 @@ pub struct Implicit {
 pub struct ImplicitWorkspace {
     /// System matrix of the step.
     pub matrix: CoverMatrix,
-    /// Places in the matrix of each element's pairs of covers.
-    pub element_places: Vec<[u32; 6]>,
-    /// Places in the matrix of each contact's pairs of covers.
-    pub contact_places: Vec<[u32; 36]>,
+    /// Positions in the matrix of each element's pairs of covers.
+    pub element_slots: Vec<[u32; 6]>,
+    /// Positions in the matrix of each contact's pairs of covers.
+    pub contact_slots: Vec<[u32; 36]>,
     /// Rows of the matrix that are held.
     pub held: Vec<bool>,
     /// Whether any row is held.
@@ -49,7 +49,7 @@ pub struct ImplicitWorkspace {
     pub applied: Vec<Vector>,
     /// The same at its start; filled for the trapezoidal rule.
     pub applied_before: Vec<Vector>,
-    /// Internal forces on covers at the places reached (N/m).
+    /// Internal forces on covers at the positions reached (N/m).
     pub internal: Vec<Vector>,
     /// Internal forces at the start of the sub-step (N/m).
     pub internal_before: Vec<Vector>,

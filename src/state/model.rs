@@ -4,7 +4,7 @@ use crate::contact::{BoltSegment, Boundary, EntranceRule, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
-    Chunks, Column, ColumnPlace, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
+    Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
 use super::Implicit;
@@ -31,7 +31,7 @@ pub enum PortKind {
     Joint,
 }
 
-/// A named place where hosts exchange values with the model.
+/// A named position where hosts exchange values with the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Port {
     /// Name.
@@ -109,9 +109,9 @@ pub struct FreeFieldPoint {
     /// Support that is the dashpot.
     pub support: u32,
     /// Where the column has the velocity that counts.
-    pub at: ColumnPlace,
+    pub at: ColumnPosition,
     /// Both ends of the piece of side that the dashpot stands for.
-    pub ends: [ColumnPlace; 2],
+    pub ends: [ColumnPosition; 2],
     /// Force (N/m) along the dashpot per displacement of the column's second end relative to the first, along x and y.
     pub stiffness: Vector,
 }

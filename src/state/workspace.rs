@@ -37,9 +37,9 @@ pub struct Workspace {
     pub exposed: Vec<bool>,
     /// Sums over chunks.
     pub sums: Vec<PatchSums>,
-    /// Current places of boundary points (m).
-    pub place: Vec<Point>,
-    /// Boundary edges and nodes at those places.
+    /// Current positions of boundary points (m).
+    pub position: Vec<Point>,
+    /// Boundary edges and nodes at those positions.
     pub frames: Frames,
     /// What the vertex rule admits in this step.
     pub accepted: AcceptedPairs,

@@ -71,9 +71,9 @@ pub fn pushes(model: &Model, state: &State) -> bool {
 /// `ramp`, as gravity does.
 pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
     for load in &model.loads {
-        let place = |i: usize| model.covers.star_position[i] + state.displacement[i];
+        let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
         let covers = |b: u32| model.covers.covers_of(b as usize);
-        load.push(t, place, covers, &model.mass_matrix, force);
+        load.push(t, position, covers, &model.mass_matrix, force);
     }
     let faces = Faces { model, state };
     let share = state.drive.share(t);
@@ -92,14 +92,14 @@ fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut 
     for block in (0..model.covers.block_count()).filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
-            let place = |i: usize| model.covers.star_position[i] + state.displacement[i];
+            let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
             let covers = model.covers.covers_of(block);
-            mechanics::push_block(covers, &place, &model.mass_matrix, f * ramp, moment * ramp, force);
+            mechanics::push_block(covers, &position, &model.mass_matrix, f * ramp, moment * ramp, force);
         }
     }
 }
 
-/// Boundary edges at their current places.
+/// Boundary edges at their current positions.
 struct Faces<'a> {
     model: &'a Model,
     state: &'a State,

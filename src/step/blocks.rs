@@ -442,7 +442,7 @@ fn inverse(mass_matrix: &MassMatrix, movable: bool, covers: Range<usize>) -> Opt
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
 const NEAR: f64 = 0.99;
 
-/// The end of a step: contacts' part of the velocities, new places, sums for the works.
+/// The end of a step: contacts' part of the velocities, new positions, sums for the works.
 pub(super) struct Finish<'a> {
     pub model: &'a Model,
     pub mass_matrix: &'a MassMatrix,
@@ -459,7 +459,7 @@ pub(super) struct Finish<'a> {
     pub movable: &'a [bool],
     /// Whether contacts, supports or bolts may ask for each cover.
     pub exposed: &'a [bool],
-    /// Time (s) by which places move.
+    /// Time (s) by which positions move.
     pub dt: f64,
     /// Whether the work of body loads is asked for.
     pub is_loaded: bool,
@@ -536,7 +536,7 @@ impl Finish<'_> {
         if is_pushed {
             let share = mass_matrix.inverse_total[block];
             let velocity = (push.impulse * (1.0 + mass_matrix.square[block] * share) - push.weighted) * share;
-            let centre = self.motion[block].centre - from.place;
+            let centre = self.motion[block].centre - from.position;
             common = Common::about(velocity, mass_matrix.spin[block] * push.moment, centre);
             common.weighted = push.impulse * -share;
         }

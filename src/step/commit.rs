@@ -39,7 +39,7 @@ impl Step<'_> {
     }
 
     /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers for `dt` (s) unless a
-    /// report wants the places before.
+    /// report wants the positions before.
     fn finish(&mut self, dt: f64) -> Totals {
         let is_loaded = self.extra(dt) != Vector::zeros();
         let (model, state) = (self.model, &mut *self.state);

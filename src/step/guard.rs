@@ -1,4 +1,4 @@
-//! Checks after every step: a run that has gone wrong stops with block, place and cause.
+//! Checks after every step: a run that has gone wrong stops with block, position and cause.
 
 use crate::cover;
 use crate::geometry::Point;
@@ -33,14 +33,14 @@ pub enum Failure {
     },
 }
 
-/// A numerical failure with its block, place and time.
+/// A numerical failure with its block, position and time.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("block {block} at ({:.3}, {:.3}) m, t = {time:.6} s: {failure}", place.x, place.y)]
+#[error("block {block} at ({:.3}, {:.3}) m, t = {time:.6} s: {failure}", position.x, position.y)]
 pub struct StepError {
     /// Block.
     pub block: u32,
     /// Where (m).
-    pub place: Point,
+    pub position: Point,
     /// Simulated time (s).
     pub time: f64,
     /// Cause.
@@ -69,17 +69,17 @@ impl Step<'_> {
         }
         match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let place = workspace.place[model.boundary.node_point[contact.history.node as usize] as usize];
+                let position = workspace.position[model.boundary.node_point[contact.history.node as usize] as usize];
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
-                Err(self.failed(contact.pair.blocks[0], place, failure))
+                Err(self.failed(contact.pair.blocks[0], position, failure))
             }
             None => Ok(()),
         }
     }
 
-    /// A failure now, with its block and place (m).
-    fn failed(&self, block: u32, place: Point, failure: Failure) -> StepError {
-        StepError { block, place, time: self.time, failure }
+    /// A failure now, with its block and position (m).
+    fn failed(&self, block: u32, position: Point, failure: Failure) -> StepError {
+        StepError { block, position, time: self.time, failure }
     }
 
     /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
@@ -92,15 +92,15 @@ impl Step<'_> {
                 return Err(self.failed(block, model.covers.star_position[i], Failure::NotFinite));
             }
             if speed > limit
-                && let Some((place, speed)) = self.rock_faster_than(limit, block as usize)
+                && let Some((position, speed)) = self.rock_faster_than(limit, block as usize)
             {
-                return Err(self.failed(block, place, Failure::Runaway { speed, limit }));
+                return Err(self.failed(block, position, Failure::Runaway { speed, limit }));
             }
         }
         Ok(())
     }
 
-    /// Place and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
+    /// Position and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
     fn rock_faster_than(&self, limit: f64, block: usize) -> Option<(Point, f64)> {
         let (covers, state) = (&self.model.covers, &*self.state);
         let corners = covers.elements_of(block).flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));

@@ -217,7 +217,7 @@ impl Step<'_> {
         self.commit(dt)
     }
 
-    /// Places, near pairs, yielding and predicted velocities of a step of `dt` (s).
+    /// Positions, near pairs, yielding and predicted velocities of a step of `dt` (s).
     fn set_out(&mut self, dt: f64) {
         self.locate();
         self.search();

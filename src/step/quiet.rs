@@ -77,7 +77,7 @@ impl Step<'_> {
         }
     }
 
-    /// What the supports answer to in a step of `dt` (s): springs to the place at its end (Eq. 23), dashpots to the
+    /// What the supports answer to in a step of `dt` (s): springs to the position at its end (Eq. 23), dashpots to the
     /// mean of the velocities before and after it (Eqs. 46, 47).
     pub(super) fn load_supports(&mut self, dt: f64) {
         let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));

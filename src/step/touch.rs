@@ -24,24 +24,24 @@ pub(super) const REACH: f64 = 0.005;
 pub(super) const CONTACTS: usize = 2048;
 
 impl Step<'_> {
-    /// Current places of boundary points, and edges and nodes at them.
+    /// Current positions of boundary points, and edges and nodes at them.
     pub(super) fn locate(&mut self) {
         let clock = Instant::now();
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let star = &model.covers.star_position;
         let displacement = &self.state.displacement;
-        let place = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
+        let position = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
             (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum()
         };
         if workspace.serial {
-            workspace.place.clear();
-            workspace.place.extend(boundary.covers.iter().zip(&boundary.weights).map(place));
+            workspace.position.clear();
+            workspace.position.extend(boundary.covers.iter().zip(&boundary.weights).map(position));
         } else {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
-            points.map(place).collect_into_vec(&mut workspace.place);
+            points.map(position).collect_into_vec(&mut workspace.position);
         }
-        workspace.frames.update(boundary, &workspace.place, model.entrance.flush_sine, workspace.serial);
+        workspace.frames.update(boundary, &workspace.position, model.entrance.flush_sine, workspace.serial);
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -51,10 +51,10 @@ impl Step<'_> {
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let size = model.covers.mesh.size;
-        if self.state.neighbours.is_stale(boundary, &workspace.place, SKIN * size) {
+        if self.state.neighbours.is_stale(boundary, &workspace.position, SKIN * size) {
             let view = SearchView {
                 boundary,
-                place: &workspace.place,
+                position: &workspace.position,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
                 fixed: &workspace.mass_matrix.fixed,
@@ -92,7 +92,7 @@ impl Step<'_> {
         let approach = |dt| Approach { predicted: &workspace.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
         let narrow = NarrowPhase {
             boundary: &model.boundary,
-            place: &workspace.place,
+            position: &workspace.position,
             frames: &workspace.frames,
             star: &model.covers.star_position,
             displacement: &state.displacement,

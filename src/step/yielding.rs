@@ -66,8 +66,8 @@ impl Pass<'_> {
     /// Deformation of an element one step ago.
     fn before(&self, element: usize) -> Deformation {
         let covers = &self.model.covers;
-        let place = |i: u32| self.displacement[i as usize] - self.velocity[i as usize] * self.dt_last;
+        let position = |i: u32| self.displacement[i as usize] - self.velocity[i as usize] * self.dt_last;
         let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
-        Deformation::new(covers.element_covers[element].map(place), gradients)
+        Deformation::new(covers.element_covers[element].map(position), gradients)
     }
 }

@@ -75,7 +75,7 @@ impl Audit {
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
-        let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().place);
+        let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().position);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {

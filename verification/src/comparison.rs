@@ -185,7 +185,7 @@ fn bytes(simulation: &Simulation) -> usize {
     let implicit = [&workspace.implicit.moved, &workspace.implicit.offset, &workspace.implicit.applied];
     let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
     let state = 2 * simulation.state().displacement.len();
-    let places = workspace.implicit.contact_places.len() * 144 + workspace.implicit.element_places.len() * 24;
+    let places = workspace.implicit.contact_slots.len() * 144 + workspace.implicit.element_slots.len() * 24;
     let contacts = workspace.contacts.len() * size_of::<enmm::contact::VertexEdge>();
     matrix + factor + (fields + state) * size_of::<Vector>() + contacts + places
 }

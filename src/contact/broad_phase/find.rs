@@ -65,14 +65,14 @@ impl Find<'_> {
     /// Takes the next few nodes of one block: which, block and box.
     #[inline(always)]
     fn next_few(&mut self) -> (Range<usize>, u32, Span) {
-        let (boundary, place) = (self.view.boundary, self.view.place);
+        let (boundary, position) = (self.view.boundary, self.view.position);
         let Range { start, end } = self.nodes;
         let point = |node: usize| boundary.node_point[node] as usize;
         let block = boundary.block[point(start)];
         let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
-        let (mut span, mut last) = (Span::at(place[point(start)]), start);
+        let (mut span, mut last) = (Span::at(position[point(start)]), start);
         for node in others {
-            (span, last) = (span.with(place[point(node)]), node);
+            (span, last) = (span.with(position[point(node)]), node);
         }
         self.nodes.start = last + 1;
         (start..last + 1, block, span)
@@ -112,7 +112,7 @@ impl Find<'_> {
     fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
-        let p = self.view.place[boundary.node_point[node] as usize];
+        let p = self.view.position[boundary.node_point[node] as usize];
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);

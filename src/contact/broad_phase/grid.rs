@@ -50,9 +50,9 @@ pub struct Grid {
     x: Vec<f64>,
     y: Vec<f64>,
     pub stretches: Vec<Stretch>,
-    /// First place of every cell; a row starts with a new eight.
+    /// First position of every cell; a row starts with a new eight.
     cell_start: Vec<u32>,
-    /// Stretches by place: by cell and, within one, by index.
+    /// Stretches by position: by cell and, within one, by index.
     pub stretch_at: Vec<u32>,
     /// Their boxes, eight by eight.
     pub boxes: Vec<Boxes>,
@@ -62,9 +62,9 @@ impl Stretch {
     /// As many of some edges in a row as are not too long together; the first of them starts at a point of the grid.
     fn of(view: &SearchView, edges: Range<usize>, point: usize) -> Self {
         let (boundary, edge) = (view.boundary, edges.start);
-        let (mut span, mut count, mut partial) = (Span::at(view.place[edge]), 0, false);
+        let (mut span, mut count, mut partial) = (Span::at(view.position[edge]), 0, false);
         for edge in edges {
-            let longer = span.with(view.place[boundary.after(edge)]);
+            let longer = span.with(view.position[boundary.after(edge)]);
             if count > 0 && (longer.high - longer.low).amax() > LONGEST * view.cutoff {
                 break;
             }
@@ -137,8 +137,8 @@ impl Grid {
             first += stretch.count as usize;
             self.stretches.push(stretch);
         }
-        self.push_points(&view.place[edges.clone()]);
-        self.push_points(&[view.place[edges.start]]);
+        self.push_points(&view.position[edges.clone()]);
+        self.push_points(&[view.position[edges.start]]);
     }
 
     fn push_points(&mut self, points: &[Point]) {

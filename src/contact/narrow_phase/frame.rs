@@ -1,4 +1,4 @@
-//! Edges and nodes at their current places, once a step for all that judge them.
+//! Edges and nodes at their current positions, once a step for all that judge them.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ const GRAIN: usize = 2048;
 /// Relative difference of squared distances above which rounding does not decide which is the larger.
 const ROUNDING: f64 = 1e-12;
 
-/// An edge at its current place.
+/// An edge at its current position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EdgeFrame {
     /// Start (m).
@@ -23,11 +23,11 @@ pub(super) struct EdgeFrame {
     pub length: f64,
 }
 
-/// A node at its current place.
+/// A node at its current position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeFrame {
-    /// Place (m).
-    pub place: Point,
+    /// Position (m).
+    pub position: Point,
     /// To the node before it and to the node after it on its loop (m).
     pub to: [Vector; 2],
     /// How far those are (m).
@@ -47,7 +47,7 @@ pub(super) struct Over {
     pub beyond: f64,
 }
 
-/// All edges and nodes at their current places.
+/// All edges and nodes at their current positions.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     pub(super) edges: Vec<EdgeFrame>,
@@ -89,10 +89,10 @@ impl EdgeFrame {
 }
 
 impl NodeFrame {
-    fn new(place: Point, neighbours: [Point; 2], flush_sine: f64) -> Self {
-        let to = neighbours.map(|q| q - place);
+    fn new(position: Point, neighbours: [Point; 2], flush_sine: f64) -> Self {
+        let to = neighbours.map(|q| q - position);
         let distance = to.map(|d| d.norm());
-        Self { place, to, distance, is_convex: is_convex(to, distance, flush_sine) }
+        Self { position, to, distance, is_convex: is_convex(to, distance, flush_sine) }
     }
 }
 
@@ -102,22 +102,22 @@ impl Frames {
         size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
     }
 
-    /// Frames of all edges and nodes, where `place` are the current places of the boundary points; corners turn by more
+    /// Frames of all edges and nodes, where `position` are the current positions of the boundary points; corners turn by more
     /// than an angle given by its sine.
-    pub fn update(&mut self, boundary: &Boundary, place: &[Point], flush_sine: f64, serial: bool) {
-        let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, place[*next as usize]);
-        let at = |node: u32| place[boundary.node_point[node as usize] as usize];
+    pub fn update(&mut self, boundary: &Boundary, position: &[Point], flush_sine: f64, serial: bool) {
+        let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, position[*next as usize]);
+        let at = |node: u32| position[boundary.node_point[node as usize] as usize];
         let node = |((point, previous), next): ((&u32, &u32), &u32)| {
-            NodeFrame::new(place[*point as usize], [at(*previous), at(*next)], flush_sine)
+            NodeFrame::new(position[*point as usize], [at(*previous), at(*next)], flush_sine)
         };
         let Boundary { node_point, node_previous, node_next, .. } = boundary;
         if serial {
             self.edges.clear();
-            self.edges.extend(place.iter().zip(&boundary.next).map(edge));
+            self.edges.extend(position.iter().zip(&boundary.next).map(edge));
             self.nodes.clear();
             self.nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
         } else {
-            let edges = place.par_iter().zip(&boundary.next).with_min_len(GRAIN);
+            let edges = position.par_iter().zip(&boundary.next).with_min_len(GRAIN);
             edges.map(edge).collect_into_vec(&mut self.edges);
             let nodes = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
             nodes.map(node).collect_into_vec(&mut self.nodes);

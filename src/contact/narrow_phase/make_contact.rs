@@ -47,7 +47,7 @@ impl NarrowPhase<'_> {
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
         let (boundary, node) = (self.boundary, candidate.node as usize);
         let (point, edge) = (boundary.node_point[node] as usize, candidate.edge as usize);
-        let p = self.place[point];
+        let p = self.position[point];
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
@@ -129,7 +129,7 @@ impl NarrowPhase<'_> {
         contact.expect();
     }
 
-    /// Covers that carry the place on an edge under a node: at a point of the boundary those of the point, since there
+    /// Covers that carry the position on an edge under a node: at a point of the boundary those of the point, since there
     /// round-off decides which of two edges is the nearer.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
@@ -143,7 +143,7 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Weights of an element's covers at a current place, by barycentric coordinates of its stars.
+    /// Weights of an element's covers at a current position, by barycentric coordinates of its stars.
     #[inline(always)]
     pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
         let x = |k: usize| self.star[covers[k] as usize] + self.displacement[covers[k] as usize];

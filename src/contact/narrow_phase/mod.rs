@@ -36,9 +36,9 @@ const TIE_TOLERANCE: f64 = 1e-6;
 pub struct NarrowPhase<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
-    /// Current places of the boundary points (m).
-    pub place: &'a [Point],
-    /// Edges and nodes at these places.
+    /// Current positions of the boundary points (m).
+    pub position: &'a [Point],
+    /// Edges and nodes at these positions.
     pub frames: &'a Frames,
     /// Star positions (m).
     pub star: &'a [Point],
@@ -80,7 +80,7 @@ pub struct NarrowPhase<'a> {
     pub theta: f64,
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
-    /// Stress xx, yy, xy (Pa) before the first step, by place.
+    /// Stress xx, yy, xy (Pa) before the first step, by position.
     pub in_situ: Option<&'a StressField>,
     /// Whether to keep to the calling thread.
     pub serial: bool,
@@ -270,7 +270,7 @@ impl NarrowPhase<'_> {
     /// Fills the candidate of one side; returns whether the node is over that side.
     #[inline(always)]
     fn candidate(&self, node: usize, edges: &[NearPair], held: Option<u32>, candidate: &mut ContactCandidate) -> bool {
-        let (edge, over) = self.nearest(self.node_place(node), edges);
+        let (edge, over) = self.nearest(self.node_position(node), edges);
         let Over { along, gap, beyond } = over;
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
@@ -326,11 +326,11 @@ impl NarrowPhase<'_> {
     /// How deep (m) a node is in the rock that the loop of an edge bounds, 0 outside, and the nearest side of the loop.
     #[cold]
     fn depth_in_rock(&self, node: usize, edge: u32) -> (f64, u32) {
-        let p = self.node_place(node);
+        let p = self.node_position(node);
         let next = |point: u32| self.boundary.next[point as usize];
         let (mut point, mut area, mut turns, mut nearest) = (edge, 0.0, 0, (f64::INFINITY, edge));
         loop {
-            let ends = [point, next(point)].map(|point| self.place[point as usize]);
+            let ends = [point, next(point)].map(|point| self.position[point as usize]);
             let [a, b] = ends.map(|end| end - p);
             area += a.perp(&b);
             if (a.y > 0.0) != (b.y > 0.0) && (a.perp(&b) > 0.0) == (b.y > 0.0) {
@@ -358,8 +358,8 @@ impl NarrowPhase<'_> {
     }
 
     #[inline(always)]
-    fn node_place(&self, node: usize) -> Point {
-        self.frames.nodes[node].place
+    fn node_position(&self, node: usize) -> Point {
+        self.frames.nodes[node].position
     }
 
     /// Distance (m) beyond a corner that counts as the corner.

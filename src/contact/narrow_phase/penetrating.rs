@@ -5,7 +5,7 @@ use crate::geometry::Vector;
 
 use super::{Frames, NarrowPhase};
 
-/// A contact of the last step that is in penetration at the present places.
+/// A contact of the last step that is in penetration at the present slots.
 #[derive(Debug, Clone, Copy)]
 struct PenetratingContact {
     /// Side that the node is in.
@@ -25,7 +25,7 @@ pub struct PenetratingContacts {
     first: Vec<u32>,
     /// Bearings, ordered by node and side.
     penetrating: Vec<PenetratingContact>,
-    /// First place of those on the segment after each node, and their number.
+    /// First slot of those on the segment after each node, and their number.
     first_after: Vec<u32>,
     /// Bearings by segment.
     after: Vec<u32>,
@@ -54,9 +54,9 @@ impl PenetratingContacts {
         }
         after.resize(segment.len(), 0);
         for (k, &node) in segment.iter().enumerate().rev() {
-            let place = &mut first_after[node as usize];
-            *place -= 1;
-            after[*place as usize] = k as u32;
+            let slot = &mut first_after[node as usize];
+            *slot -= 1;
+            after[*slot as usize] = k as u32;
         }
     }
 
@@ -67,7 +67,7 @@ impl PenetratingContacts {
         segment.clear();
         for contact in history {
             let (node, edge) = (contact.node as usize, &frames.edges[contact.edge as usize]);
-            let gap = (frames.nodes[node].place - edge.start).dot(&edge.normal());
+            let gap = (frames.nodes[node].position - edge.start).dot(&edge.normal());
             let closure = (-gap).max(0.0) * contact.share;
             if closure > 0.0 {
                 first.resize(first.len().max(node + 1), penetrating.len() as u32);
@@ -88,8 +88,8 @@ impl PenetratingContacts {
     /// Those on the segment after a node.
     #[inline(always)]
     fn after(&self, node: usize) -> impl Iterator<Item = &PenetratingContact> {
-        let places = self.first_after[node] as usize..self.first_after[node + 1] as usize;
-        self.after[places].iter().map(|&k| &self.penetrating[k as usize])
+        let slots = self.first_after[node] as usize..self.first_after[node + 1] as usize;
+        self.after[slots].iter().map(|&k| &self.penetrating[k as usize])
     }
 }
 

@@ -52,13 +52,13 @@ impl NarrowPhase<'_> {
     fn facing(&self, node: usize, candidate: &ContactCandidate) -> Facing {
         let boundary = self.boundary;
         let frame = &self.frames.nodes[node];
-        let p = frame.place.dot(&candidate.tangent);
+        let p = frame.position.dot(&candidate.tangent);
         let before = boundary.node_before[candidate.edge as usize] as usize;
         let after = boundary.node_next[before] as usize;
-        let place = |n: u32| self.node_place(n as usize).dot(&candidate.tangent);
-        let (from, to) = (place(before as u32), place(after as u32));
+        let position = |n: u32| self.node_position(n as usize).dot(&candidate.tangent);
+        let (from, to) = (position(before as u32), position(after as u32));
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
-        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(place);
+        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(position);
         let [low, high] = self.tie_shares(node, candidate, before, [p - from, to - p]);
         let flush_cosine = self.flush_cosine;
         let mut facing = Facing::default();
@@ -109,7 +109,7 @@ impl NarrowPhase<'_> {
     /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's edge.
     #[inline(always)]
     fn reach_beyond(&self, far: u32, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
-        let far = self.node_place(far as usize).dot(&candidate.tangent);
+        let far = self.node_position(far as usize).dot(&candidate.tangent);
         if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 

@@ -16,7 +16,7 @@ impl NarrowPhase<'_> {
     /// Rule (ii): how far (m) along the side a node overlaps with the block before the start and the finish of it, with
     /// springs unloaded, infinite at ends that are far or no corners; none where it is no contact of this side.
     pub(super) fn overlap_at_ends(&self, node: usize, candidate: &ContactCandidate) -> Option<[f64; 2]> {
-        let p = self.node_place(node);
+        let p = self.node_position(node);
         let tolerance = self.corner_tolerance(candidate);
         let mut overlap = [f64::INFINITY; 2];
         for end in [End::Start, End::Finish] {
@@ -32,7 +32,7 @@ impl NarrowPhase<'_> {
             if missed && !self.is_kept(node, candidate, end) {
                 return None;
             }
-            let corner = self.place[at.point as usize];
+            let corner = self.position[at.point as usize];
             if (p - corner).norm_squared() < self.size * self.size {
                 overlap[end as usize] = self.overlap_round(node, candidate, p, end)?;
             }
@@ -52,7 +52,7 @@ impl NarrowPhase<'_> {
         let boundary = self.boundary;
         let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side as usize][end as usize];
         let meets = boundary.node_before[corner as usize] as usize;
-        let (q, outward) = (self.place[corner as usize], self.frames.edges[round as usize].normal());
+        let (q, outward) = (self.position[corner as usize], self.frames.edges[round as usize].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
@@ -102,7 +102,7 @@ impl NarrowPhase<'_> {
     pub(super) fn overlap_at(&self, node: usize, candidate: &ContactCandidate, end: End) -> f64 {
         let at = self.boundary.side_ends[candidate.side as usize][end as usize];
         let frame = &self.frames.nodes[node];
-        let to = self.place[at.point as usize] - frame.place;
+        let to = self.position[at.point as usize] - frame.position;
         let inside = to.dot(&self.frames.edges[at.round as usize].normal());
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
         let depth = depths[0].min(depths[1]);

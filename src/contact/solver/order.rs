@@ -36,7 +36,7 @@ pub struct SolverOrder {
     entries: Vec<Entry>,
     leaf: Vec<u32>,
     colours: Colours,
-    /// Of a step: the number of contacts of each block pair, then the place of its next.
+    /// Of a step: the number of contacts of each block pair, then the slot of its next.
     count: Vec<u32>,
     /// Block pairs of a colour that have contacts.
     touching: Vec<u32>,
@@ -82,8 +82,8 @@ pub struct Sequence {
     pub first_turn: Vec<u32>,
     /// Contact of each turn.
     pub contacts: Vec<u32>,
-    /// Place of each contact: its row times the number of lanes, and its lane.
-    pub places: Vec<u32>,
+    /// Slot of each contact: its row times the number of lanes, and its lane.
+    pub slots: Vec<u32>,
 }
 
 impl SolverOrder {
@@ -197,8 +197,8 @@ impl SolverOrder {
 
     /// Puts the block pairs and the contacts of a step in the order of their turns.
     pub fn arrange(&mut self, touching: &[VertexEdge], view: &SolverView, sequence: &mut Sequence) {
-        let Sequence { wide_pairs, ends, first_turn, contacts, places } = sequence;
-        self.count_contacts(touching, places);
+        let Sequence { wide_pairs, ends, first_turn, contacts, slots } = sequence;
+        self.count_contacts(touching, slots);
         wide_pairs.clear();
         ends.clear();
         first_turn.clear();
@@ -227,11 +227,11 @@ impl SolverOrder {
         ends.resize(2 * (self.leaf_block.len() - 1) - 1, wide_pairs.len() as u32);
         first_turn.push(turns);
         contacts.resize(turns as usize, 0);
-        for (place, contact) in places.iter_mut().zip(0..) {
-            let next = &mut self.count[*place as usize];
-            *place = *next;
+        for (slot, contact) in slots.iter_mut().zip(0..) {
+            let next = &mut self.count[*slot as usize];
+            *slot = *next;
             *next += LANES as u32;
-            let turn = first_turn[(*place / LANES as u32) as usize] + *place % LANES as u32;
+            let turn = first_turn[(*slot / LANES as u32) as usize] + *slot % LANES as u32;
             contacts[turn as usize] = contact;
         }
     }
@@ -302,7 +302,7 @@ fn key_of(node: u32, side: u32) -> u64 {
     u64::from(node) << u32::BITS | u64::from(side)
 }
 
-/// The smallest part of the tree that holds two leaves, by its place in the order in which parts are swept: both halves
+/// The smallest part of the tree that holds two leaves, by its slot in the order in which parts are swept: both halves
 /// before the whole.
 fn subdomain_of([a, b]: [u32; 2]) -> u32 {
     let level = u32::BITS - (a ^ b).leading_zeros();
@@ -316,9 +316,9 @@ mod tests {
 
     #[test]
     fn halves_come_before_the_whole() {
-        let places: Vec<u32> =
+        let slots: Vec<u32> =
             [[0, 0], [1, 1], [0, 1], [2, 2], [3, 3], [2, 3], [1, 2]].into_iter().map(subdomain_of).collect();
-        assert_eq!(places, [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(slots, [0, 1, 2, 3, 4, 5, 6]);
         assert_eq!(subdomain_of([0, 7]), 14);
     }
 }

@@ -198,8 +198,8 @@ fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<u32> {
                     if !std::mem::replace(&mut listed[other as usize], true) {
                         order.push(other);
                     }
-                    let place = rows[other as usize].covers.iter().position(|&i| i == cover);
-                    other = place.map_or(NONE, |j| before[other as usize][j]);
+                    let slot = rows[other as usize].covers.iter().position(|&i| i == cover);
+                    other = slot.map_or(NONE, |j| before[other as usize][j]);
                 }
             }
         }

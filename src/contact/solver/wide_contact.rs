@@ -11,7 +11,7 @@ use super::{SolverOptions, SolverView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
-/// Places by which a contact is fetched ahead.
+/// Positions by which a contact is fetched ahead.
 pub const AHEAD: usize = 8;
 
 /// A number of each lane.

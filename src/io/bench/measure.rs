@@ -27,7 +27,7 @@ const PROCESSOR_TICK: f64 = 0.004;
 const OPERATIONS_PER_ELEMENT: f64 = 74.0;
 /// Bytes of an element that its stage must read: the slots of three covers in its chunk, and its cut area.
 const ELEMENT_BYTES: f64 = 3.0 * 2.0 + 8.0;
-/// Bytes of a cover that the stage of the elements must move: place, displacement, velocity and two masses read,
+/// Bytes of a cover that the stage of the elements must move: position, displacement, velocity and two masses read,
 /// predicted velocity fetched and written.
 const COVER_BYTES: f64 = 3.0 * 16.0 + 2.0 * 8.0 + 2.0 * 16.0;
 

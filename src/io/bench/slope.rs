@@ -42,8 +42,9 @@ pub fn slope_case(blocks: usize, elements_a_block: usize) -> String {
     let perimeter = length + (length * cos - crest[0]) + HEIGHT / FACE_DEG.to_radians().sin();
     let faces = 2.0 * (2.0 * area / spacing) + perimeter;
     let size = mesh_size(area / blocks as f64, faces / blocks as f64, elements_a_block as f64);
-    let along =
-        |place: f64, depth: f64| format!("[{:.6}, {:.6}]", place * cos + depth * sin, place * sin - depth * cos);
+    let along = |position: f64, depth: f64| {
+        format!("[{:.6}, {:.6}]", position * cos + depth * sin, position * sin - depth * cos)
+    };
     let (toe, top, rim) = (along(0.0, 0.0), along(length, 0.0), format!("[{:.6}, {HEIGHT:.1}]", crest[0]));
     let corners =
         [along(-RUN_OUT, size), along(length, size), top.clone(), rim.clone(), toe.clone(), along(-RUN_OUT, 0.0)];

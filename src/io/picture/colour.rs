@@ -78,9 +78,9 @@ pub fn scale_step(fraction: f64) -> usize {
 
 /// Colour of a step of the scale.
 pub fn scale(step: usize) -> Colour {
-    let place = step as f64 / (SCALE_STEPS - 1) as f64 * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
-    mix(mix(VIRIDIS[below], VIRIDIS[below + 1], place - below as f64), WHITE, LIGHTENING)
+    let position = step as f64 / (SCALE_STEPS - 1) as f64 * (VIRIDIS.len() - 1) as f64;
+    let below = (position as usize).min(VIRIDIS.len() - 2);
+    mix(mix(VIRIDIS[below], VIRIDIS[below + 1], position - below as f64), WHITE, LIGHTENING)
 }
 
 /// `from` at 0, `to` at 1.

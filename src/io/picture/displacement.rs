@@ -27,7 +27,7 @@ const VISIBLE: f64 = 1e-3;
 /// Part of the size of the slope to which such a deformation is drawn at least.
 const EXAGGERATED: f64 = 0.008;
 
-/// Draws the slope at its current place, each element coloured by the mean displacement of its points.
+/// Draws the slope at its current position, each element coloured by the mean displacement of its points.
 ///
 /// `reference_outline` (m) is the slope before it moved, drawn dashed. A displacement below a thousandth of the size of
 /// the slope is drawn larger, and the picture says by how much.
@@ -109,7 +109,7 @@ fn exaggerated(snapshot: &Snapshot, factor: f64) -> Snapshot {
     shown
 }
 
-/// Displacement (m) by block and place of the points of its boundary that are corners of its elements.
+/// Displacement (m) by block and position of the points of its boundary that are corners of its elements.
 fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Option<Vector>> {
     let points = snapshot.boundaries.iter().flat_map(|b| b.loops.points.iter().map(|p| (b.block, place_key(p))));
     let mut displacements: HashMap<_, _> = points.map(|key| (key, None)).collect();
@@ -127,7 +127,7 @@ fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Option<
     displacements
 }
 
-/// Places closer than about a micrometre share a key.
+/// Positions closer than about a micrometre share a key.
 fn place_key(point: &Point) -> [i64; 2] {
     [(point.x * 1e6).round() as i64, (point.y * 1e6).round() as i64]
 }
@@ -143,8 +143,8 @@ fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, ref
     if let Some(corners) = largest.and_then(|k| corners(&shown.elements, k)) {
         let centre = view.pixel(&(corners.iter().sum::<Vector>() / corners.len() as f64));
         sheet.circle(centre, 8.0, Style::line(ACCENT, 2.5));
-        if let Some(place) = Labels::new(view.area).place(centre, "max") {
-            sheet.text(place, "max", TextStyle::new(LABEL_SIZE).colour(ACCENT).halo());
+        if let Some(position) = Labels::new(view.area).position(centre, "max") {
+            sheet.text(position, "max", TextStyle::new(LABEL_SIZE).colour(ACCENT).halo());
         }
     }
 }

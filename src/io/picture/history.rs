@@ -224,15 +224,15 @@ fn unit_title(unit: &str, exponent: i32) -> String {
     }
 }
 
-/// Of the places in one column of pixels only the first, the lowest, the highest and the last: the line looks the same.
-pub(super) fn thinned(places: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
+/// Of the positions in one column of pixels only the first, the lowest, the highest and the last: the line looks the same.
+pub(super) fn thinned(positions: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
     let mut thin: Vec<Pixel> = Vec::new();
     let mut column: Vec<Pixel> = Vec::new();
-    for place in places {
-        if column.first().is_some_and(|first| first[0].floor() != place[0].floor()) {
+    for position in positions {
+        if column.first().is_some_and(|first| first[0].floor() != position[0].floor()) {
             flush_column(&mut thin, &mut column);
         }
-        column.push(place);
+        column.push(position);
     }
     flush_column(&mut thin, &mut column);
     thin

@@ -35,11 +35,11 @@ const LINES_MAX: usize = 9;
 pub struct ModelDecor {
     /// Title of the picture.
     pub title: String,
-    /// Place (m) of each star and the number of its physical covers.
+    /// Position (m) of each star and the number of its physical covers.
     pub stars: Vec<(Point, u32)>,
     /// Points (m) that are held.
     pub fixed: Vec<Point>,
-    /// Name and place (m) of each monitor.
+    /// Name and position (m) of each monitor.
     pub monitors: Vec<(String, Point)>,
     /// Lines of text about the size of the model.
     pub counts: Vec<String>,
@@ -49,7 +49,7 @@ pub struct ModelDecor {
     pub bolts: Vec<[Point; 2]>,
 }
 
-/// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the place where
+/// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the position where
 /// the stars have most covers.
 pub fn model_picture(snapshot: &Snapshot, decor: &ModelDecor) -> Picture {
     let model = Model { snapshot, decor, spacing: star_spacing(decor) };
@@ -151,14 +151,14 @@ impl Model<'_> {
     }
 
     fn draw_stars(&self, sheet: &mut Svg, view: &View, radius: f64) {
-        for (place, covers) in self.stars_in(view) {
-            sheet.circle(view.pixel(place), radius, Style::fill(cover_colour(*covers)));
+        for (position, covers) in self.stars_in(view) {
+            sheet.circle(view.pixel(position), radius, Style::fill(cover_colour(*covers)));
         }
     }
 
     fn stars_in(&self, view: &View) -> impl Iterator<Item = &(Point, u32)> {
         let world = view.world;
-        self.decor.stars.iter().filter(move |(place, _)| is_drawable(place) && world.contains(place))
+        self.decor.stars.iter().filter(move |(position, _)| is_drawable(position) && world.contains(position))
     }
 
     /// Triangles below the held points, thinned where they would overlap.
@@ -176,16 +176,16 @@ impl Model<'_> {
 
     fn draw_monitors(&self, sheet: &mut Svg, view: &View) {
         let mut labels = Labels::new(view.area);
-        let monitors = self.decor.monitors.iter().filter(|(_, place)| is_drawable(place));
-        let marks: Vec<_> = monitors.map(|(name, place)| (name, view.pixel(place))).collect();
+        let monitors = self.decor.monitors.iter().filter(|(_, position)| is_drawable(position));
+        let marks: Vec<_> = monitors.map(|(name, position)| (name, view.pixel(position))).collect();
         for (_, mark) in &marks {
             draw_monitor(sheet, *mark);
             labels.avoid(Rect { left: mark[0], top: mark[1], width: 0.0, height: 0.0 }.grown(7.0));
         }
         for (name, mark) in marks {
             let name = fitted(name, LABEL_SIZE, 260.0);
-            if let Some(place) = labels.place(mark, &name) {
-                sheet.text(place, &name, TextStyle::new(LABEL_SIZE).halo());
+            if let Some(position) = labels.position(mark, &name) {
+                sheet.text(position, &name, TextStyle::new(LABEL_SIZE).halo());
             }
         }
     }
@@ -200,8 +200,8 @@ impl Model<'_> {
         sheet.clipped(&detail.area, |sheet| {
             self.draw_blocks(sheet, detail, true);
             self.draw_traces(sheet, detail, 2.6);
-            for (place, covers) in self.stars_in(detail) {
-                draw_star(sheet, detail.pixel(place), *covers, radius);
+            for (position, covers) in self.stars_in(detail) {
+                draw_star(sheet, detail.pixel(position), *covers, radius);
             }
         });
         detail.draw_axes(sheet);
@@ -259,29 +259,34 @@ fn cover_colour(covers: u32) -> Colour {
 
 /// Distance (m) of neighbours if the stars were spread evenly over a triangular lattice.
 fn star_spacing(decor: &ModelDecor) -> f64 {
-    let nearest = |place: &Point| {
-        let others = decor.stars.iter().map(|(other, _)| (other - place).norm_squared());
+    let nearest = |position: &Point| {
+        let others = decor.stars.iter().map(|(other, _)| (other - position).norm_squared());
         others.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min).sqrt()
     };
     // The lattice is regular: the nearest neighbour of any star tells its size.
-    let first = decor.stars.iter().map(|(place, _)| place).find(|place| is_drawable(place)).map_or(0.0, nearest);
+    let first =
+        decor.stars.iter().map(|(position, _)| position).find(|position| is_drawable(position)).map_or(0.0, nearest);
     if first.is_finite() { first } else { 1.0 }
 }
 
 /// The star about which, within `half_width` (m), the stars have most covers per star.
 fn busiest(stars: &[(Point, u32)], half_width: f64) -> Option<Point> {
-    let drawable: Vec<_> = stars.iter().filter(|(place, _)| is_drawable(place)).collect();
+    let drawable: Vec<_> = stars.iter().filter(|(position, _)| is_drawable(position)).collect();
     let most = drawable.iter().map(|(_, covers)| *covers).max()?;
     let covers_about = |centre: &Point| {
         let near = Bounds::square(*centre, half_width);
-        drawable.iter().filter(|(place, _)| near.contains(place)).map(|(_, covers)| u64::from(*covers)).sum::<u64>()
+        drawable
+            .iter()
+            .filter(|(position, _)| near.contains(position))
+            .map(|(_, covers)| u64::from(*covers))
+            .sum::<u64>()
     };
-    let candidates = drawable.iter().filter(|(_, covers)| *covers == most).take(200).map(|(place, _)| *place);
+    let candidates = drawable.iter().filter(|(_, covers)| *covers == most).take(200).map(|(position, _)| *position);
     // The first of equals wins.
     candidates
-        .map(|place| (covers_about(&place), place))
+        .map(|position| (covers_about(&position), position))
         .reduce(|best, next| if next.0 > best.0 { next } else { best })
-        .map(|(_, place)| place)
+        .map(|(_, position)| position)
 }
 
 fn draw_star(sheet: &mut Svg, [x, y]: Pixel, covers: u32, radius: f64) {
@@ -298,9 +303,9 @@ fn support([x, y]: Pixel) -> [Pixel; 3] {
     [[x, y], [x - 5.0, y + 9.0], [x + 5.0, y + 9.0]]
 }
 
-fn draw_monitor(sheet: &mut Svg, place: Pixel) {
-    sheet.circle(place, 6.0, Style::fill(WHITE).edged(ACCENT, 2.2));
-    sheet.circle(place, 2.0, Style::fill(ACCENT));
+fn draw_monitor(sheet: &mut Svg, position: Pixel) {
+    sheet.circle(position, 6.0, Style::fill(WHITE).edged(ACCENT, 2.2));
+    sheet.circle(position, 2.0, Style::fill(ACCENT));
 }
 
 /// A column of explained signs.

@@ -121,8 +121,8 @@ impl Chart {
         }
         self.draw_ticks(sheet);
         for trial in reduction.trials.iter().filter(|trial| of(trial).is_finite()) {
-            let place: Pixel = [self.x(trial.factor), self.y(of(trial))];
-            sheet.circle(place, 7.0, Style::fill(verdict_colour(trial.verdict)));
+            let position: Pixel = [self.x(trial.factor), self.y(of(trial))];
+            sheet.circle(position, 7.0, Style::fill(verdict_colour(trial.verdict)));
         }
         sheet.rect(&self.frame, Style::line(INK, 1.2));
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();

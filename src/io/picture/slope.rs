@@ -146,8 +146,8 @@ impl Labels {
         self.taken.push(rect);
     }
 
-    /// Where a text about `mark` starts (base line) without touching another; none if all places are taken.
-    pub fn place(&mut self, [x, y]: Pixel, text: &str) -> Option<Pixel> {
+    /// Where a text about `mark` starts (base line) without touching another; none if all positions are taken.
+    pub fn position(&mut self, [x, y]: Pixel, text: &str) -> Option<Pixel> {
         let (width, height) = (text_width(text, LABEL_SIZE), 1.2 * LABEL_SIZE);
         let distances = [12.0, 26.0, 44.0, 66.0, 92.0];
         let around = distances.iter().flat_map(|&d| {

@@ -8,7 +8,7 @@ use super::colour::{Colour, INK, WHITE};
 /// Family of the embedded font.
 pub const FONT: &str = "DejaVu Sans";
 
-/// A place in the picture (px), y down.
+/// A position in the picture (px), y down.
 pub type Pixel = [f64; 2];
 
 /// A rectangle of the picture (px).
@@ -35,7 +35,7 @@ impl Rect {
         self.top + self.height
     }
 
-    /// Whether the place lies inside or on the edge.
+    /// Whether the position lies inside or on the edge.
     pub fn contains(&self, [x, y]: Pixel) -> bool {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
@@ -198,8 +198,8 @@ impl Path {
     }
 
     /// Adds an open line.
-    pub fn line(&mut self, places: impl IntoIterator<Item = Pixel>) {
-        for (k, [x, y]) in places.into_iter().enumerate() {
+    pub fn line(&mut self, positions: impl IntoIterator<Item = Pixel>) {
+        for (k, [x, y]) in positions.into_iter().enumerate() {
             self.data.push(if k == 0 { 'M' } else { 'L' });
             push_number(&mut self.data, x);
             self.data.push(' ');

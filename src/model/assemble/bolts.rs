@@ -12,10 +12,10 @@ const FREE_LENGTH: f64 = 0.1;
 const BESIDE: f64 = 1e-3;
 
 /// Segments of all bolts, and what the user should know of them.
-pub(super) fn bolts(case: &Case, places: &Locator) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
+pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
     let (mut segments, mut warnings) = (Vec::new(), Vec::new());
     for (k, bolt) in case.bolts.iter().enumerate() {
-        let line = Line::new(&format!("bolt[{k}]"), bolt, places)?;
+        let line = Line::new(&format!("bolt[{k}]"), bolt, positions)?;
         match bolt.anchorage {
             Anchorage::Ends => segments.push(line.whole(k as u32, bolt)),
             Anchorage::Grouted => {
@@ -40,7 +40,7 @@ pub(super) fn bolts(case: &Case, places: &Locator) -> Result<(Vec<BoltSegment>, 
     Ok((segments, warnings))
 }
 
-/// A place where a bolt crosses a joint.
+/// A position where a bolt crosses a joint.
 struct Crossing {
     /// Distance from the head (m).
     along: f64,
@@ -50,7 +50,7 @@ struct Crossing {
 
 /// A bolt on the reference configuration.
 struct Line<'a> {
-    places: &'a Locator<'a>,
+    positions: &'a Locator<'a>,
     ends: [Point; 2],
     elements: [usize; 2],
     direction: Vector,
@@ -60,22 +60,22 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn new(key: &str, bolt: &Bolt, places: &'a Locator) -> Result<Self, Invalid> {
+    fn new(key: &str, bolt: &Bolt, positions: &'a Locator) -> Result<Self, Invalid> {
         let ends = bolt.points.map(Point::from);
         let mut elements = [0; 2];
         for (k, element) in elements.iter_mut().enumerate() {
-            *element = places.element(&format!("{key}.points[{k}]"), bolt.points[k])?;
+            *element = positions.element(&format!("{key}.points[{k}]"), bolt.points[k])?;
         }
         let length = (ends[1] - ends[0]).norm();
         let direction = (ends[1] - ends[0]) / length;
-        let mut line = Self { places, ends, elements, direction, length, meetings: Vec::new() };
+        let mut line = Self { positions, ends, elements, direction, length, meetings: Vec::new() };
         line.meet();
         Ok(line)
     }
 
-    /// Finds where the bolt meets pieces of block boundaries; places that coincide become one.
+    /// Finds where the bolt meets pieces of block boundaries; positions that coincide become one.
     fn meet(&mut self) {
-        let pieces = self.places.outlines.pieces.iter();
+        let pieces = self.positions.outlines.pieces.iter();
         for piece in pieces.filter(|p| p.opposite == NONE || p.element < p.opposite) {
             let [a, b] = [piece.a, piece.b].map(|p| self.direction.perp(&(p - self.ends[0])));
             if a * b > 0.0 || a == b {
@@ -88,7 +88,7 @@ impl<'a> Line<'a> {
             }
         }
         self.meetings.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let tolerance = self.places.tolerance;
+        let tolerance = self.positions.tolerance;
         self.meetings.dedup_by(|next, first| {
             let same = next.0 - first.0 <= tolerance;
             first.1 |= same && next.1;
@@ -101,7 +101,7 @@ impl<'a> Line<'a> {
     }
 
     fn element_at(&self, along: f64) -> Option<usize> {
-        self.places.covers.element_near(self.at(along), self.places.tolerance)
+        self.positions.covers.element_near(self.at(along), self.positions.tolerance)
     }
 
     /// The joints that the bolt crosses: rock on both sides, of two blocks or of one across a partial cut.
@@ -110,10 +110,10 @@ impl<'a> Line<'a> {
         for (k, &(along, partial)) in self.meetings.iter().enumerate() {
             let before = if k == 0 { 0.0 } else { self.meetings[k - 1].0 };
             let after = self.meetings.get(k + 1).map_or(self.length, |m| m.0);
-            let beside = |room: f64| (0.25 * room).min(BESIDE * self.places.covers.mesh.size);
+            let beside = |room: f64| (0.25 * room).min(BESIDE * self.positions.covers.mesh.size);
             let sides = [along - beside(along - before), along + beside(after - along)].map(|at| self.element_at(at));
             let [Some(first), Some(second)] = sides else { continue };
-            let block = |e: usize| self.places.covers.element_block[e];
+            let block = |e: usize| self.positions.covers.element_block[e];
             if block(first) != block(second) || partial && first != second {
                 crossings.push(Crossing { along, elements: [first, second] });
             }
@@ -125,7 +125,7 @@ impl<'a> Line<'a> {
     fn outside(&self) -> f64 {
         let stations: Vec<f64> =
             std::iter::once(0.0).chain(self.meetings.iter().map(|m| m.0)).chain([self.length]).collect();
-        let gaps = stations.windows(2).filter(|pair| pair[1] - pair[0] > 2.0 * self.places.tolerance);
+        let gaps = stations.windows(2).filter(|pair| pair[1] - pair[0] > 2.0 * self.positions.tolerance);
         gaps.filter(|pair| self.element_at(0.5 * (pair[0] + pair[1])).is_none()).map(|pair| pair[1] - pair[0]).sum()
     }
 
@@ -136,7 +136,7 @@ impl<'a> Line<'a> {
 
     /// A short segment across a joint; its points belong to the rock on both sides, as far as they reach.
     fn bridge(&self, index: u32, bolt: &Bolt, crossing: &Crossing) -> BoltSegment {
-        let covers = self.places.covers;
+        let covers = self.positions.covers;
         let free = bolt.free_length.unwrap_or(FREE_LENGTH * covers.mesh.size);
         let points = [-0.5, 0.5].map(|share| self.at(crossing.along + share * free));
         self.segment(index, bolt, crossing.elements.map(|e| covers.host[e] as usize), points, free)
@@ -150,7 +150,7 @@ impl<'a> Line<'a> {
         points: [Point; 2],
         free_length: f64,
     ) -> BoltSegment {
-        let covers = self.places.covers;
+        let covers = self.positions.covers;
         BoltSegment {
             bolt: index,
             blocks: elements.map(|e| covers.element_block[e]),

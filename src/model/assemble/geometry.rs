@@ -47,7 +47,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
     demand.check_dense(&traces, tolerance)?;
-    demand.check_crossings(&traces, tolerance, |place| loops.hold(place))?;
+    demand.check_crossings(&traces, tolerance, |position| loops.hold(position))?;
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));

@@ -1,14 +1,14 @@
-//! Places that a case names, found on the built covers.
+//! Positions that a case names, found on the built covers.
 
 use crate::cover::{BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector, segment};
 use crate::model::case::Invalid;
 
-/// Finds places of a case on the covers of its model.
+/// Finds positions of a case on the covers of its model.
 pub(super) struct Locator<'a> {
     pub covers: &'a Covers,
     pub outlines: &'a Outlines,
-    /// Distance (m) within which a place counts as on the rock or on a boundary.
+    /// Distance (m) within which a position counts as on the rock or on a boundary.
     pub tolerance: f64,
 }
 
@@ -78,7 +78,7 @@ impl Locator<'_> {
         self.element(key, point).map(|e| self.covers.element_block[e] as usize)
     }
 
-    /// The material point at a place.
+    /// The material point at a position.
     pub fn point(&self, key: &str, point: [f64; 2]) -> Result<MaterialPoint, Invalid> {
         let element = self.element(key, point)?;
         Ok(MaterialPoint {

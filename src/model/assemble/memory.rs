@@ -188,8 +188,8 @@ impl Demand<'_> {
         let area = if set.region.is_some() { polygon::area(&ring).abs() } else { whole };
         let dip = set.dip_deg.to_radians();
         let across = |axis: Vector| {
-            let places = || ring.iter().map(move |p| p.dot(&axis));
-            places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+            let positions = || ring.iter().map(move |p| p.dot(&axis));
+            positions().fold(f64::NEG_INFINITY, f64::max) - positions().fold(f64::INFINITY, f64::min)
         };
         let in_line = set
             .trace_length
@@ -291,32 +291,32 @@ impl Demand<'_> {
         let pieces: Vec<&[Point]> = traces.iter().flat_map(|(points, _)| points.windows(2)).collect();
         let count = pieces.len().min(SAMPLE);
         let sample: Vec<&[Point]> = (0..count).map(|k| pieces[k * pieces.len() / count]).collect();
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for (k, piece) in sample.iter().enumerate() {
             let crossed = sample[..k].iter().filter_map(|other| crossing(piece, other, merged));
-            places.extend(crossed.filter(|&place| is_rock(place)));
+            positions.extend(crossed.filter(|&position| is_rock(position)));
         }
-        let places = distinct(&places, merged);
-        if places.len() < KNIT * count { Ok(()) } else { self.check_near(&places, 1.0) }
+        let positions = distinct(&positions, merged);
+        if positions.len() < KNIT * count { Ok(()) } else { self.check_near(&positions, 1.0) }
     }
 
     /// Refuses edges of an arrangement that lie too close to each other.
     pub fn check_edges(&self, arrangement: &Arrangement) -> Result<(), Invalid> {
         let point = |vertex: u32| arrangement.points[vertex as usize];
         let edges = arrangement.edges.iter().filter(|edge| edge.label.trace != NONE || edge.label.outline != 0);
-        let places: Vec<Point> = edges.map(|edge| (point(edge.a) + point(edge.b)) * 0.5).collect();
-        self.check_near(&places, 1.0)
+        let positions: Vec<Point> = edges.map(|edge| (point(edge.a) + point(edge.b)) * 0.5).collect();
+        self.check_near(&positions, 1.0)
     }
 
     /// Refuses blocks that are so small beside the mesh size that too many of their sides are near each other; at each
-    /// place there are some edges, with rock and nodes on both sides.
-    fn check_near(&self, places: &[Point], edges: f64) -> Result<(), Invalid> {
+    /// position there are some edges, with rock and nodes on both sides.
+    fn check_near(&self, positions: &[Point], edges: f64) -> Result<(), Invalid> {
         let (cutoff, sides) = (CUTOFF * self.size(), 2.0 * edges);
         let grid = CellGrid::new(self.low, self.high, cutoff);
         let mut counts = vec![0u32; grid.len()];
-        places.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);
+        positions.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);
         let (mut pairs, mut densest) = (0.0, (0.0, self.low));
-        for &p in places {
+        for &p in positions {
             let mut around = 0.0;
             grid.visit_square(p, cutoff, |cell| around += sides * f64::from(counts[cell]));
             let near = around * PI * cutoff * cutoff / (9.0 * grid.area());
@@ -327,14 +327,14 @@ impl Demand<'_> {
         if bytes <= self.limit() {
             return Ok(());
         }
-        let (near, place) = densest;
+        let (near, position) = densest;
         let message = format!(
             "{} m is so large beside the blocks that {near:.0} of their sides lie within a quarter of it round \
              ({:.6}, {:.6}) m: {pairs:.1e} pairs, a model of about {:.1} GB, above the limit of {:.3} GB: use a mesh \
              size like that of the blocks there, or fewer joints, or raise solver.memory_limit",
             self.size(),
-            place.x,
-            place.y,
+            position.x,
+            position.y,
             bytes / 1e9,
             self.limit() / 1e9
         );
@@ -349,10 +349,10 @@ impl SetDemand {
     }
 }
 
-/// Places that stay apart when those within a distance (m) become one.
-fn distinct(places: &[Point], distance: f64) -> Vec<Point> {
-    let cell = |place: &Point| [place.x / distance, place.y / distance].map(|number| number.round() as i64);
-    let mut cells: Vec<[i64; 2]> = places.iter().map(cell).collect();
+/// Positions that stay apart when those within a distance (m) become one.
+fn distinct(positions: &[Point], distance: f64) -> Vec<Point> {
+    let cell = |position: &Point| [position.x / distance, position.y / distance].map(|number| number.round() as i64);
+    let mut cells: Vec<[i64; 2]> = positions.iter().map(cell).collect();
     cells.sort_unstable();
     cells.dedup();
     cells.iter().map(|&[x, y]| Point::new(x as f64, y as f64) * distance).collect()
@@ -370,7 +370,7 @@ fn crossing(first: &[Point], second: &[Point], distance: f64) -> Option<Point> {
     across(second, first).map(|at| first[0] + (first[1] - first[0]) * at)
 }
 
-/// Area of a box (m²); none when its ends have changed places.
+/// Area of a box (m²); none when its ends have changed positions.
 fn extent(low: Point, high: Point) -> f64 {
     let span = (high - low).sup(&Vector::zeros());
     span.x * span.y

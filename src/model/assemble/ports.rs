@@ -8,7 +8,7 @@ use crate::state::{Port, PortKind, Water};
 
 use super::locator::Locator;
 
-/// Finds boundary edges by their place in the reference configuration.
+/// Finds boundary edges by their position in the reference configuration.
 pub(super) struct Faces<'a> {
     pub boundary: &'a Boundary,
     /// Distance (m) within which an edge counts as on a segment.
@@ -76,7 +76,7 @@ fn nothing_on(key: &str, [[a, b], [c, d]]: [[f64; 2]; 2], joints: bool) -> Inval
 }
 
 /// The ports of a case.
-pub(super) fn ports(case: &Case, places: &Locator, faces: &Faces) -> Result<Vec<Port>, Invalid> {
+pub(super) fn ports(case: &Case, positions: &Locator, faces: &Faces) -> Result<Vec<Port>, Invalid> {
     let mut ports = Vec::new();
     for (k, port) in case.ports.iter().enumerate() {
         let key = |name: &str| format!("port[{k}].{name}");
@@ -89,7 +89,7 @@ pub(super) fn ports(case: &Case, places: &Locator, faces: &Faces) -> Result<Vec<
         };
         let block = match edges.first() {
             Some(&edge) => faces.boundary.block[edge as usize],
-            None => places.block(&key("block"), port.block.unwrap_or_default())? as u32,
+            None => positions.block(&key("block"), port.block.unwrap_or_default())? as u32,
         };
         ports.push(Port { name: port.name.clone(), kind, block, edges, force: Vector::from(force), scalar });
     }

@@ -17,7 +17,7 @@ const INSIDE: f64 = 1e-3;
 /// What the quiet boundaries of a case are made from.
 pub(super) struct Ground<'a> {
     pub case: &'a Case,
-    pub places: &'a Locator<'a>,
+    pub positions: &'a Locator<'a>,
     pub rocks: &'a [Elasticity],
     pub element_rock: &'a [u16],
 }
@@ -25,7 +25,7 @@ pub(super) struct Ground<'a> {
 impl Ground<'_> {
     /// Stiffness (Pa/m) that those of supports are measured by.
     pub fn stiffness(&self) -> f64 {
-        stiffness_over(self.places.covers.mesh.size, self.case, self.rocks)
+        stiffness_over(self.positions.covers.mesh.size, self.case, self.rocks)
     }
 }
 
@@ -63,7 +63,7 @@ impl Ground<'_> {
     pub fn quiets(&self, fixities: &mut Vec<Fixity>, supports: &mut Vec<Support>) -> Result<Quiets, Invalid> {
         let mut made = Quiets::default();
         for (k, quiet) in self.case.quiets.iter().enumerate() {
-            let pieces = self.places.boundary(&format!("quiet[{k}].edge"), quiet.edge)?;
+            let pieces = self.positions.boundary(&format!("quiet[{k}].edge"), quiet.edge)?;
             let wave = quiet
                 .wave
                 .map(|wave| timed(self.case, &quiet.table, Vector::from(wave) * quiet.scale, quiet.stage.as_deref()));
@@ -75,7 +75,7 @@ impl Ground<'_> {
         }
         for (k, side) in self.case.free_fields.iter().enumerate() {
             let key = format!("free_field[{k}].edge");
-            let pieces = self.places.boundary(&key, side.edge)?;
+            let pieces = self.positions.boundary(&key, side.edge)?;
             let number = made.quiets.len() as u32;
             let column = self.column(&key, side.edge)?;
             let own = Some(made.columns.len() as u32);
@@ -146,12 +146,12 @@ impl Ground<'_> {
     fn column(&self, key: &str, edge: [[f64; 2]; 2]) -> Result<Column, Invalid> {
         let [a, b] = edge.map(Point::from);
         let (foot, head) = if a.y < b.y { (a, b) } else { (b, a) };
-        let (height, size) = (head.y - foot.y, self.places.covers.mesh.size);
+        let (height, size) = (head.y - foot.y, self.positions.covers.mesh.size);
         let cells = (height / (ROW * size) + 1e-9).floor().max(1.0) as usize;
         let spacing = height / cells as f64;
         let beside = |y: f64| {
             let inside = [INSIDE, -INSIDE].map(|share| Point::new(foot.x + share * size, y));
-            let found = inside.iter().find_map(|p| self.places.covers.element_near(*p, self.places.tolerance));
+            let found = inside.iter().find_map(|p| self.positions.covers.element_near(*p, self.positions.tolerance));
             found.ok_or_else(|| Invalid {
                 key: key.into(),
                 message: format!(
@@ -165,18 +165,18 @@ impl Ground<'_> {
         for cell in 0..cells {
             let element = beside(foot.y + (cell as f64 + 0.5) * spacing)?;
             rocks.push(self.rocks[self.element_rock[element] as usize]);
-            blocks.push(self.places.covers.element_block[element]);
+            blocks.push(self.positions.covers.element_block[element]);
         }
         blocks.push(blocks[cells - 1]);
         Ok(Column { foot_height: foot.y, spacing, rocks, blocks, foot: self.foot(foot) })
     }
 
     /// The quiet boundary that reaches the foot of a column, or else the base.
-    fn foot(&self, place: Point) -> Foot {
-        let tolerance = self.places.tolerance;
+    fn foot(&self, position: Point) -> Foot {
+        let tolerance = self.positions.tolerance;
         let reaches = |quiet: &case::Quiet| {
             let [a, b] = quiet.edge.map(Point::from);
-            segment::distance(place, a, b) <= tolerance && a.x != b.x
+            segment::distance(position, a, b) <= tolerance && a.x != b.x
         };
         self.case.quiets.iter().position(reaches).map_or(Foot::Rigid, |k| Foot::Quiet(k as u32))
     }
@@ -185,11 +185,11 @@ impl Ground<'_> {
     fn beside(&self, column: &Column, piece: &OuterPiece, first: u32, dashpots: &[Support]) -> Vec<FreeFieldPoint> {
         let rock = &self.rocks[self.element_rock[piece.piece.element as usize] as usize];
         let (a, b) = (piece.piece.a, piece.piece.b);
-        let ends = [column.place(a.y), column.place(b.y)];
+        let ends = [column.position(a.y), column.position(b.y)];
         // Outward normal (dy, −dx)/l: a side that is walked upwards has the free field at its right.
         let of = |(k, support): (usize, &Support)| FreeFieldPoint {
             support: first + k as u32,
-            at: column.place(0.5 * (a.y + b.y)),
+            at: column.position(0.5 * (a.y + b.y)),
             ends,
             stiffness: Vector::new(rock.mu * support.direction.y, rock.lambda * support.direction.x),
         };

@@ -69,7 +69,7 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     };
     let beyond: Vec<(usize, f64)> = (0..model.covers.element_count()).filter_map(excess).collect();
     let &(worst, most) = beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let place = model.covers.element_centroid[worst];
+    let position = model.covers.element_centroid[worst];
     let name = case.rocks.keys().nth(model.element_rock[worst] as usize).map_or("", String::as_str);
     Some(format!(
         "the in-situ stress is beyond the strength of the rock in {} of {} elements, most at ({:.6}, {:.6}) m in \
@@ -77,8 +77,8 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
          strength",
         beyond.len(),
         model.covers.element_count(),
-        place.x,
-        place.y
+        position.x,
+        position.y
     ))
 }
 
@@ -102,29 +102,29 @@ pub(super) fn coarse(case: &Case) -> Option<String> {
 }
 
 /// Rock of each element: by block, else by region, else the rock that names neither.
-pub(super) fn assign(case: &Case, places: &Locator) -> Result<Vec<u16>, Invalid> {
+pub(super) fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Invalid> {
     let background = case.rocks.values().position(|r| r.region.is_none() && r.blocks.is_empty());
-    let mut owner: Vec<Option<usize>> = vec![None; places.covers.element_count()];
+    let mut owner: Vec<Option<usize>> = vec![None; positions.covers.element_count()];
     for (k, (name, rock)) in case.rocks.iter().enumerate() {
         let Some(region) = &rock.region else { continue };
         let region = points(region);
-        let inside = |e: &usize| polygon::contains(&region, places.covers.element_centroid[*e]);
+        let inside = |e: &usize| polygon::contains(&region, positions.covers.element_centroid[*e]);
         for e in (0..owner.len()).filter(inside) {
-            claim(&mut owner, e, k, case, &format!("rock.{name}.region"), places)?;
+            claim(&mut owner, e, k, case, &format!("rock.{name}.region"), positions)?;
         }
     }
     let mut by_block: Vec<Option<usize>> = vec![None; owner.len()];
     for (k, (name, rock)) in case.rocks.iter().enumerate() {
         for (n, &point) in rock.blocks.iter().enumerate() {
             let key = format!("rock.{name}.blocks[{n}]");
-            for e in places.covers.elements_of(places.block(&key, point)?) {
-                claim(&mut by_block, e, k, case, &key, places)?;
+            for e in positions.covers.elements_of(positions.block(&key, point)?) {
+                claim(&mut by_block, e, k, case, &key, positions)?;
             }
         }
     }
     (0..owner.len())
         .map(|e| {
-            let rock = by_block[e].or(owner[e]).or(background).ok_or_else(|| unassigned(places, e))?;
+            let rock = by_block[e].or(owner[e]).or(background).ok_or_else(|| unassigned(positions, e))?;
             Ok(rock as u16)
         })
         .collect()
@@ -136,10 +136,10 @@ fn claim(
     rock: usize,
     case: &Case,
     key: &str,
-    places: &Locator,
+    positions: &Locator,
 ) -> Result<(), Invalid> {
     if let Some(other) = owner[element].filter(|&other| other != rock) {
-        let at = places.covers.element_centroid[element];
+        let at = positions.covers.element_centroid[element];
         let name = case.rocks.keys().nth(other).map_or("", String::as_str);
         return Err(Invalid {
             key: key.into(),
@@ -153,8 +153,8 @@ fn claim(
     Ok(())
 }
 
-fn unassigned(places: &Locator, element: usize) -> Invalid {
-    let at = places.covers.element_centroid[element];
+fn unassigned(positions: &Locator, element: usize) -> Invalid {
+    let at = positions.covers.element_centroid[element];
     Invalid {
         key: "rock".into(),
         message: format!(

@@ -53,8 +53,8 @@ pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Poi
 
 fn name_of_trace(trace: usize, case: &Case, points: &[Point]) -> String {
     let name = if trace < case.joints.len() { format!("joint[{trace}]") } else { "one of a joint set".to_owned() };
-    let place = |p: Option<&Point>| p.map_or_else(String::new, |p| format!("({:.6}, {:.6})", p.x, p.y));
-    format!("{name} from {} to {} m", place(points.first()), place(points.last()))
+    let position = |p: Option<&Point>| p.map_or_else(String::new, |p| format!("({:.6}, {:.6})", p.x, p.y));
+    format!("{name} from {} to {} m", position(points.first()), position(points.last()))
 }
 
 /// Traces of which nothing cuts rock.
@@ -63,12 +63,12 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
 }
 
 /// What is unusual about values of the case.
-pub(super) fn of_values(case: &Case, model: &Model, places: &Locator) -> Vec<String> {
+pub(super) fn of_values(case: &Case, model: &Model, positions: &Locator) -> Vec<String> {
     let mut warnings = rocks(case);
     warnings.extend(extent(case, model));
     warnings.extend(gravity(case));
     warnings.extend(unheld(case));
-    warnings.extend(long_edges(case, places));
+    warnings.extend(long_edges(case, positions));
     warnings.extend(tension(model));
     warnings
 }
@@ -134,13 +134,13 @@ fn unheld(case: &Case) -> Option<String> {
 }
 
 /// Fixed edges that lie off the rock for the most part.
-fn long_edges(case: &Case, places: &Locator) -> Vec<String> {
+fn long_edges(case: &Case, positions: &Locator) -> Vec<String> {
     let mut warnings = Vec::new();
     for (k, fix) in case.fixes.iter().enumerate() {
         let Some([a, b]) = fix.edge else { continue };
         let key = format!("fix[{k}].edge");
         // An edge without rock was refused when the fixities were made.
-        let held: f64 = places.boundary(&key, [a, b]).iter().flatten().map(|piece| piece.length()).sum();
+        let held: f64 = positions.boundary(&key, [a, b]).iter().flatten().map(|piece| piece.length()).sum();
         let length = (Point::from(b) - Point::from(a)).norm();
         if length > EDGE_RATIO * held {
             warnings.push(format!(
@@ -159,14 +159,14 @@ fn tension(model: &Model) -> Option<String> {
     let pull = |s: &[f64; 3]| s[0].max(s[1]);
     let greatest = stresses.clone().map(|(s, _)| s[0].abs().max(s[1].abs())).fold(0.0, f64::max);
     let pulled = stresses.clone().filter(|(s, _)| pull(s) > TENSION_SHARE * greatest).count();
-    let (most, place) = stresses.max_by(|(s, _), (t, _)| pull(s).total_cmp(&pull(t)))?;
+    let (most, position) = stresses.max_by(|(s, _), (t, _)| pull(s).total_cmp(&pull(t)))?;
     (pulled > 0).then(|| {
         format!(
             "in_situ: pulls at the rock in {pulled} of {} elements, most at ({:.6}, {:.6}) m, by {:.3e} Pa; tension is \
              positive, and rock under ground is compressed: write sxx and syy negative",
             model.covers.element_count(),
-            place.x,
-            place.y,
+            position.x,
+            position.y,
             pull(&most)
         )
     })

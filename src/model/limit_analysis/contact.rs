@@ -23,7 +23,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether it is a place and not a length.
+    /// Whether it is a position and not a length.
     pub fn is_point(&self) -> bool {
         self.ends[0] == self.ends[1]
     }

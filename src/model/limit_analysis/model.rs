@@ -45,7 +45,7 @@ impl Body {
         [direction.x, direction.y, (at - self.centre).perp(&direction) / self.radius]
     }
 
-    /// Takes note of a direction that is held at a place, when no other holds explain it.
+    /// Takes note of a direction that is held at a position, when no other holds explain it.
     fn hold(&mut self, at: Point, direction: Vector) {
         let mut rest = self.share(at, direction);
         let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
@@ -66,13 +66,13 @@ impl Body {
 pub struct Bar {
     /// Blocks of both ends.
     pub blocks: [u32; 2],
-    /// Places of both ends (m).
+    /// Positions of both ends (m).
     pub ends: [Point; 2],
     /// Tension (N/m) at which it yields; infinite for never.
     pub yield_force: f64,
 }
 
-/// The blocks of a model in the stage that it has reached, at their places before any motion.
+/// The blocks of a model in the stage that it has reached, at their positions before any motion.
 pub fn bodies(simulation: &Simulation) -> Vec<Body> {
     let (model, state) = (simulation.model(), simulation.state());
     let covers = &model.covers;

@@ -93,7 +93,7 @@ impl Program {
         self.bodies.iter().map(&mut motion).collect()
     }
 
-    /// Velocity of the second block relative to the first at a place.
+    /// Velocity of the second block relative to the first at a position.
     pub fn parting(&self, motions: &[Motion], contact: &Contact) -> Vector {
         let at = |b: u32| {
             let (velocity, spin) = motions[b as usize];

@@ -138,8 +138,8 @@ fn accelerates(windows: &[Sample], scales: &Scales) -> bool {
 /// Whether growth of displacements falls off over the last half (Eq. 65).
 fn ends(samples: &[Sample], scales: &Scales) -> bool {
     let n = samples.len();
-    let place = |quarters: usize| samples[(n - 1) * quarters / 4].displacement;
-    let [earlier, later] = [place(3) - place(2), place(4) - place(3)];
+    let position = |quarters: usize| samples[(n - 1) * quarters / 4].displacement;
+    let [earlier, later] = [position(3) - position(2), position(4) - position(3)];
     later <= (ENDLESS * earlier).max(scales.still_speed * scales.window)
 }
 

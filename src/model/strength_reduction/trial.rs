@@ -74,13 +74,13 @@ impl Base {
     }
 
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
-    fn places(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
-        let place = |b: usize| {
+    fn positions(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
+        let position = |b: usize| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
             Vector3::new(motion.displacement.x, motion.displacement.y, turn)
         };
-        self.moving().map(place).collect()
+        self.moving().map(position).collect()
     }
 
     /// Makes one trial; returns the model at its end as well.
@@ -93,7 +93,7 @@ impl Base {
         drive.to.strength_factor = 1.0 / factor;
         (drive.since, drive.until) = (start, start + self.scales.ramp);
         let mut samples = Vec::new();
-        let mut places = self.places(&simulation);
+        let mut positions = self.positions(&simulation);
         let steps = simulation.steps_in(self.scales.window);
         let mut first = None;
         let (mut judged, mut last) = (None, StepReport::default());
@@ -106,8 +106,8 @@ impl Base {
                 }
             }
             let first = *first.get_or_insert(last.ledger);
-            let before = std::mem::replace(&mut places, self.places(&simulation));
-            let way = places.iter().zip(&before).map(|(now, before)| (now - before).norm()).fold(0.0, f64::max);
+            let before = std::mem::replace(&mut positions, self.positions(&simulation));
+            let way = positions.iter().zip(&before).map(|(now, before)| (now - before).norm()).fold(0.0, f64::max);
             samples.push(self.sample(&simulation, &last, &first, way));
             judged = judge::judge(&samples, &self.scales);
         }
@@ -183,7 +183,7 @@ impl Base {
                 let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
                     block: b as u32,
-                    place: model.covers.block_centroid(b),
+                    position: model.covers.block_centroid(b),
                     area: model.covers.block_area(b),
                     mass: model.mass_matrix.total[b],
                     displacement: self.moved(simulation, b),

@@ -7,7 +7,7 @@ use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_blo
 use super::{Inertia, Step};
 
 impl Step<'_> {
-    /// The pattern, when the near pairs are new, and the places of this sub-step's contacts in it.
+    /// The pattern, when the near pairs are new, and the slots of this sub-step's contacts in it.
     ///
     /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
     pub(super) fn implicit_places(&mut self) {
@@ -17,12 +17,12 @@ impl Step<'_> {
         let workspace = &mut *self.workspace;
         let buffers = &mut workspace.implicit;
         let matrix = &buffers.matrix;
-        buffers.contact_places.clear();
-        buffers.contact_places.extend(workspace.contacts.iter().map(|contact| {
+        buffers.contact_slots.clear();
+        buffers.contact_slots.extend(workspace.contacts.iter().map(|contact| {
             let ids = six(contact);
             std::array::from_fn(|k| {
                 let (row, column) = (ids[k / 6], ids[k % 6]);
-                if row < column { UNCOUPLED } else { matrix.place(row, column) }
+                if row < column { UNCOUPLED } else { matrix.slot(row, column) }
             })
         }));
     }
@@ -52,16 +52,16 @@ impl Step<'_> {
         pairs.dedup();
         buffers.matrix.set_pattern(covers.cover_count(), pairs);
         let matrix = &buffers.matrix;
-        buffers.element_places.clear();
-        buffers.element_places.extend(
+        buffers.element_slots.clear();
+        buffers.element_slots.extend(
             covers
                 .element_covers
                 .iter()
-                .map(|ids| PAIRS.map(|[a, b]| matrix.place(ids[a].max(ids[b]), ids[a].min(ids[b])))),
+                .map(|ids| PAIRS.map(|[a, b]| matrix.slot(ids[a].max(ids[b]), ids[a].min(ids[b])))),
         );
     }
 
-    /// Assembles the matrix at the places reached and the contacts as they are judged, and factorises it.
+    /// Assembles the matrix at the slots reached and the contacts as they are judged, and factorises it.
     pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
         self.workspace.implicit.matrix.zero();
         self.add_elements(inertia.factor, 1.0);
@@ -85,7 +85,7 @@ impl Step<'_> {
         let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
         let Some(implicit) = &model.implicit else { return };
-        for (e, places) in buffers.element_places.iter().enumerate() {
+        for (e, slots) in buffers.element_slots.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &model.rocks[model.element_rock[e] as usize];
@@ -98,7 +98,7 @@ impl Step<'_> {
                 let mut block = stiffness_block(area, rock, turned[row], turned[column]);
                 block[0] += mass * implicit.element_mass[e][k];
                 block[3] += mass * implicit.element_mass[e][k];
-                buffers.matrix.add(places[k], ids[column], block, a == b);
+                buffers.matrix.add(slots[k], ids[column], block, a == b);
             }
         }
     }
@@ -108,7 +108,7 @@ impl Step<'_> {
         let workspace = &mut *self.workspace;
         let buffers = &mut workspace.implicit;
         buffers.factored.clear();
-        for (contact, places) in workspace.contacts.iter().zip(&buffers.contact_places) {
+        for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,
@@ -119,10 +119,10 @@ impl Step<'_> {
             let spring = spring(contact, shear);
             let ids = six(contact);
             let weights = six_weights(contact);
-            for (k, &place) in places.iter().enumerate().filter(|(_, place)| **place != UNCOUPLED) {
+            for (k, &slot) in slots.iter().enumerate().filter(|(_, slot)| **slot != UNCOUPLED) {
                 let (a, b) = (k / 6, k % 6);
                 let block = spring.map(|v| v * weights[a] * weights[b]);
-                buffers.matrix.add(place, ids[b], block, ids[a] == ids[b]);
+                buffers.matrix.add(slot, ids[b], block, ids[a] == ids[b]);
             }
         }
     }
@@ -139,7 +139,7 @@ impl Step<'_> {
                 let (i, j) = (support.covers[a], support.covers[b]);
                 if i >= j {
                     let block = spring.map(|v| v * support.weights[a] * support.weights[b]);
-                    matrix.add(matrix.place(i, j), j, block, i == j);
+                    matrix.add(matrix.slot(i, j), j, block, i == j);
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Forces out of balance: inertia, elements, contacts and supports at the places reached.
+//! Forces out of balance: inertia, elements, contacts and supports at the positions reached.
 
 use crate::contact::VertexEdge;
 use crate::geometry::Vector;
@@ -7,7 +7,7 @@ use crate::mechanics::{self, Deformation, push_mass};
 use super::{Inertia, Step};
 
 impl Step<'_> {
-    /// Internal forces at the places reached (Eq. 7).
+    /// Internal forces at the positions reached (Eq. 7).
     pub(super) fn implicit_internal(&mut self) {
         let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
@@ -25,7 +25,7 @@ impl Step<'_> {
         }
     }
 
-    /// Judges all contacts at the places reached; returns whether one is not as the factor holds it.
+    /// Judges all contacts at the positions reached; returns whether one is not as the factor holds it.
     pub(super) fn implicit_judge(&mut self) -> bool {
         let workspace = &mut *self.workspace;
         let buffers = &workspace.implicit;
@@ -38,7 +38,7 @@ impl Step<'_> {
         changed
     }
 
-    /// Forces of all contacts at the places reached, friction under the pressure kept in `pressing`.
+    /// Forces of all contacts at the positions reached, friction under the pressure kept in `pressing`.
     pub(super) fn implicit_probe(&mut self) {
         let workspace = &mut *self.workspace;
         let buffers = &workspace.implicit;
@@ -48,7 +48,7 @@ impl Step<'_> {
         self.bear();
     }
 
-    /// Forces of all supports at the places reached.
+    /// Forces of all supports at the positions reached.
     fn bear(&mut self) {
         let workspace = &mut *self.workspace;
         for row in &mut workspace.rows {
@@ -58,7 +58,7 @@ impl Step<'_> {
         }
     }
 
-    /// Forces out of balance (Eq. 67) at the places reached; returns their norm and the norm of the largest part.
+    /// Forces out of balance (Eq. 67) at the positions reached; returns their norm and the norm of the largest part.
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
         let model = self.model;
         self.push_bearing();
@@ -128,7 +128,7 @@ impl Step<'_> {
     }
 }
 
-/// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the places reached, within
+/// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the positions reached, within
 /// what the joint can carry.
 fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
     let [normal, shear] = springs(contact, moved);

@@ -1,4 +1,4 @@
-//! The end of a sub-step: velocities, places, histories, ledger; and the report of its start.
+//! The end of a sub-step: velocities, positions, histories, ledger; and the report of its start.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
 use crate::step::report::{potential, speed_max, stored, strain, unbalanced};
 
 impl Step<'_> {
-    /// Ends a sub-step with the forces and places that the iteration left.
+    /// Ends a sub-step with the forces and positions that the iteration left.
     pub(super) fn implicit_commit(&mut self, inertia: &Inertia) {
         let model = self.model;
         let Some(implicit) = &model.implicit else { return };
@@ -31,7 +31,7 @@ impl Step<'_> {
         self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
     }
 
-    /// Places, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
+    /// Positions, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
     fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let (state, workspace) = (&mut *self.state, &*self.workspace);
         let buffers = &workspace.implicit;

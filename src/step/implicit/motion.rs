@@ -82,11 +82,11 @@ impl Step<'_> {
         let range = model.covers.covers_of(block);
         let mass = &model.mass_matrix.row_sum;
         let total: f64 = model.mass_matrix.total[block];
-        let place = |u: &[Vector], i: usize| model.covers.star_position[i] + u[i];
-        let centre: Point = range.clone().map(|i| place(&state.displacement, i) * mass[i]).sum::<Point>() / total;
+        let position = |u: &[Vector], i: usize| model.covers.star_position[i] + u[i];
+        let centre: Point = range.clone().map(|i| position(&state.displacement, i) * mass[i]).sum::<Point>() / total;
         let mean: Vector = range.clone().map(|i| state.velocity[i] * mass[i]).sum::<Vector>() / total;
         for i in range.clone() {
-            let arm = place(&state.displacement, i) - centre;
+            let arm = position(&state.displacement, i) - centre;
             buffers.field[i] = Vector::new(-arm.y, arm.x);
         }
         let [spun, inertia] = [&state.velocity, &buffers.field].map(|field| {

@@ -38,7 +38,7 @@ const SLOW: f64 = 0.7;
 const TOUCHING: f64 = 1e-6;
 /// Share of the forces out of balance along a solution that may be left after it.
 const OVERSHOOT: f64 = 0.5;
-/// Most places tried along a solution.
+/// Most positions tried along a solution.
 const SEARCHES_MAX: u32 = 8;
 
 /// How far forces are from balance.
@@ -108,7 +108,7 @@ impl Step<'_> {
         }
     }
 
-    /// Forces at the places reached, and how far they are from balance.
+    /// Forces at the positions reached, and how far they are from balance.
     fn evaluate(&mut self, inertia: &Inertia) -> Balance {
         let clock = Instant::now();
         self.implicit_internal();
@@ -159,7 +159,7 @@ impl Step<'_> {
         Balance { changed, residual, scale }
     }
 
-    /// Forces at the places reached under the pressure of before, and how far they push along the solution.
+    /// Forces at the positions reached under the pressure of before, and how far they push along the solution.
     fn probe(&mut self, inertia: &Inertia) -> f64 {
         let clock = Instant::now();
         self.implicit_internal();

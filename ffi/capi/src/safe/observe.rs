@@ -62,7 +62,7 @@ impl Model {
     /// All contacts.
     pub fn contacts(&self) -> Vec<enmm_contact> {
         let simulation = self.inner.simulation();
-        let (places, boundary) = (simulation.places(), &simulation.model().boundary);
+        let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
         let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
             let history = &contact.history;
@@ -153,7 +153,7 @@ impl Model {
     fn loops(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, Vec<Point>)> {
         let simulation = self.inner.simulation();
         let boundary = &simulation.model().boundary;
-        let places = simulation.places();
+        let places = simulation.positions();
         let mut loops = Vec::new();
         let mut k = 0;
         while k < boundary.len() {
