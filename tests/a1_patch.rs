@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::claims::{Dice, stresses};
+use common::claims::{Random, stresses};
 use common::simulation;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
@@ -13,8 +13,8 @@ const POISSON: f64 = 0.25;
 
 /// A seven-sided rock cut by two joint sets of finite traces (dead ends and partial cuts included) and loose traces.
 fn cut_rock(seed: u64) -> Simulation {
-    let mut dice = Dice(seed);
-    let mut number = |low, high| dice.between(low, high);
+    let mut random = Random(seed);
+    let mut number = |low, high| random.between(low, high);
     let mut text = format!(
         "title = \"patch\"\n[domain]\noutline = [[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], \
          [4.0, 9.5], [-1.0, 5.0]]\n[mesh]\nsize = {}\nangle_deg = {}\norigin = [{}, {}]\n\
@@ -88,13 +88,13 @@ fn rigid_motion_leaves_no_stress() {
 fn a_uniform_strain_is_uniform_in_every_element() {
     for seed in 21..=32 {
         let simulation = cut_rock(seed);
-        let mut dice = Dice(seed);
-        let strain = [0.0; 3].map(|_: f64| dice.between(-2e-3, 2e-3));
+        let mut random = Random(seed);
+        let strain = [0.0; 3].map(|_: f64| random.between(-2e-3, 2e-3));
         let [xx, yy, xy] = strain;
         let stretched = |x: Vector| Vector::new(xx * x.x + xy * x.y, xy * x.x + yy * x.y);
         let plain = worst(&simulation, &moved(&simulation, stretched), hooke(strain));
         assert!(plain <= 1e-12 * YOUNG, "seed {seed}: {plain:e} Pa");
-        let (s, c) = dice.between(-3.0, 3.0).sin_cos();
+        let (s, c) = random.between(-3.0, 3.0).sin_cos();
         let turned = |x: Vector| {
             let y = x + stretched(x);
             Vector::new(c * y.x - s * y.y, s * y.x + c * y.y) - x

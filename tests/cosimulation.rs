@@ -448,13 +448,13 @@ fn an_equilibrium_that_is_not_found_leaves_the_model_as_it_was() {
 fn an_initial_stage_that_does_not_come_to_rest_says_so() {
     let mut calm = model("coupled_slope");
     calm.start().unwrap();
-    assert_eq!(calm.unrest(), None);
+    assert_eq!(calm.initial_residual(), None);
     let mut loaded = example("coupled_slope");
     loaded.case.stages[0].duration = 0.3;
     let mut sliding = Cosimulation::new(&LoadedCase::of(loaded.case, "short").unwrap()).unwrap();
     sliding.set_strength_factor(0.5).unwrap();
     sliding.start().unwrap();
-    assert!(sliding.unrest().is_some_and(|ratio| ratio > 1e-3), "{:?}", sliding.unrest());
+    assert!(sliding.initial_residual().is_some_and(|ratio| ratio > 1e-3), "{:?}", sliding.initial_residual());
 }
 
 /// A ledger that lacks 1e9 J/m is looked at when four internal steps have been taken, and when they have doubled.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use enmm::geometry::{Point, Vector};
-use enmm::io::picture::{ModelDecor, Picture, Series, displacement_picture, history_picture, model_picture};
+use enmm::io::picture::{ModelAnnotations, Picture, Series, displacement_picture, history_picture, model_picture};
 use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, Polygons};
 use output_sample::{profile, sample};
@@ -34,7 +34,7 @@ fn series(name: &str, unit: &str, value: impl Fn(f64) -> f64) -> Series {
 #[test]
 fn a_jointed_slope_is_drawn() {
     let slope = sample(3.4, 1.8);
-    check(&model_picture(&slope.reference, &slope.decor), "model.png");
+    check(&model_picture(&slope.reference, &slope.annotations), "model.png");
     let title = "Rock slope with two joint sets";
     check(&displacement_picture(&slope.moved(2.5, 2.0), title, &profile()), "displacement.png");
     check(&displacement_picture(&slope.moved(0.05, 2e-3), title, &profile()), "displacement_small.png");
@@ -58,7 +58,7 @@ fn histories_are_drawn_by_unit() {
 #[test]
 fn input_without_content_is_drawn() {
     let empty = Snapshot::default();
-    check(&model_picture(&empty, &ModelDecor::default()), "empty_model.png");
+    check(&model_picture(&empty, &ModelAnnotations::default()), "empty_model.png");
     check(&displacement_picture(&empty, "", &Polygons::default()), "empty_displacement.png");
     check(&history_picture("nothing", &[]), "empty_history.png");
     check(&history_picture("no points", &[Series { unit: "m".into(), ..Series::default() }]), "no_points.png");
@@ -73,7 +73,7 @@ fn one_element_is_drawn() {
         points: vec![Point::new(5e5, 5e6), Point::new(5e5 + 1.0, 5e6), Point::new(5e5, 5e6 + 1.0)],
     };
     let one = Snapshot { elements: triangle, displacement: vec![Vector::zeros(); 3], ..Snapshot::default() };
-    check(&model_picture(&one, &ModelDecor::default()), "one_model.png");
+    check(&model_picture(&one, &ModelAnnotations::default()), "one_model.png");
     check(&displacement_picture(&one, "one element at rest", &one.elements), "one_displacement.png");
 }
 
@@ -81,17 +81,17 @@ fn one_element_is_drawn() {
 fn numbers_that_are_not_finite_are_left_out() {
     let slope = sample(12.0, 6.0);
     let mut broken = slope.moved(f64::NAN, 1.0);
-    let mut decor = slope.decor;
+    let mut annotations = slope.annotations;
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, f64::MIN_POSITIVE] {
         let k = broken.displacement.len() / 2;
         broken.displacement[k] = Vector::repeat(bad);
         broken.elements.points[k] = Vector::new(bad, 1.0);
         broken.boundaries[3].loops.points[0].x = bad;
-        decor.stars[0].0.x = bad;
-        decor.fixed[0].y = bad;
-        decor.monitors[0].1.x = bad;
-        decor.trace_segments[0].0[1].y = bad;
-        check(&model_picture(&broken, &decor), "broken_model.png");
+        annotations.stars[0].0.x = bad;
+        annotations.fixed[0].y = bad;
+        annotations.monitors[0].1.x = bad;
+        annotations.trace_segments[0].0[1].y = bad;
+        check(&model_picture(&broken, &annotations), "broken_model.png");
         check(&displacement_picture(&broken, "broken", &profile()), "broken_displacement.png");
         let spike = series("spike", "m", |t| if t == 1.0 { bad } else { t });
         check(&history_picture("spike", &[spike, series("only", "J", |_| bad)]), "broken_history.png");
@@ -108,17 +108,17 @@ fn fields_of_wrong_length_are_drawn_as_far_as_they_go() {
     short
         .boundaries
         .push(Boundary { loops: Polygons { start: vec![7, 2], points: Vec::new() }, ..Boundary::default() });
-    check(&model_picture(&short, &slope.decor), "short_model.png");
+    check(&model_picture(&short, &slope.annotations), "short_model.png");
     check(&displacement_picture(&short, "short", &profile()), "short_displacement.png");
 }
 
 #[test]
 fn names_with_markup_stay_text() {
     let mut slope = sample(20.0, 10.0);
-    slope.decor.title = "a < b & \"c\" > d \u{1} \u{0}".to_owned();
-    slope.decor.monitors[0].0 = "</text><script>".to_owned();
-    slope.decor.monitors[1].0 = "岩盤 \u{1f3d4}".to_owned();
-    let picture = model_picture(&slope.reference, &slope.decor);
+    slope.annotations.title = "a < b & \"c\" > d \u{1} \u{0}".to_owned();
+    slope.annotations.monitors[0].0 = "</text><script>".to_owned();
+    slope.annotations.monitors[1].0 = "岩盤 \u{1f3d4}".to_owned();
+    let picture = model_picture(&slope.reference, &slope.annotations);
     check(&picture, "markup.png");
     resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
 }
@@ -138,7 +138,7 @@ fn a_large_slope_is_drawn_in_time() {
     let moved = slope.moved(2.5, 2.0);
     let start = Instant::now();
     check(&displacement_picture(&moved, "large", &profile()), "large_displacement.png");
-    check(&model_picture(&slope.reference, &slope.decor), "large_model.png");
+    check(&model_picture(&slope.reference, &slope.annotations), "large_model.png");
     println!("{} elements in {:?}", slope.reference.elements.len(), start.elapsed());
     assert!(start.elapsed().as_secs() < 60);
 }

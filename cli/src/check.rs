@@ -33,7 +33,7 @@ fn look(path: &Path, screen: &mut Screen) -> Result<Check, CaseError> {
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;
-    simulation.rehearse().map_err(invalid)?;
+    simulation.validate_stages().map_err(invalid)?;
     Ok(enmm::io::check(&simulation, &loaded.warnings))
 }
 

@@ -142,7 +142,7 @@ impl Cosimulation {
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
         let changed = change(&mut drive.to);
-        self.standing.changed |= changed;
+        self.progress.changed |= changed;
     }
 }
 

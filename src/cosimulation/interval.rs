@@ -82,10 +82,10 @@ impl Cosimulation {
     pub fn begin(&mut self, t: f64, h: f64) -> Result<Interval, CosimulationError> {
         let end = self.check_times(t, h)?;
         self.keep();
-        if !self.standing.started {
+        if !self.progress.started {
             self.seek()?;
         }
-        if self.standing.changed {
+        if self.progress.changed {
             self.grid = None;
             self.set_drive(end);
         } else if let Some(kept) = self.grid.take() {
@@ -117,7 +117,7 @@ impl Cosimulation {
         }
         let more = interval.end - self.grid_time() > same;
         if !more {
-            self.standing.told = interval.end;
+            self.progress.told = interval.end;
             self.end(interval);
         }
         Ok(more)
@@ -178,13 +178,13 @@ impl Cosimulation {
         let (now, same) = (self.simulation.time(), self.same_time(interval.end));
         let drive = self.simulation.drive();
         // A way that is not over goes on in the next interval.
-        self.standing.changed = drive.until - now > same;
-        if self.standing.changed {
+        self.progress.changed = drive.until - now > same;
+        if self.progress.changed {
             drive.pass(now);
         } else {
             drive.arrive();
         }
-        let doublings = |steps: u64| ((steps - self.standing.origin) / JUDGED_FROM).checked_ilog2();
+        let doublings = |steps: u64| ((steps - self.progress.origin) / JUDGED_FROM).checked_ilog2();
         if doublings(self.simulation.state().step) > doublings(interval.steps_before) {
             interval.info.doubt = self.doubt();
         }
@@ -192,7 +192,7 @@ impl Cosimulation {
 
     /// Rolls back and tells times as hosts count them.
     fn fail(&mut self, error: CosimulationError) -> CosimulationError {
-        let start = self.standing.start;
+        let start = self.progress.start;
         self.roll_back();
         match error {
             CosimulationError::Step(mut error) => {
@@ -225,8 +225,8 @@ impl Cosimulation {
 
     /// Lets inputs that have changed jump or move to their new values.
     fn set_drive(&mut self, end: f64) {
-        let (start, now) = (self.standing.start, self.simulation.time());
-        let linear = self.standing.interpolation == Interpolation::Linear;
+        let (start, now) = (self.progress.start, self.simulation.time());
+        let linear = self.progress.interpolation == Interpolation::Linear;
         let drive = self.simulation.drive();
         if linear {
             (drive.since, drive.until) = (now, start + end);

@@ -41,7 +41,7 @@ pub enum Interpolation {
 
 /// Where a model stands beside its state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct Standing {
+struct Progress {
     /// Steps of all stages before time 0.
     origin: u64,
     /// Simulated time of the model at time 0 (s).
@@ -49,7 +49,7 @@ struct Standing {
     /// Whether the initial equilibrium has been sought.
     started: bool,
     /// Net over applied force at the end of the last initial stage when it did not come to rest; 0 when it did.
-    unrest: f64,
+    initial_residual: f64,
     /// Whether an input has changed since the last step ended.
     changed: bool,
     interpolation: Interpolation,
@@ -68,7 +68,7 @@ pub struct Cosimulation {
     hash: String,
     /// State from which the part of an internal step was taken, when the model stands between two grid points.
     grid: Option<Box<State>>,
-    standing: Standing,
+    progress: Progress,
     /// What a failed step falls back to.
     backup: Saved,
     /// Number of the interval in progress; one with another number is over.
@@ -91,7 +91,7 @@ impl Cosimulation {
             simulation,
             hash: loaded.hash.clone(),
             grid: None,
-            standing: Standing::default(),
+            progress: Progress::default(),
             backup,
             serial: 0,
             pool: None,
@@ -120,14 +120,14 @@ impl Cosimulation {
 
     /// Time (s) since the start of the first dynamic stage; after a communication step exactly its t + h.
     pub fn time(&self) -> f64 {
-        let (own, told) = (self.grid_time(), self.standing.told);
+        let (own, told) = (self.grid_time(), self.progress.told);
         if (own - told).abs() <= self.same_time(own) { told } else { own }
     }
 
     /// Time (s) as whole internal steps and a part of one make it.
     fn grid_time(&self) -> f64 {
         let state = self.simulation.state();
-        (state.step - self.standing.origin) as f64 * self.internal_step() + state.part
+        (state.step - self.progress.origin) as f64 * self.internal_step() + state.part
     }
 
     /// Internal step (s).
@@ -152,19 +152,19 @@ impl Cosimulation {
 
     /// Events so far, in order; their times count as [`Cosimulation::time`] does.
     pub fn events(&self) -> impl ExactSizeIterator<Item = Event> + '_ {
-        let start = self.standing.start;
+        let start = self.progress.start;
         self.simulation.state().events.list.iter().map(move |event| Event { time: event.time - start, ..*event })
     }
 
     /// Whether the initial equilibrium has been sought.
     pub fn is_started(&self) -> bool {
-        self.standing.started
+        self.progress.started
     }
 
     /// Net over applied force of the initial equilibrium, when its stage was over before the model came to rest: the
     /// slope moves, or the stage needs a longer duration.
-    pub fn unrest(&self) -> Option<f64> {
-        Some(self.standing.unrest).filter(|ratio| *ratio > 0.0)
+    pub fn initial_residual(&self) -> Option<f64> {
+        Some(self.progress.initial_residual).filter(|ratio| *ratio > 0.0)
     }
 
     /// Why the motion so far is worthless, when energy has come from nowhere: its residual is as large as the largest
@@ -178,7 +178,7 @@ impl Cosimulation {
     /// # Errors
     /// A numerical failure; the model is then as it was before.
     pub fn start(&mut self) -> Result<(), CosimulationError> {
-        if !self.standing.started {
+        if !self.progress.started {
             self.keep();
             self.seek()?;
         }
@@ -188,19 +188,19 @@ impl Cosimulation {
     /// Seeks the initial equilibrium; where that fails the model goes back to what was kept.
     fn seek(&mut self) -> Result<(), CosimulationError> {
         self.simulation.drive().arrive();
-        let shaking = self.calm();
+        let shaking = self.clear_base_motion();
         self.run_initial_stages().inspect_err(|_| self.roll_back())?;
         let drive = self.simulation.drive();
         (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
-        self.standing.origin = self.simulation.state().step;
-        self.standing.start = self.simulation.time();
-        self.standing.started = true;
-        self.standing.changed = false;
+        self.progress.origin = self.simulation.state().step;
+        self.progress.start = self.simulation.time();
+        self.progress.started = true;
+        self.progress.changed = false;
         Ok(())
     }
 
     /// Takes the acceleration of the base, which is no part of the initial equilibrium, out of the inputs; returns it.
-    fn calm(&mut self) -> Vector {
+    fn clear_base_motion(&mut self) -> Vector {
         let drive = self.simulation.drive();
         let shaking = drive.to.base_acceleration;
         (drive.from.base_acceleration, drive.to.base_acceleration) = (Vector::zeros(), Vector::zeros());
@@ -217,7 +217,7 @@ impl Cosimulation {
                 last = wanted.then_some(report);
             }
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
-            self.standing.unrest = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
+            self.progress.initial_residual = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
             self.next_stage()?;
         }
         Ok(())
@@ -239,12 +239,12 @@ impl Cosimulation {
 
     /// How inputs go through a communication step from now on.
     pub fn set_interpolation(&mut self, interpolation: Interpolation) {
-        self.standing.interpolation = interpolation;
+        self.progress.interpolation = interpolation;
     }
 
     /// How inputs go through a communication step.
     pub fn interpolation(&self) -> Interpolation {
-        self.standing.interpolation
+        self.progress.interpolation
     }
 
     /// Sets the number of threads that steps use (1 at the start: the caller's own); the bits do not depend on it.

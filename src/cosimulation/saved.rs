@@ -7,7 +7,7 @@ use crate::model::Simulation;
 use crate::model::fit::{self, Unfit};
 use crate::state::State;
 
-use super::{Cosimulation, CosimulationError, Standing};
+use super::{Cosimulation, CosimulationError, Progress};
 
 /// The state of a model at one instant, with the inputs that hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,26 +16,26 @@ pub struct Saved {
     hash: String,
     state: State,
     grid: Option<Box<State>>,
-    standing: Standing,
+    progress: Progress,
 }
 
 impl Saved {
     pub(super) fn of(state: &State, hash: &str) -> Self {
-        Self { hash: hash.to_owned(), state: state.clone(), grid: None, standing: Standing::default() }
+        Self { hash: hash.to_owned(), state: state.clone(), grid: None, progress: Progress::default() }
     }
 
     /// Takes another state of the same model, into the memory of the old one.
-    pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, standing: Standing) {
+    pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, progress: Progress) {
         self.state.copy_from(state);
         overwrite(&mut self.grid, grid);
-        self.standing = standing;
+        self.progress = progress;
     }
 
     /// Copies the state into a model, into the memory of its own, and returns where it stood.
-    fn give(&self, simulation: &mut Simulation, grid: &mut Option<Box<State>>) -> Standing {
+    fn give(&self, simulation: &mut Simulation, grid: &mut Option<Box<State>>) -> Progress {
         simulation.return_to(&self.state);
         overwrite(grid, self.grid.as_deref());
-        self.standing
+        self.progress
     }
 }
 
@@ -51,7 +51,7 @@ impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
         let (state, grid) = (self.simulation.state().clone(), self.grid.clone());
-        Saved { hash: self.hash.clone(), state, grid, standing: self.standing }
+        Saved { hash: self.hash.clone(), state, grid, progress: self.progress }
     }
 
     /// Goes back to a saved state of this model.
@@ -81,12 +81,12 @@ impl Cosimulation {
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
-        let Saved { hash: _, state, grid, standing } = saved;
-        let Standing { origin, start, started: _, unrest, changed: _, interpolation: _, told } = *standing;
+        let Saved { hash: _, state, grid, progress } = saved;
+        let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, told } = *progress;
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
         fit::between("start", start, 0.0, fit::TIME)?;
-        fit::between("unrest", unrest, 0.0, f64::INFINITY)?;
+        fit::between("unrest", initial_residual, 0.0, f64::INFINITY)?;
         fit::number("told", told, fit::TIME)?;
         let Some(grid) = grid else { return Ok(()) };
         let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
@@ -97,19 +97,19 @@ impl Cosimulation {
 
     /// Keeps the state that a failure goes back to.
     pub(super) fn keep(&mut self) {
-        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.standing);
+        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.progress);
     }
 
     /// Goes back to the state that was kept.
     pub(super) fn roll_back(&mut self) {
         self.serial += 1;
-        self.standing = self.backup.give(&mut self.simulation, &mut self.grid);
+        self.progress = self.backup.give(&mut self.simulation, &mut self.grid);
     }
 
     /// Goes back to a saved state.
     fn return_to(&mut self, saved: &Saved) {
         self.serial += 1;
-        self.standing = saved.give(&mut self.simulation, &mut self.grid);
+        self.progress = saved.give(&mut self.simulation, &mut self.grid);
     }
 
     /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`checkpoint`]).

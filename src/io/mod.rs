@@ -1,5 +1,6 @@
 //! Case files, schema, results, pictures, checkpoints.
 
+mod annotations;
 mod base64;
 pub mod bench;
 pub mod blocks;
@@ -8,7 +9,6 @@ mod case_error;
 mod case_file;
 pub mod check;
 pub mod checkpoint;
-mod decor;
 pub mod files;
 pub mod fos;
 mod geometry_file;
@@ -21,11 +21,11 @@ mod schema;
 pub mod summary;
 pub mod vtu;
 
+pub use annotations::model_annotations;
 pub use bound::{BoundFailure, bound, bound_record};
 pub use case_error::CaseError;
 pub use case_file::{CaseSource, LoadedCase, load_case, parse_case};
 pub use check::check;
-pub use decor::model_decor;
 pub use fos::{FosError, FosOptions, fos};
 pub(crate) use run::Plan as RestPlan;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};

@@ -24,7 +24,7 @@ use super::files::{at_path, write_atomic};
 pub use chart::{Chart, ChartSeries, chart_picture};
 pub use displacement::displacement_picture;
 pub use history::{Series, history_picture};
-pub use model::{ModelDecor, model_picture};
+pub use model::{ModelAnnotations, model_picture};
 pub use reduction::{failure_picture, trials_picture};
 
 /// The embedded font (DejaVu Sans), read once.

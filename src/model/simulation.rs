@@ -134,7 +134,7 @@ impl Simulation {
     ///
     /// # Errors
     /// A key of a stage that does not fit the model, which is then spoilt.
-    pub fn rehearse(&mut self) -> Result<(), Invalid> {
+    pub fn validate_stages(&mut self) -> Result<(), Invalid> {
         if self.state().stage as usize + 1 < self.case.stages.len() {
             let now = self.state().clone();
             while self.next_stage()? {}

@@ -44,9 +44,9 @@ pub fn polygon_moments(points: &[[f64; 2]]) -> (f64, [f64; 2], f64) {
 }
 
 /// Small reproducible numbers in 0..1.
-pub struct Dice(pub u64);
+pub struct Random(pub u64);
 
-impl Dice {
+impl Random {
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64

@@ -10,16 +10,16 @@ pub struct Whole {
     pub hash: String,
     pub state: State,
     pub grid: Option<Box<State>>,
-    pub standing: Standing,
+    pub progress: Progress,
 }
 
 /// Where the model stands beside its state.
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Standing {
+pub struct Progress {
     pub origin: u64,
     pub start: f64,
     pub started: bool,
-    pub unrest: f64,
+    pub initial_residual: f64,
     pub changed: bool,
     pub interpolation: Interpolation,
     pub told: f64,

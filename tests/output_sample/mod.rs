@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::io::picture::ModelDecor;
+use enmm::io::picture::ModelAnnotations;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, JointPoint, Polygons};
 
@@ -16,7 +16,7 @@ const DIPS: [f64; 2] = [38.0, 112.0];
 /// A slope before it moves, and what decorates its picture.
 pub struct Sample {
     pub reference: Snapshot,
-    pub decor: ModelDecor,
+    pub annotations: ModelAnnotations,
 }
 
 pub fn profile() -> Polygons {
@@ -55,7 +55,7 @@ pub fn sample(spacing: f64, mesh: f64) -> Sample {
     }
     complete(&mut reference);
     let stars = covers.iter().map(|(node, blocks)| (lattice(*node, mesh), blocks.len() as u32)).collect();
-    let decor = ModelDecor {
+    let annotations = ModelAnnotations {
         title: "Rock slope with two joint sets".to_owned(),
         stars,
         fixed: (0..=50).map(|k| Point::new(f64::from(k) * 2.0, 0.0)).collect(),
@@ -76,7 +76,7 @@ pub fn sample(spacing: f64, mesh: f64) -> Sample {
         trace_segments,
         bolts: Vec::new(),
     };
-    Sample { reference, decor }
+    Sample { reference, annotations }
 }
 
 impl Sample {
@@ -116,7 +116,7 @@ impl Sample {
                 law: *law,
             }
         };
-        self.decor.trace_segments.iter().enumerate().map(joint).collect()
+        self.annotations.trace_segments.iter().enumerate().map(joint).collect()
     }
 }
 

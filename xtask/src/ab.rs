@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::house::{self, House};
+use crate::repository::{self, Repository};
 
 /// Models that are compared when none is named.
 const MODELS: &str = "continuum_10000,continuum_100000,slope_500x4,slope_2000x4";
@@ -56,18 +56,18 @@ impl<'a> Comparison<'a> {
     ///
     /// # Errors
     /// When a program does not run, or tells something else than `enmm bench --json` does.
-    pub fn run(&self, house: &House) -> Result<(), String> {
+    pub fn run(&self, repository: &Repository) -> Result<(), String> {
         println!("| model | part | old ms | new ms | old / new | range |\n|---|---|---|---|---|---|");
         for model in self.models.split(',') {
             let mut rounds = Vec::new();
             for round in 0..self.rounds {
                 // Who is first changes, so that neither always finds the machine as the other left it.
                 let (old, new) = if round % 2 == 0 {
-                    let old = self.bench(house, self.old, model)?;
-                    (old, self.bench(house, self.new, model)?)
+                    let old = self.bench(repository, self.old, model)?;
+                    (old, self.bench(repository, self.new, model)?)
                 } else {
-                    let new = self.bench(house, self.new, model)?;
-                    (self.bench(house, self.old, model)?, new)
+                    let new = self.bench(repository, self.new, model)?;
+                    (self.bench(repository, self.old, model)?, new)
                 };
                 rounds.push([old, new]);
             }
@@ -77,11 +77,11 @@ impl<'a> Comparison<'a> {
     }
 
     /// What a program tells of a model.
-    fn bench(&self, house: &House, program: &Path, model: &str) -> Result<Value, String> {
-        let mut command = house.command(house::program(program));
+    fn bench(&self, repository: &Repository, program: &Path, model: &str) -> Result<Value, String> {
+        let mut command = repository.command(repository::program(program));
         command.args(["bench", "--json", "--no-limits", "--threads", self.threads, "--seconds", SECONDS]);
         command.args(["--models", model]);
-        let told = house::capture(&mut command)?;
+        let told = repository::capture(&mut command)?;
         let mut report: Value = serde_json::from_slice(&told).map_err(|error| format!("{model}: {error}"))?;
         Ok(report["models"][0].take())
     }

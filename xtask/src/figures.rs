@@ -10,7 +10,7 @@ mod number;
 use std::path::{Path, PathBuf};
 
 use crate::counts::Counts;
-use crate::house::House;
+use crate::repository::Repository;
 use mark::{Mark, marks};
 
 /// Names of figures that only long campaigns tell.
@@ -25,8 +25,8 @@ const REMEDY: &str = "run `cargo xtask figures`";
 ///
 /// # Errors
 /// When the folder cannot be removed.
-pub fn forget(house: &House) -> Result<(), String> {
-    let folder = house.figures();
+pub fn forget(repository: &Repository) -> Result<(), String> {
+    let folder = repository.figures();
     if !folder.exists() {
         return Ok(());
     }
@@ -38,12 +38,12 @@ pub fn forget(house: &House) -> Result<(), String> {
 ///
 /// # Errors
 /// When a document cannot be read, or a mark makes no sense.
-pub fn compare(house: &House) -> Result<Counts, String> {
+pub fn compare(repository: &Repository) -> Result<Counts, String> {
     let mut counts = Counts::default();
-    for document in documents(&house.root)? {
-        let text = read(&house.root.join(&document))?;
+    for document in documents(&repository.root)? {
+        let text = read(&repository.root.join(&document))?;
         for mark in marks(&text).map_err(|why| format!("{document}:{why}"))? {
-            match judge(house, &document, &mark) {
+            match judge(repository, &document, &mark) {
                 Ok(Some(())) => counts.passed += 1,
                 Ok(None) if mark.name.starts_with(LONG) => {}
                 Ok(None) => problem(&mut counts, &format!("{document}:{}: no test told {}", mark.line, mark.name)),
@@ -61,9 +61,9 @@ fn problem(counts: &mut Counts, why: &str) {
 }
 
 /// Whether a figure is true; nothing when it is not known.
-fn judge(house: &House, document: &str, mark: &Mark) -> Result<Option<()>, String> {
+fn judge(repository: &Repository, document: &str, mark: &Mark) -> Result<Option<()>, String> {
     let at = format!("{document}:{}", mark.line);
-    let Some(value) = value(house, &mark.name).map_err(|why| format!("{at}: {why}"))? else { return Ok(None) };
+    let Some(value) = value(repository, &mark.name).map_err(|why| format!("{at}: {why}"))? else { return Ok(None) };
     if mark.figures.iter().any(|figure| figure.holds(value)) {
         return Ok(Some(()));
     }
@@ -75,14 +75,14 @@ fn judge(house: &House, document: &str, mark: &Mark) -> Result<Option<()>, Strin
 ///
 /// # Errors
 /// When a document cannot be read or written, or holds a figure that cannot be written.
-pub fn write(house: &House) -> Result<(), String> {
+pub fn write(repository: &Repository) -> Result<(), String> {
     let mut left = Vec::new();
-    for document in documents(&house.root)? {
-        let path = house.root.join(&document);
+    for document in documents(&repository.root)? {
+        let path = repository.root.join(&document);
         let mut text = read(&path)?;
         // From the last to the first, so that places hold.
         for mark in marks(&text).map_err(|why| format!("{document}:{why}"))?.into_iter().rev() {
-            if let Err(why) = rewrite(house, &mark, &mut text) {
+            if let Err(why) = rewrite(repository, &mark, &mut text) {
                 left.push(format!("{document}:{}: {why}", mark.line));
             }
         }
@@ -92,9 +92,9 @@ pub fn write(house: &House) -> Result<(), String> {
 }
 
 /// Writes the figure of a mark into a text, where it is not true.
-fn rewrite(house: &House, mark: &Mark, text: &mut String) -> Result<(), String> {
+fn rewrite(repository: &Repository, mark: &Mark, text: &mut String) -> Result<(), String> {
     let name = &mark.name;
-    let Some(value) = value(house, name)? else {
+    let Some(value) = value(repository, name)? else {
         return if name.starts_with(LONG) { Ok(()) } else { Err(format!("no test told {name}")) };
     };
     if mark.figures.iter().any(|figure| figure.holds(value)) {
@@ -111,15 +111,15 @@ fn rewrite(house: &House, mark: &Mark, text: &mut String) -> Result<(), String> 
 }
 
 /// What a name stands for; nothing when no test has told it.
-fn value(house: &House, name: &str) -> Result<Option<f64>, String> {
+fn value(repository: &Repository, name: &str) -> Result<Option<f64>, String> {
     if let Some((problem, quantity)) = name.split_once(": ") {
-        return of_report(&read(&house.root.join(REPORT))?, problem, quantity).map(Some);
+        return of_report(&read(&repository.root.join(REPORT))?, problem, quantity).map(Some);
     }
     if let Some((constant, file)) = name.split_once(' ') {
-        let text = read(&house.root.join("src").join(file))?;
+        let text = read(&repository.root.join("src").join(file))?;
         return of_source(&text, constant).map(Some).map_err(|why| format!("src/{file}: {why}"));
     }
-    let path = house.figures().join(name);
+    let path = repository.figures().join(name);
     if !path.exists() {
         return Ok(None);
     }
@@ -230,9 +230,9 @@ mod tests {
 
     #[test]
     fn constants_and_verified_values_that_documents_quote_are_true() {
-        let house = House::find().expect("the repository");
+        let repository = Repository::find().expect("the repository");
         let constants: Vec<_> = all_marks().into_iter().filter(|(_, mark)| mark.name.contains(' ')).collect();
-        let judged = constants.iter().map(|(document, mark)| judge(&house, document, mark));
+        let judged = constants.iter().map(|(document, mark)| judge(&repository, document, mark));
         let problems: Vec<_> = judged.filter_map(Result::err).collect();
         assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
         assert!(constants.len() > 40, "only {} are marked", constants.len());
@@ -284,8 +284,8 @@ mod tests {
     /// The marks of a document see it: a figure that is changed by one in its last digit is named with its line.
     #[test]
     fn a_figure_that_is_wrong_is_named_with_place_and_remedy() {
-        let house = House::find().expect("the repository");
-        let judged = |text: &str| judge(&house, "docs/a.md", &marks(text).expect("a mark")[0]);
+        let repository = Repository::find().expect("the repository");
+        let judged = |text: &str| judge(&repository, "docs/a.md", &marks(text).expect("a mark")[0]);
         assert_eq!(judged("of 0.05<!--=LIGHT cover/host.rs-->"), Ok(Some(())));
         let why = judged("\nof 0.06<!--=LIGHT cover/host.rs-->").expect_err("a wrong figure");
         assert_eq!(why, "docs/a.md:2: LIGHT cover/host.rs is 0.05, the document says 0.06: run `cargo xtask figures`");
@@ -297,22 +297,22 @@ mod tests {
 
     #[test]
     fn a_told_figure_is_compared_and_written() {
-        let mut house = House::find().expect("the repository");
-        house.target = std::env::temp_dir().join(format!("enmm-figures-{}", std::process::id()));
-        std::fs::create_dir_all(house.figures()).expect("a folder");
-        std::fs::write(house.figures().join("slip"), "0.19694\n").expect("a file");
+        let mut repository = Repository::find().expect("the repository");
+        repository.target = std::env::temp_dir().join(format!("enmm-figures-{}", std::process::id()));
+        std::fs::create_dir_all(repository.figures()).expect("a folder");
+        std::fs::write(repository.figures().join("slip"), "0.19694\n").expect("a file");
         let text = "it slips 0.1967<!--=slip--> m, another 0.3<!--=other--> m\n";
         let found = marks(text).expect("marks");
-        let why = judge(&house, "a.md", &found[0]).expect_err("a wrong figure");
+        let why = judge(&repository, "a.md", &found[0]).expect_err("a wrong figure");
         assert_eq!(why, "a.md:1: slip is 0.19694, the document says 0.1967: run `cargo xtask figures`");
-        assert_eq!(judge(&house, "a.md", &found[1]), Ok(None));
+        assert_eq!(judge(&repository, "a.md", &found[1]), Ok(None));
         let mut written = text.to_owned();
-        assert_eq!(rewrite(&house, &found[1], &mut written), Err("no test told other".to_owned()));
-        assert_eq!(rewrite(&house, &found[0], &mut written), Ok(()));
+        assert_eq!(rewrite(&repository, &found[1], &mut written), Err("no test told other".to_owned()));
+        assert_eq!(rewrite(&repository, &found[0], &mut written), Ok(()));
         assert_eq!(written, text.replace("0.1967", "0.1969"));
-        forget(&house).expect("an empty folder");
-        assert!(!house.figures().exists());
-        std::fs::remove_dir(&house.target).expect("an empty folder");
+        forget(&repository).expect("an empty folder");
+        assert!(!repository.figures().exists());
+        std::fs::remove_dir(&repository.target).expect("an empty folder");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::house::{self, House};
+use crate::repository::{self, Repository};
 
 /// Libraries of the C ABI, and of the FMUs where they have been built.
 const LIBRARIES: [&str; 4] = ["libenmm.so", "libenmm.a", "libenmm_fmi2.so", "libenmm_fmi3.so"];
@@ -15,16 +15,16 @@ const SYSTEM_LIBRARIES: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 ///
 /// # Errors
 /// When something does not build or cannot be copied.
-pub fn install(house: &House, prefix: &Path) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
-    let release = house.target.join("release");
+pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    let release = repository.target.join("release");
     let from = |name: &str| release.join(name);
-    copy(&house.enmm(), &prefix.join("bin"))?;
+    copy(&repository.enmm(), &prefix.join("bin"))?;
     for name in LIBRARIES.into_iter().filter(|name| name.starts_with("libenmm.") || from(name).exists()) {
         copy(&from(name), &prefix.join("lib"))?;
     }
     for name in HEADERS {
-        copy(&house.root.join(name), &prefix.join("include"))?;
+        copy(&repository.root.join(name), &prefix.join("include"))?;
     }
     let version = env!("CARGO_PKG_VERSION");
     write(&prefix.join("lib/pkgconfig/enmm.pc"), &pkg_config(version))?;

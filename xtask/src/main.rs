@@ -6,9 +6,9 @@ mod bits;
 mod counts;
 mod faults;
 mod figures;
-mod house;
 mod install;
 mod python;
+mod repository;
 mod sanitize;
 mod tasks;
 
@@ -52,29 +52,29 @@ usage: cargo xtask TASK
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let done = house::House::find().and_then(|house| match words[..] {
-        ["test"] => Ok(tasks::test(&house, tasks::Extent::Full)),
-        ["test", "--quick"] => Ok(tasks::test(&house, tasks::Extent::Quick)),
-        ["python"] => Ok(tasks::python(&house)),
-        ["figures"] => tasks::write_figures(&house, false).map(|()| ExitCode::SUCCESS),
-        ["figures", "--long"] => tasks::write_figures(&house, true).map(|()| ExitCode::SUCCESS),
-        ["long"] => Ok(tasks::long(&house)),
-        ["fuzz", ref words @ ..] => tasks::fuzz(&house, words).map(|()| ExitCode::SUCCESS),
-        ["faults", ref words @ ..] => faults::run(&house, words).map(|()| ExitCode::SUCCESS),
-        ["sanitize"] => sanitize::run(&house).map(|()| ExitCode::SUCCESS),
-        ["verify"] => tasks::verification(&house, "report").map(|()| ExitCode::SUCCESS),
-        ["compare"] => tasks::verification(&house, "compare").map(|()| ExitCode::SUCCESS),
-        ["overhead"] => tasks::overhead(&house).map(|()| ExitCode::SUCCESS),
-        ["ratio"] => tasks::verification(&house, "ratio").map(|()| ExitCode::SUCCESS),
-        ["header"] => tasks::write_header(&house).map(|()| ExitCode::SUCCESS),
-        ["install", "--prefix", prefix] => install::install(&house, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
-        ["bench", ref options @ ..] => tasks::write_benchmark(&house, options).map(|()| ExitCode::SUCCESS),
+    let done = repository::Repository::find().and_then(|repository| match words[..] {
+        ["test"] => Ok(tasks::test(&repository, tasks::Extent::Full)),
+        ["test", "--quick"] => Ok(tasks::test(&repository, tasks::Extent::Quick)),
+        ["python"] => Ok(tasks::python(&repository)),
+        ["figures"] => tasks::write_figures(&repository, false).map(|()| ExitCode::SUCCESS),
+        ["figures", "--long"] => tasks::write_figures(&repository, true).map(|()| ExitCode::SUCCESS),
+        ["long"] => Ok(tasks::long(&repository)),
+        ["fuzz", ref words @ ..] => tasks::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),
+        ["faults", ref words @ ..] => faults::run(&repository, words).map(|()| ExitCode::SUCCESS),
+        ["sanitize"] => sanitize::run(&repository).map(|()| ExitCode::SUCCESS),
+        ["verify"] => tasks::verification(&repository, "report").map(|()| ExitCode::SUCCESS),
+        ["compare"] => tasks::verification(&repository, "compare").map(|()| ExitCode::SUCCESS),
+        ["overhead"] => tasks::overhead(&repository).map(|()| ExitCode::SUCCESS),
+        ["ratio"] => tasks::verification(&repository, "ratio").map(|()| ExitCode::SUCCESS),
+        ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
+        ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
-            ab::Comparison::read(words).and_then(|found| found.run(&house)).map(|()| ExitCode::SUCCESS)
+            ab::Comparison::read(words).and_then(|found| found.run(&repository)).map(|()| ExitCode::SUCCESS)
         }
-        ["bits", ref words @ ..] => bits::run(&house, words).map(|()| ExitCode::SUCCESS),
-        ["schema"] => tasks::write_schema(&house).map(|()| ExitCode::SUCCESS),
-        ["pictures"] => tasks::write_pictures(&house).map(|()| ExitCode::SUCCESS),
+        ["bits", ref words @ ..] => bits::run(&repository, words).map(|()| ExitCode::SUCCESS),
+        ["schema"] => tasks::write_schema(&repository).map(|()| ExitCode::SUCCESS),
+        ["pictures"] => tasks::write_pictures(&repository).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.to_owned()),
     });
     done.unwrap_or_else(|message| {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::counts::{self, Counts};
-use crate::house::{self, House};
+use crate::repository::{self, Repository};
 
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
@@ -22,16 +22,16 @@ pub const ALL: &str = "python_tests";
 ///
 /// # Errors
 /// When the environment cannot be made or the case does not run.
-pub fn test(house: &House, places: &[&str]) -> Result<Counts, String> {
-    let results = house.target.join("python-results");
+pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
+    let results = repository.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
-    house::run(house.command(house.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let mut pytest = command(house)?;
+    repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
+    let mut pytest = command(repository)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places);
-    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", house.enmm()).env("ENMM_FMUS", pack(house)?);
-    let (lines, good) = house::run_and_listen(&mut pytest)?;
+    pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
+    let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
         return Err("pytest failed without a failed test".to_owned());
@@ -40,52 +40,52 @@ pub fn test(house: &House, places: &[&str]) -> Result<Counts, String> {
 }
 
 /// Packs the FMUs of the tests; returns their folder.
-fn pack(house: &House) -> Result<PathBuf, String> {
-    let folder = house.target.join("fmus");
+fn pack(repository: &Repository) -> Result<PathBuf, String> {
+    let folder = repository.target.join("fmus");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     for case in FMUS {
         for version in ["2", "3"] {
-            let mut enmm = house.command(house.enmm());
+            let mut enmm = repository.command(repository.enmm());
             enmm.arg("fmu").arg(format!("examples/cases/{case}.toml")).args(["--fmi", version, "-o"]);
-            house::run(enmm.arg(folder.join(format!("{case}_fmi{version}.fmu"))))?;
+            repository::run(enmm.arg(folder.join(format!("{case}_fmi{version}.fmu"))))?;
         }
     }
     Ok(folder)
 }
 
 /// The C library as `cargo build --release` leaves it.
-fn library(house: &House) -> PathBuf {
+fn library(repository: &Repository) -> PathBuf {
     let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    house.target.join("release").join(name)
+    repository.target.join("release").join(name)
 }
 
 /// Python of the environment, which finds the package `enmm` and its library.
 ///
 /// # Errors
 /// When the environment cannot be made.
-pub fn command(house: &House) -> Result<Command, String> {
-    let mut python = house.command(environment(house)?);
-    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(house));
+pub fn command(repository: &Repository) -> Result<Command, String> {
+    let mut python = repository.command(environment(repository)?);
+    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(repository));
     // Cargo names folders with our library here, which would hide that a search does not find it.
-    python.env("PYTHONPATH", house.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
+    python.env("PYTHONPATH", repository.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
     Ok(python)
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.
-fn environment(house: &House) -> Result<PathBuf, String> {
+fn environment(repository: &Repository) -> Result<PathBuf, String> {
     let (system, version) = system_python()?;
-    let wanted = std::fs::read_to_string(house.root.join(REQUIREMENTS));
+    let wanted = std::fs::read_to_string(repository.root.join(REQUIREMENTS));
     let wanted = format!("{version}\n{}", wanted.map_err(|error| format!("{REQUIREMENTS}: {error}"))?);
-    let place = house.target.join("venv");
+    let place = repository.target.join("venv");
     let python = place.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let stamp = place.join("enmm-requirements");
     if python.exists() && std::fs::read_to_string(&stamp).is_ok_and(|found| found == wanted) {
         return Ok(python);
     }
     make_environment(system, &place)?;
-    let mut pip = house.command(&python);
+    let mut pip = repository.command(&python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]);
-    house::run(&mut pip)?;
+    repository::run(&mut pip)?;
     std::fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))?;
     Ok(python)
 }

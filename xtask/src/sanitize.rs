@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::house::{self, House};
+use crate::repository::{self, Repository};
 
 const SMALL: &str = "ffi/capi/tests/cases/small.toml";
 /// Hosts in C with their arguments. Left out are the one that counts its own memory, where valgrind's would count as
@@ -34,7 +34,7 @@ enum Verdict {
 }
 
 /// Name of a tool with what it looks at, and how it is run.
-type Tool = (&'static str, fn(&House) -> Result<Verdict, String>);
+type Tool = (&'static str, fn(&Repository) -> Result<Verdict, String>);
 
 const TOOLS: [Tool; 3] = [
     ("valgrind, hosts in C", valgrind),
@@ -46,11 +46,11 @@ const TOOLS: [Tool; 3] = [
 ///
 /// # Errors
 /// What was found.
-pub fn run(house: &House) -> Result<(), String> {
+pub fn run(repository: &Repository) -> Result<(), String> {
     let mut bad = Vec::new();
     for (name, act) in TOOLS {
         let start = Instant::now();
-        let verdict = act(house);
+        let verdict = act(repository);
         let seconds = start.elapsed().as_secs_f64();
         match verdict {
             Ok(Verdict::Clean(seen)) => println!("clean    {seconds:>6.1} s  {name}: {seen}"),
@@ -70,30 +70,30 @@ fn is_there(program: &str, argument: &str) -> bool {
     ask.status().is_ok_and(|status| status.success())
 }
 
-fn valgrind(house: &House) -> Result<Verdict, String> {
+fn valgrind(repository: &Repository) -> Result<Verdict, String> {
     if !is_there("valgrind", "--version") {
         return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
     }
-    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
-    let libraries = house.target.join("release");
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    let libraries = repository.target.join("release");
     for (source, arguments) in HOSTS {
-        let program = compile(house, source, &libraries)?;
-        let mut watched = house.command("valgrind");
+        let program = compile(repository, source, &libraries)?;
+        let mut watched = repository.command("valgrind");
         watched.args(VALGRIND).arg(program).args(arguments).stdout(Stdio::null());
-        house::run(&mut watched)?;
+        repository::run(&mut watched)?;
     }
     Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
 }
 
 /// Compiles a host in C against the library as it is built.
-fn compile(house: &House, source: &str, libraries: &Path) -> Result<PathBuf, String> {
-    let folder = house.target.join("sanitize-hosts");
+fn compile(repository: &Repository, source: &str, libraries: &Path) -> Result<PathBuf, String> {
+    let folder = repository.target.join("sanitize-hosts");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let program = folder.join(Path::new(source).file_stem().unwrap_or_default());
-    let mut cc = house.command(std::env::var_os("CC").unwrap_or_else(|| "cc".into()));
+    let mut cc = repository.command(std::env::var_os("CC").unwrap_or_else(|| "cc".into()));
     cc.args(["-std=c99", "-g", "-O1", "-Iinclude", source, "-o"]).arg(&program).arg("-L").arg(libraries);
     cc.args(["-lenmm", "-lm", "-lpthread"]).arg(format!("-Wl,-rpath,{}", libraries.display()));
-    house::run(&mut cc)?;
+    repository::run(&mut cc)?;
     Ok(program)
 }
 
@@ -115,38 +115,38 @@ impl Nightly {
     }
 
     /// Its cargo, which builds with a sanitizer into a folder of its own.
-    fn cargo(&self, house: &House, sanitizer: &str, arguments: &[&str]) -> Command {
-        let mut cargo = house.command("rustup");
+    fn cargo(&self, repository: &Repository, sanitizer: &str, arguments: &[&str]) -> Command {
+        let mut cargo = repository.command("rustup");
         cargo.args(["run", "nightly", "cargo"]).args(arguments).args(["--release", "--target", &self.host]);
-        cargo.env("CARGO_TARGET_DIR", place(house)).env("RUSTFLAGS", format!("-Zsanitizer={sanitizer}"));
+        cargo.env("CARGO_TARGET_DIR", place(repository)).env("RUSTFLAGS", format!("-Zsanitizer={sanitizer}"));
         cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
         cargo
     }
 }
 
 /// Where sanitized programs are built; the room is given back when they have run.
-fn place(house: &House) -> PathBuf {
-    house.target.join("sanitize")
+fn place(repository: &Repository) -> PathBuf {
+    repository.target.join("sanitize")
 }
 
-fn clear(house: &House) -> Result<(), String> {
-    let place = place(house);
+fn clear(repository: &Repository) -> Result<(), String> {
+    let place = place(repository);
     std::fs::remove_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))
 }
 
-fn addresses(house: &House) -> Result<Verdict, String> {
+fn addresses(repository: &Repository) -> Result<Verdict, String> {
     let Some(nightly) = Nightly::find() else {
         return Ok(Verdict::Missing("there is no nightly compiler (rustup toolchain install nightly)"));
     };
-    house::run(&mut nightly.cargo(house, "address", &["build", "--package", "enmm-fuzz"]))?;
-    let mut fuzz = house.command(place(house).join(&nightly.host).join("release/enmm-fuzz"));
-    fuzz.env("ASAN_OPTIONS", ASAN_OPTIONS).arg("--finds").arg(house.target.join("fuzz-sanitized"));
-    house::run(&mut fuzz)?;
-    clear(house)?;
+    repository::run(&mut nightly.cargo(repository, "address", &["build", "--package", "enmm-fuzz"]))?;
+    let mut fuzz = repository.command(place(repository).join(&nightly.host).join("release/enmm-fuzz"));
+    fuzz.env("ASAN_OPTIONS", ASAN_OPTIONS).arg("--finds").arg(repository.target.join("fuzz-sanitized"));
+    repository::run(&mut fuzz)?;
+    clear(repository)?;
     Ok(Verdict::Clean("all parts".to_owned()))
 }
 
-fn threads(house: &House) -> Result<Verdict, String> {
+fn threads(repository: &Repository) -> Result<Verdict, String> {
     let sources = |nightly: &Nightly| nightly.system.join("lib/rustlib/src/rust/library").is_dir();
     let Some(nightly) = Nightly::find().filter(sources) else {
         return Ok(Verdict::Missing(
@@ -154,7 +154,7 @@ fn threads(house: &House) -> Result<Verdict, String> {
              (rustup component add rust-src --toolchain nightly)",
         ));
     };
-    house::run(&mut nightly.cargo(house, "thread", &["test", "-Zbuild-std", "--test", "determinism"]))?;
-    clear(house)?;
+    repository::run(&mut nightly.cargo(repository, "thread", &["test", "-Zbuild-std", "--test", "determinism"]))?;
+    clear(repository)?;
     Ok(Verdict::Clean("tests/determinism.rs".to_owned()))
 }

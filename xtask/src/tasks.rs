@@ -8,8 +8,8 @@ use crate::bits;
 use crate::counts::{self, Counts};
 use crate::faults;
 use crate::figures;
-use crate::house::{self, House};
 use crate::python;
+use crate::repository::{self, Repository};
 
 const SCHEMA: &str = "docs/case.schema.json";
 const BENCHMARK: &str = "benchmark";
@@ -38,26 +38,26 @@ pub enum Extent {
 /// The one test command: every step runs, whatever failed before, but for those that need the build.
 ///
 /// It fails when a step or a test failed, or no test ran.
-pub fn test(house: &House, extent: Extent) -> ExitCode {
-    let plain = |args: &[&str]| house::run(&mut house.cargo(args)).map(|()| Counts::default());
+pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
+    let plain = |args: &[&str]| repository::run(&mut repository.cargo(args)).map(|()| Counts::default());
     let mut steps = Steps::default();
     steps.take("format", || plain(&["fmt", "--all", "--check"]));
     steps.take("lints", || plain(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
         return steps.close();
     }
-    steps.take("tests", || figures::forget(house).and_then(|()| cargo_test(house, &["--no-fail-fast"])));
+    steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
     if extent == Extent::Full {
         steps.take("documentation", || {
-            let mut doc = house.cargo(&["doc", "--release", "--workspace", "--no-deps"]);
-            house::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
+            let mut doc = repository.cargo(&["doc", "--release", "--workspace", "--no-deps"]);
+            repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
-        steps.take("schema", || compare_schema(house).map(|()| Counts::default()));
-        steps.take("python", || python::test(house, &[python::ALL]));
-        steps.take("figures", || figures::compare(house));
-        steps.take("bits", || bits::quick(house));
-        steps.take("fuzz", || throw(house, &[]).map(|()| Counts::default()));
-        steps.take("faults", || faults::rounds_of(house, 1));
+        steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
+        steps.take("python", || python::test(repository, &[python::ALL]));
+        steps.take("figures", || figures::compare(repository));
+        steps.take("bits", || bits::quick(repository));
+        steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
+        steps.take("faults", || faults::rounds_of(repository, 1));
     }
     steps.close()
 }
@@ -66,49 +66,50 @@ pub fn test(house: &House, extent: Extent) -> ExitCode {
 ///
 /// # Errors
 /// When a test fails, or a document cannot be written.
-pub fn write_figures(house: &House, long: bool) -> Result<(), String> {
-    figures::forget(house)?;
-    let [rust, python] = figures::tellers(&house.root)?;
+pub fn write_figures(repository: &Repository, long: bool) -> Result<(), String> {
+    figures::forget(repository)?;
+    let [rust, python] = figures::tellers(&repository.root)?;
     let stems = rust.iter().filter_map(|file| file.strip_prefix("tests/")?.strip_suffix(".rs"));
-    let mut test = house.cargo(&["test", "--release"]);
+    let mut test = repository.cargo(&["test", "--release"]);
     test.args(stems.flat_map(|stem| ["--test", stem])).envs(long.then_some(("ENMM_LONG", "1")));
-    house::run(&mut test)?;
-    house::run(&mut house.cargo(&["build", "--release", "--workspace", "--examples"]))?;
-    let counts = python::test(house, &python.iter().map(String::as_str).collect::<Vec<_>>())?;
+    repository::run(&mut test)?;
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace", "--examples"]))?;
+    let counts = python::test(repository, &python.iter().map(String::as_str).collect::<Vec<_>>())?;
     if counts.failed > 0 {
         return Err(format!("{} Python tests failed: nothing is written", counts.failed));
     }
-    figures::write(house)
+    figures::write(repository)
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
 ///
 /// # Errors
 /// When the program does not build, or finds something.
-pub fn fuzz(house: &House, words: &[&str]) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
-    throw(house, words)
+pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    throw(repository, words)
 }
 
-fn throw(house: &House, words: &[&str]) -> Result<(), String> {
-    let mut fuzz = house.command(house.enmm().with_file_name(format!("enmm-fuzz{}", std::env::consts::EXE_SUFFIX)));
-    house::run(fuzz.arg("--finds").arg(house.target.join("fuzz")).args(words))
+fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {
+    let mut fuzz =
+        repository.command(repository.enmm().with_file_name(format!("enmm-fuzz{}", std::env::consts::EXE_SUFFIX)));
+    repository::run(fuzz.arg("--finds").arg(repository.target.join("fuzz")).args(words))
 }
 
 /// Builds and runs the Python tests alone.
-pub fn python(house: &House) -> ExitCode {
+pub fn python(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
     let build = ["build", "--release", "--workspace", "--examples"];
-    if steps.take("build", || house::run(&mut house.cargo(&build)).map(|()| Counts::default())) {
-        steps.take("python", || python::test(house, &[python::ALL]));
+    if steps.take("build", || repository::run(&mut repository.cargo(&build)).map(|()| Counts::default())) {
+        steps.take("python", || python::test(repository, &[python::ALL]));
     }
     steps.close()
 }
 
 /// Runs the long campaigns; it fails when one failed, or there is none.
-pub fn long(house: &House) -> ExitCode {
+pub fn long(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    steps.take("long campaigns", || cargo_test(house, &["--no-fail-fast", "--", "long_"]));
+    steps.take("long campaigns", || cargo_test(repository, &["--no-fail-fast", "--", "long_"]));
     steps.close()
 }
 
@@ -116,27 +117,27 @@ pub fn long(house: &House) -> ExitCode {
 ///
 /// # Errors
 /// When it does not build, or ends with another status than 0.
-pub fn verification(house: &House, program: &str) -> Result<(), String> {
+pub fn verification(repository: &Repository, program: &str) -> Result<(), String> {
     let run = ["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program];
-    house::run(house.cargo(&run).env("ENMM_LABEL", label(house)?))
+    repository::run(repository.cargo(&run).env("ENMM_LABEL", label(repository)?))
 }
 
 /// Tells what a step costs through every export.
 ///
 /// # Errors
 /// When the program does not build or run.
-pub fn overhead(house: &House) -> Result<(), String> {
-    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
+pub fn overhead(repository: &Repository) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
 }
 
 /// Writes the schema of the case file as the command line tells it.
 ///
 /// # Errors
 /// When the program does not build or run, or the file cannot be written.
-pub fn write_schema(house: &House) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
-    let schema = schema(house)?;
-    std::fs::write(house.root.join(SCHEMA), schema).map_err(|error| format!("{SCHEMA}: {error}"))?;
+pub fn write_schema(repository: &Repository) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let schema = schema(repository)?;
+    std::fs::write(repository.root.join(SCHEMA), schema).map_err(|error| format!("{SCHEMA}: {error}"))?;
     println!("wrote {SCHEMA}");
     Ok(())
 }
@@ -145,20 +146,21 @@ pub fn write_schema(house: &House) -> Result<(), String> {
 ///
 /// # Errors
 /// When the program does not build or run.
-pub fn write_benchmark(house: &House, options: &[&str]) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
-    let mut bench = house.command(house.enmm());
-    bench.args(["bench", "--output", BENCHMARK, "--label", &label(house)?]);
+pub fn write_benchmark(repository: &Repository, options: &[&str]) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let mut bench = repository.command(repository.enmm());
+    bench.args(["bench", "--output", BENCHMARK, "--label", &label(repository)?]);
     let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
-    house::run(bench.args(threads).args(options))
+    repository::run(bench.args(threads).args(options))
 }
 
 /// Commit and date, without which a time says nothing.
-fn label(house: &House) -> Result<String, String> {
-    let line =
-        |command: &mut Command| house::capture(command).map(|told| String::from_utf8_lossy(&told).trim().to_owned());
-    let commit = line(house.command("git").args(["describe", "--always", "--dirty"]))?;
-    let date = line(house.command("date").args(["-u", "+%Y-%m-%d"]))?;
+fn label(repository: &Repository) -> Result<String, String> {
+    let line = |command: &mut Command| {
+        repository::capture(command).map(|told| String::from_utf8_lossy(&told).trim().to_owned())
+    };
+    let commit = line(repository.command("git").args(["describe", "--always", "--dirty"]))?;
+    let date = line(repository.command("date").args(["-u", "+%Y-%m-%d"]))?;
     Ok(format!("Commit {commit}, {date}"))
 }
 
@@ -166,26 +168,26 @@ fn label(house: &House) -> Result<String, String> {
 ///
 /// # Errors
 /// When the case does not run or a picture is missing.
-pub fn write_pictures(house: &House) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
-    let results = house.target.join("picture-results");
-    house::run(house.command(house.enmm()).args(["run", MAIN_CASE, "-o"]).arg(&results))?;
-    let pictures = house.root.join("docs/pictures");
+pub fn write_pictures(repository: &Repository) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--package", "enmm-cli"]))?;
+    let results = repository.target.join("picture-results");
+    repository::run(repository.command(repository.enmm()).args(["run", MAIN_CASE, "-o"]).arg(&results))?;
+    let pictures = repository.root.join("docs/pictures");
     std::fs::create_dir_all(&pictures).map_err(|error| format!("{}: {error}", pictures.display()))?;
     for name in PICTURES {
         let from = results.join(name);
         std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
         println!("wrote docs/pictures/{name}");
     }
-    write_cases(house, &pictures)?;
-    write_couplings(house, &pictures)
+    write_cases(repository, &pictures)?;
+    write_couplings(repository, &pictures)
 }
 
 /// Runs the further cases and copies one picture of each.
-fn write_cases(house: &House, pictures: &Path) -> Result<(), String> {
+fn write_cases(repository: &Repository, pictures: &Path) -> Result<(), String> {
     for [command, case, name, shown] in CASES {
-        let results = house.target.join("picture-results").join(shown);
-        house::run(house.command(house.enmm()).args([command, case, "-o"]).arg(&results))?;
+        let results = repository.target.join("picture-results").join(shown);
+        repository::run(repository.command(repository.enmm()).args([command, case, "-o"]).arg(&results))?;
         let from = results.join(name);
         std::fs::copy(&from, pictures.join(shown)).map_err(|error| format!("{}: {error}", from.display()))?;
         println!("wrote docs/pictures/{shown}");
@@ -194,24 +196,24 @@ fn write_cases(house: &House, pictures: &Path) -> Result<(), String> {
 }
 
 /// Runs the coupling examples, which draw the pictures of `docs/coupling.md`.
-fn write_couplings(house: &House, pictures: &Path) -> Result<(), String> {
-    house::run(&mut house.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
+fn write_couplings(repository: &Repository, pictures: &Path) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
     for name in COUPLINGS {
-        let mut example = python::command(house)?;
+        let mut example = python::command(repository)?;
         example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(pictures.join(format!("{name}.png")));
-        house::run(&mut example)?;
+        repository::run(&mut example)?;
     }
     Ok(())
 }
 
 /// Runs `cargo test` with `args` at the end; campaigns named `long_*` do their work only when asked for by that name.
-fn cargo_test(house: &House, args: &[&str]) -> Result<Counts, String> {
-    let mut test: Command = house.cargo(&["test", "--release", "--workspace"]);
+fn cargo_test(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
+    let mut test: Command = repository.cargo(&["test", "--release", "--workspace"]);
     test.args(args);
     if args.contains(&"long_") {
         test.env("ENMM_LONG", "1");
     }
-    let (lines, good) = house::run_and_listen(&mut test)?;
+    let (lines, good) = repository::run_and_listen(&mut test)?;
     let counts = counts::of_cargo(&lines);
     if !good && counts.failed == 0 {
         return Err("cargo test failed without a failed test: see above".to_owned());
@@ -219,23 +221,23 @@ fn cargo_test(house: &House, args: &[&str]) -> Result<Counts, String> {
     Ok(counts)
 }
 
-fn schema(house: &House) -> Result<Vec<u8>, String> {
-    house::capture(house.command(house.enmm()).arg("schema"))
+fn schema(repository: &Repository) -> Result<Vec<u8>, String> {
+    repository::capture(repository.command(repository.enmm()).arg("schema"))
 }
 
 /// Writes the C header that belongs to the sources of the C ABI.
 ///
 /// # Errors
 /// When its program does not build or run, or the file cannot be written.
-pub fn write_header(house: &House) -> Result<(), String> {
-    house::run(&mut house.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))?;
+pub fn write_header(repository: &Repository) -> Result<(), String> {
+    repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))?;
     println!("wrote the header of the C ABI");
     Ok(())
 }
 
-fn compare_schema(house: &House) -> Result<(), String> {
-    let told = schema(house)?;
-    let path = house.root.join(SCHEMA);
+fn compare_schema(repository: &Repository) -> Result<(), String> {
+    let told = schema(repository)?;
+    let path = repository.root.join(SCHEMA);
     let committed = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     if told == committed {
         return Ok(());

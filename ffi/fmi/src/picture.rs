@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io;
 
 use enmm::geometry::Point;
-use enmm::io::model_decor;
-use enmm::io::picture::{ModelDecor, model_picture};
+use enmm::io::model_annotations;
+use enmm::io::picture::{ModelAnnotations, model_picture};
 use enmm::model::Simulation;
 use enmm::model::snapshot::Boundary;
 use resvg::{tiny_skia, usvg};
@@ -21,8 +21,8 @@ const HELD: &str = "#8a9299";
 
 /// The slope as a PNG: blocks, joints by law, supports, monitors and ports.
 pub fn slope(simulation: &Simulation) -> io::Result<Vec<u8>> {
-    let decor = ModelDecor { stars: Vec::new(), ..model_decor(simulation) };
-    model_picture(&simulation.snapshot(), &decor).png()
+    let annotations = ModelAnnotations { stars: Vec::new(), ..model_annotations(simulation) };
+    model_picture(&simulation.snapshot(), &annotations).png()
 }
 
 /// The blocks alone, filled, on a clear square, as a PNG.

@@ -32,7 +32,7 @@ const LINES_MAX: usize = 9;
 
 /// What a picture of the model shows besides its elements and blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct ModelDecor {
+pub struct ModelAnnotations {
     /// Title of the picture.
     pub title: String,
     /// Position (m) of each star and the number of its physical covers.
@@ -51,8 +51,8 @@ pub struct ModelDecor {
 
 /// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the position where
 /// the stars have most covers.
-pub fn model_picture(snapshot: &Snapshot, decor: &ModelDecor) -> Picture {
-    let model = Model { snapshot, decor, spacing: star_spacing(decor) };
+pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Picture {
+    let model = Model { snapshot, annotations, spacing: star_spacing(annotations) };
     let detail = model.detail();
     let right = if detail.is_some() { WIDTH - MARGIN - DETAIL - LEFT } else { WIDTH - MARGIN };
     let area = Rect { left: LEFT, top: TOP, width: right - LEFT, height: HEIGHT_MAX };
@@ -62,7 +62,7 @@ pub fn model_picture(snapshot: &Snapshot, decor: &ModelDecor) -> Picture {
     let lines = legends.iter().map(|legend| legend.entries.len()).max().unwrap_or(0);
     let legend_top = bottom + BELOW_FRAME + 30.0;
     let mut sheet = Svg::new(WIDTH, legend_top + LINE_HEIGHT * (lines as f64 + 0.5) + MARGIN);
-    draw_title(&mut sheet, &decor.title, &time_text(snapshot.time));
+    draw_title(&mut sheet, &annotations.title, &time_text(snapshot.time));
     model.draw(&mut sheet, &view);
     if let Some(detail) = detail {
         model.draw_detail(&mut sheet, &view, &detail);
@@ -73,14 +73,14 @@ pub fn model_picture(snapshot: &Snapshot, decor: &ModelDecor) -> Picture {
 
 struct Model<'a> {
     snapshot: &'a Snapshot,
-    decor: &'a ModelDecor,
+    annotations: &'a ModelAnnotations,
     /// Distance (m) of neighbouring stars, about.
     spacing: f64,
 }
 
 impl Model<'_> {
     fn bounds(&self) -> Option<Bounds> {
-        let traces = self.decor.trace_segments.iter().flat_map(|(ends, _)| ends);
+        let traces = self.annotations.trace_segments.iter().flat_map(|(ends, _)| ends);
         let blocks = self.snapshot.boundaries.iter().flat_map(|boundary| &boundary.loops.points);
         Bounds::of(self.snapshot.elements.points.iter().chain(blocks).chain(traces))
     }
@@ -89,7 +89,7 @@ impl Model<'_> {
     fn detail(&self) -> Option<View> {
         let area = Rect { left: WIDTH - MARGIN - DETAIL, top: TOP, width: DETAIL, height: DETAIL };
         let half_width = 0.5 * STARS_ACROSS * self.spacing;
-        let centre = busiest(&self.decor.stars, half_width)?;
+        let centre = busiest(&self.annotations.stars, half_width)?;
         (half_width > 0.0).then(|| View::exact(Bounds::square(centre, half_width), area))
     }
 
@@ -98,11 +98,11 @@ impl Model<'_> {
         let element_area = view.area.width * view.area.height / elements;
         sheet.clipped(&view.area, |sheet| {
             self.draw_blocks(sheet, view, element_area > MESH_AREA);
-            let many = self.decor.trace_segments.len() > TRACES_MANY;
+            let many = self.annotations.trace_segments.len() > TRACES_MANY;
             if !many || outlines_show(self.snapshot, view) {
                 self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
             }
-            if self.decor.stars.len() <= STARS_MAX {
+            if self.annotations.stars.len() <= STARS_MAX {
                 self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 2.2));
             }
         });
@@ -128,7 +128,7 @@ impl Model<'_> {
     fn draw_traces(&self, sheet: &mut Svg, view: &View, width: f64) {
         for (law, &colour) in LINES.iter().enumerate() {
             let mut path = Path::default();
-            let of_law = self.decor.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
+            let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
             let shows = |ends: &[Point; 2]| Bounds::of(ends).is_some_and(|bounds| bounds.overlaps(&view.world));
             for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable) && shows(ends)) {
                 path.line(ends.iter().map(|end| view.pixel(end)));
@@ -140,7 +140,7 @@ impl Model<'_> {
     /// A line with a plate at the head for each bolt.
     fn draw_bolts(&self, sheet: &mut Svg, view: &View) {
         let mut path = Path::default();
-        for ends in self.decor.bolts.iter().filter(|ends| ends.iter().all(is_drawable)) {
+        for ends in self.annotations.bolts.iter().filter(|ends| ends.iter().all(is_drawable)) {
             let [[x, y], [u, v]] = [view.pixel(&ends[0]), view.pixel(&ends[1])];
             let length = (u - x).hypot(v - y).max(f64::MIN_POSITIVE);
             let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
@@ -158,14 +158,14 @@ impl Model<'_> {
 
     fn stars_in(&self, view: &View) -> impl Iterator<Item = &(Point, u32)> {
         let world = view.world;
-        self.decor.stars.iter().filter(move |(position, _)| is_drawable(position) && world.contains(position))
+        self.annotations.stars.iter().filter(move |(position, _)| is_drawable(position) && world.contains(position))
     }
 
     /// Triangles below the held points, thinned where they would overlap.
     fn draw_supports(&self, sheet: &mut Svg, view: &View) {
         let mut marked = HashSet::new();
         let mut path = Path::default();
-        for point in self.decor.fixed.iter().filter(|point| is_drawable(point)) {
+        for point in self.annotations.fixed.iter().filter(|point| is_drawable(point)) {
             let [x, y] = view.pixel(point);
             if marked.insert([x, y].map(|coordinate| (coordinate / SUPPORT_DISTANCE).floor() as i64)) {
                 path.polygon(support([x, y]));
@@ -176,7 +176,7 @@ impl Model<'_> {
 
     fn draw_monitors(&self, sheet: &mut Svg, view: &View) {
         let mut labels = Labels::new(view.area);
-        let monitors = self.decor.monitors.iter().filter(|(_, position)| is_drawable(position));
+        let monitors = self.annotations.monitors.iter().filter(|(_, position)| is_drawable(position));
         let marks: Vec<_> = monitors.map(|(name, position)| (name, view.pixel(position))).collect();
         for (_, mark) in &marks {
             draw_monitor(sheet, *mark);
@@ -214,13 +214,14 @@ impl Model<'_> {
         let marks = Legend { title: "Marks", entries: self.mark_entries() };
         let joints = Legend { title: "Joints", entries: self.joint_entries() };
         let stars = Legend { title: "Covers of a star", entries: self.star_entries() };
-        let counts = self.decor.counts.iter().map(|line| Entry { sign: Sign::None, text: line.clone() }).collect();
+        let counts =
+            self.annotations.counts.iter().map(|line| Entry { sign: Sign::None, text: line.clone() }).collect();
         let all = [joints, marks, stars, Legend { title: "Model", entries: counts }];
         all.into_iter().filter(|legend| !legend.entries.is_empty()).map(Legend::shortened).collect()
     }
 
     fn joint_entries(&self) -> Vec<Entry> {
-        let used: HashSet<u32> = self.decor.trace_segments.iter().map(|(_, law)| *law).collect();
+        let used: HashSet<u32> = self.annotations.trace_segments.iter().map(|(_, law)| *law).collect();
         let laws = self.snapshot.joint_laws.iter().enumerate().filter(|(law, _)| used.contains(&(*law as u32)));
         laws.map(|(law, name)| Entry { sign: Sign::Line(LINES[law % LINES.len()]), text: name.clone() }).collect()
     }
@@ -230,9 +231,9 @@ impl Model<'_> {
         let all = [
             (!self.snapshot.boundaries.is_empty(), Sign::Line(INK), "block outline"),
             (held_blocks, Sign::Hatch, "block held"),
-            (!self.decor.fixed.is_empty(), Sign::Support, "point held"),
-            (!self.decor.bolts.is_empty(), Sign::Line(ACCENT), "bolt"),
-            (!self.decor.monitors.is_empty(), Sign::Monitor, "monitor or port"),
+            (!self.annotations.fixed.is_empty(), Sign::Support, "point held"),
+            (!self.annotations.bolts.is_empty(), Sign::Line(ACCENT), "bolt"),
+            (!self.annotations.monitors.is_empty(), Sign::Monitor, "monitor or port"),
         ];
         let present = all.into_iter().filter(|(present, ..)| *present);
         present.map(|(_, sign, text)| Entry { sign, text: text.to_owned() }).collect()
@@ -240,7 +241,8 @@ impl Model<'_> {
 
     fn star_entries(&self) -> Vec<Entry> {
         let names = ["1 cover", "2 covers", "3 covers", "4 or more"];
-        let count = |class: usize| self.decor.stars.iter().filter(|(_, covers)| cover_class(*covers) == class).count();
+        let count =
+            |class: usize| self.annotations.stars.iter().filter(|(_, covers)| cover_class(*covers) == class).count();
         let classes = names.iter().enumerate().map(|(class, name)| (class, name, count(class)));
         let entry =
             |(class, name, count)| Entry { sign: Sign::Dot(COVERS[class]), text: format!("{name}: {count} stars") };
@@ -258,14 +260,18 @@ fn cover_colour(covers: u32) -> Colour {
 }
 
 /// Distance (m) of neighbours if the stars were spread evenly over a triangular lattice.
-fn star_spacing(decor: &ModelDecor) -> f64 {
+fn star_spacing(annotations: &ModelAnnotations) -> f64 {
     let nearest = |position: &Point| {
-        let others = decor.stars.iter().map(|(other, _)| (other - position).norm_squared());
+        let others = annotations.stars.iter().map(|(other, _)| (other - position).norm_squared());
         others.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min).sqrt()
     };
     // The lattice is regular: the nearest neighbour of any star tells its size.
-    let first =
-        decor.stars.iter().map(|(position, _)| position).find(|position| is_drawable(position)).map_or(0.0, nearest);
+    let first = annotations
+        .stars
+        .iter()
+        .map(|(position, _)| position)
+        .find(|position| is_drawable(position))
+        .map_or(0.0, nearest);
     if first.is_finite() { first } else { 1.0 }
 }
 

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::geometry::Point;
-use crate::io::decor::model_decor;
+use crate::io::annotations::model_annotations;
 use crate::io::files::{at_path, sweep_temporaries};
 use crate::io::picture::{displacement_picture, history_picture, model_picture};
 use crate::model::snapshot::Polygons;
@@ -80,7 +80,7 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
 
 /// Draws the model before it moves.
 pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
-    model_picture(&simulation.snapshot(), &model_decor(simulation)).write_png(&directory.join("model.png"))
+    model_picture(&simulation.snapshot(), &model_annotations(simulation)).write_png(&directory.join("model.png"))
 }
 
 /// Draws the slope as it is now, and the histories.

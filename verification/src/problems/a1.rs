@@ -4,7 +4,7 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::State;
 
-use super::dice::Dice;
+use super::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -48,9 +48,9 @@ pub const PROBLEM: Problem = Problem {
 const OUTLINE: &str = "[[0.0, 0.0], [10.0, 1.0], [11.0, 6.0], [8.0, 9.0], [6.5, 7.0], [4.0, 9.5], [-1.0, 5.0]]";
 
 fn case(setup: &Setup, seed: u64) -> String {
-    let mut dice = Dice::new(seed);
+    let mut random = Random::new(seed);
     let joint = |_| {
-        let mut end = || [dice.between(-1.0, 11.0), dice.between(0.0, 9.0)];
+        let mut end = || [random.between(-1.0, 11.0), random.between(0.0, 9.0)];
         let ends = [end(), end()];
         format!("[[joint]]\npoints = {ends:?}\n")
     };
@@ -102,8 +102,8 @@ fn errors(setup: &mut Setup, seed: u64) -> Result<([f64; 4], Simulation), Troubl
     let shift = setup.get("shift");
     let (s, c) = setup.get("turn_deg").to_radians().sin_cos();
     let turn = |x: Vector| Vector::new(c * x.x - s * x.y, s * x.x + c * x.y);
-    let mut dice = Dice::new(seed + 1);
-    let strain = [0.0; 3].map(|_: f64| dice.between(-size, size));
+    let mut random = Random::new(seed + 1);
+    let strain = [0.0; 3].map(|_: f64| random.between(-size, size));
     let stretched = |x: Vector| Vector::new(strain[0] * x.x + strain[2] * x.y, strain[2] * x.x + strain[1] * x.y);
     let [a, b, t] = hooke(young, poisson, strain);
     let both = 2.0 * s * c * t;

@@ -3,7 +3,7 @@
 use enmm::geometry::Vector;
 use enmm::step::{StepReport, block_motion};
 
-use super::dice::Dice;
+use super::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -36,12 +36,12 @@ pub const PROBLEM: Problem = Problem {
 
 /// A rock with a dead-end joint, and two islands of random shape and a sliver well apart.
 fn case(setup: &Setup) -> String {
-    let mut dice = Dice::new(setup.get("seed") as u64);
+    let mut random = Random::new(setup.get("seed") as u64);
     let mut ring = |x: f64, y: f64, size: f64| {
-        let count = 3 + dice.between(0.0, 4.99) as usize;
+        let count = 3 + random.between(0.0, 4.99) as usize;
         let corner = |k: usize| {
-            let angle = std::f64::consts::TAU * (k as f64 + dice.between(0.0, 0.7)) / count as f64;
-            let radius = size * dice.between(0.5, 1.0);
+            let angle = std::f64::consts::TAU * (k as f64 + random.between(0.0, 0.7)) / count as f64;
+            let radius = size * random.between(0.5, 1.0);
             format!("[{:?}, {:?}]", x + radius * angle.cos(), y + radius * angle.sin())
         };
         format!("[{}]", (0..count).map(corner).collect::<Vec<_>>().join(", "))

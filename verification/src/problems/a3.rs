@@ -4,7 +4,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::block_motion;
 
-use super::dice::Dice;
+use super::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -50,11 +50,11 @@ fn moments(points: &[[f64; 2]]) -> (f64, Point, f64) {
 
 /// A star-shaped polygon about the origin.
 fn shape(setup: &Setup) -> Vec<[f64; 2]> {
-    let mut dice = Dice::new(setup.get("seed") as u64);
+    let mut random = Random::new(setup.get("seed") as u64);
     let (count, size) = (setup.get("corners") as usize, setup.get("size"));
     let corner = |k: usize| {
-        let angle = std::f64::consts::TAU * (k as f64 + dice.between(-0.25, 0.25)) / count as f64;
-        let radius = size * dice.between(0.6, 1.0);
+        let angle = std::f64::consts::TAU * (k as f64 + random.between(-0.25, 0.25)) / count as f64;
+        let radius = size * random.between(0.6, 1.0);
         [radius * angle.cos(), radius * angle.sin()]
     };
     (0..count).map(corner).collect()

@@ -6,8 +6,8 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 
 use super::{Results, read};
-use crate::house::{self, House};
 use crate::python;
+use crate::repository::{self, Repository};
 
 /// Something that is run.
 pub struct Item {
@@ -75,7 +75,7 @@ const ENDLESS: &str = "duration = 1e6\n";
 /// Makes results by one build.
 pub struct Maker<'a> {
     /// The repository.
-    pub house: &'a House,
+    pub repository: &'a Repository,
     /// The program.
     pub program: &'a Path,
     /// The program that writes the cases of models.
@@ -109,28 +109,28 @@ impl Maker<'_> {
     /// # Errors
     /// What the file system refuses.
     pub fn forget(&self, item: &Item) -> Result<(), String> {
-        house::remove(&self.folder.join(item.name))
+        repository::remove(&self.folder.join(item.name))
     }
 
     fn command(&self, words: &[&str]) -> Command {
-        let mut command = self.house.command(self.program);
+        let mut command = self.repository.command(self.program);
         command.args(words);
         command
     }
 
     fn run_case(&self, case: &Path, place: &Path) -> Result<Results, String> {
         let mut run = self.command(&["run", "--quiet"]);
-        house::run(run.arg(case).arg("-o").arg(place).stderr(Stdio::null()))?;
-        let mut results = house::files_of(place)?;
+        repository::run(run.arg(case).arg("-o").arg(place).stderr(Stdio::null()))?;
+        let mut results = repository::files_of(place)?;
         clean(&mut results, "summary.json")?;
         Ok(results)
     }
 
     /// Writes the case of a model with an end; returns its path, which is the same for every program.
     fn model_case(&self, name: &str, duration: &str) -> Result<PathBuf, String> {
-        let folder = self.house.target.join("bits-models");
-        let mut write = self.house.command(self.writer);
-        house::capture(write.args(["bench", "--models", name, "--write"]).arg(&folder))?;
+        let folder = self.repository.target.join("bits-models");
+        let mut write = self.repository.command(self.writer);
+        repository::capture(write.args(["bench", "--models", name, "--write"]).arg(&folder))?;
         let path = folder.join(name).with_extension("toml");
         let text = String::from_utf8_lossy(&read(&path)?).into_owned();
         if !text.contains(ENDLESS) {
@@ -143,8 +143,8 @@ impl Maker<'_> {
 
     fn fos(&self, name: &str, place: &Path) -> Result<Results, String> {
         let mut fos = self.command(&["fos", &case(name), "--json", "-o"]);
-        house::capture(fos.arg(place).stderr(Stdio::null()))?;
-        let mut results = house::files_of(place)?;
+        repository::capture(fos.arg(place).stderr(Stdio::null()))?;
+        let mut results = repository::files_of(place)?;
         // The table has a column of wall times; fos.json has the same rows.
         results.remove("fos.csv");
         clean(&mut results, "fos.json")?;
@@ -153,7 +153,7 @@ impl Maker<'_> {
 
     /// What the program prints.
     fn told(&self, name: &str, words: &[&str]) -> Result<Results, String> {
-        let mut results = Results::from([(name.to_owned(), house::capture(&mut self.command(words))?)]);
+        let mut results = Results::from([(name.to_owned(), repository::capture(&mut self.command(words))?)]);
         clean(&mut results, name)?;
         Ok(results)
     }
@@ -161,16 +161,16 @@ impl Maker<'_> {
     /// Packs a case and steps it through its C functions, with a rollback.
     fn fmu(&self, name: &str, version: &str, place: &Path) -> Result<Results, String> {
         let packed = place.join(format!("{name}.fmu"));
-        house::capture(self.command(&["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed))?;
-        let mut steps = python::command(self.house)?;
+        repository::capture(self.command(&["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed))?;
+        let mut steps = python::command(self.repository)?;
         let run = place.join("run");
-        house::run(steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run))?;
-        house::files_of(&run)
+        repository::run(steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run))?;
+        repository::files_of(&run)
     }
 
     /// Computed values of problems, without any text about them.
     fn verify(&self, problems: &str) -> Result<Results, String> {
-        let told = house::capture(&mut self.command(&["verify", "--quick", "--json", "--only", problems]))?;
+        let told = repository::capture(&mut self.command(&["verify", "--quick", "--json", "--only", problems]))?;
         let record: Value = serde_json::from_slice(&told).map_err(|error| format!("verify: {error}"))?;
         let mut results = Results::new();
         for problem in record["problems"].as_array().into_iter().flatten() {

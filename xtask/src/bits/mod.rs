@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::counts::Counts;
-use crate::house::{self, House};
+use crate::repository::{self, Repository};
 use golden::Golden;
 use item::{ITEMS, Item, Maker};
 
@@ -22,23 +22,23 @@ const USAGE: &str = "usage: cargo xtask bits [OLD NEW] [--quick], or cargo xtask
 ///
 /// # Errors
 /// When the words are others, an item does not run, or bits differ.
-pub fn run(house: &House, words: &[&str]) -> Result<(), String> {
+pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
     if let [old, new, rest @ ..] = words {
-        let programs = [old, new].map(|path| house::program(path.as_ref()));
+        let programs = [old, new].map(|path| repository::program(path.as_ref()));
         return match rest {
-            [] => compare(house, programs, |_| true),
-            ["--quick"] => compare(house, programs, |item| item.quick),
+            [] => compare(repository, programs, |_| true),
+            ["--quick"] => compare(repository, programs, |item| item.quick),
             _ => Err(USAGE.to_owned()),
         };
     }
-    let act: fn(&House) -> Result<(), String> = match words {
-        [] => |house| all_good(against_golden(house, |_| true)?),
-        ["--quick"] => |house| all_good(quick(house)?),
+    let act: fn(&Repository) -> Result<(), String> = match words {
+        [] => |repository| all_good(against_golden(repository, |_| true)?),
+        ["--quick"] => |repository| all_good(quick(repository)?),
         ["--renew"] => renew,
         _ => return Err(USAGE.to_owned()),
     };
-    house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
-    act(house)
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    act(repository)
 }
 
 fn all_good(counts: Counts) -> Result<(), String> {
@@ -50,16 +50,16 @@ fn all_good(counts: Counts) -> Result<(), String> {
 ///
 /// # Errors
 /// When an item does not run, or the table cannot be read.
-pub fn quick(house: &House) -> Result<Counts, String> {
-    against_golden(house, |item| item.quick)
+pub fn quick(repository: &Repository) -> Result<Counts, String> {
+    against_golden(repository, |item| item.quick)
 }
 
 /// Runs items by both programs in turn, up to the first difference.
-fn compare(house: &House, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bool) -> Result<(), String> {
-    let folder = fresh_folder(house)?;
+fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bool) -> Result<(), String> {
+    let folder = fresh_folder(repository)?;
     // Cases of models are written by one of the two, so that both compute the same ones.
     let makers = [(&old, "old"), (&new, "new")].map(|(program, name)| Maker {
-        house,
+        repository,
         program,
         writer: &new,
         folder: folder.join(name),
@@ -83,15 +83,15 @@ fn compare(house: &House, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bo
 }
 
 /// Runs items by this build and compares with the golden table; compares nothing on another platform, and says so.
-fn against_golden(house: &House, chosen: impl Fn(&Item) -> bool) -> Result<Counts, String> {
-    let golden = Golden::read(&house.root)?;
+fn against_golden(repository: &Repository, chosen: impl Fn(&Item) -> bool) -> Result<Counts, String> {
+    let golden = Golden::read(&repository.root)?;
     let mut counts = Counts::default();
     if let Some(reason) = golden.other_platform() {
         println!("nothing compared with {}: {reason}; `cargo xtask bits OLD NEW` holds anywhere", golden::PLACE);
         return Ok(counts);
     }
-    let (folder, program) = (fresh_folder(house)?, house.enmm());
-    let maker = Maker { house, program: &program, writer: &program, folder };
+    let (folder, program) = (fresh_folder(repository)?, repository.enmm());
+    let maker = Maker { repository, program: &program, writer: &program, folder };
     for item in ITEMS.iter().filter(|item| item.golden && chosen(item)) {
         let start = Instant::now();
         let found = golden::hashes(&maker.make(item)?);
@@ -114,24 +114,24 @@ fn against_golden(house: &House, chosen: impl Fn(&Item) -> bool) -> Result<Count
 }
 
 /// Writes the golden table anew.
-fn renew(house: &House) -> Result<(), String> {
-    let (folder, program) = (fresh_folder(house)?, house.enmm());
-    let maker = Maker { house, program: &program, writer: &program, folder };
+fn renew(repository: &Repository) -> Result<(), String> {
+    let (folder, program) = (fresh_folder(repository)?, repository.enmm());
+    let maker = Maker { repository, program: &program, writer: &program, folder };
     let mut golden = Golden::here();
     for item in ITEMS.iter().filter(|item| item.golden) {
         println!("{} …", item.name);
         golden.take(item.name, golden::hashes(&maker.make(item)?));
         maker.forget(item)?;
     }
-    golden.write(&house.root)?;
+    golden.write(&repository.root)?;
     println!("wrote {}", golden::PLACE);
     Ok(())
 }
 
 /// A folder for the results, without those of an earlier run.
-fn fresh_folder(house: &House) -> Result<PathBuf, String> {
-    let folder = house.target.join("bits");
-    house::remove(&folder)?;
+fn fresh_folder(repository: &Repository) -> Result<PathBuf, String> {
+    let folder = repository.target.join("bits");
+    repository::remove(&folder)?;
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     Ok(folder)
 }
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn the_table_of_the_repository_has_the_items() {
-        let golden = Golden::read(&House::find().expect("the repository").root).expect("a table");
+        let golden = Golden::read(&Repository::find().expect("the repository").root).expect("a table");
         let items: BTreeSet<&str> = ITEMS.iter().filter(|item| item.golden).map(|item| item.name).collect();
         assert_eq!(golden.items().collect::<BTreeSet<_>>(), items, "run `cargo xtask bits --renew`");
     }

@@ -8,7 +8,7 @@ mod place;
 use std::time::Instant;
 
 use crate::counts::Counts;
-use crate::house::House;
+use crate::repository::Repository;
 use place::Place;
 
 /// Rounds when no number is given.
@@ -42,14 +42,14 @@ const FAULTS: [Fault; 9] = [
 ///
 /// # Errors
 /// When the arguments are wrong, or the undisturbed run fails.
-pub fn run(house: &House, words: &[&str]) -> Result<(), String> {
+pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
     let rounds = match words {
         [] => ROUNDS,
         ["--rounds", number] => number.parse().map_err(|_| format!("{number} is no number"))?,
         _ => return Err("usage: cargo xtask faults [--rounds N]".to_owned()),
     };
-    crate::house::run(&mut house.cargo(&["build", "--release", "--workspace"]))?;
-    let counts = rounds_of(house, rounds)?;
+    crate::repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    let counts = rounds_of(repository, rounds)?;
     println!("{} held, {} did harm", counts.passed, counts.failed);
     if counts.failed == 0 { Ok(()) } else { Err(format!("{} faults did harm: see above", counts.failed)) }
 }
@@ -58,8 +58,8 @@ pub fn run(house: &House, words: &[&str]) -> Result<(), String> {
 ///
 /// # Errors
 /// When the undisturbed run fails.
-pub fn rounds_of(house: &House, rounds: u64) -> Result<Counts, String> {
-    let place = Place::new(house)?;
+pub fn rounds_of(repository: &Repository, rounds: u64) -> Result<Counts, String> {
+    let place = Place::new(repository)?;
     let mut counts = Counts::default();
     for round in 0..rounds {
         for (name, act) in FAULTS {

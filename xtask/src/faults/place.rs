@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::house::{House, files_of, remove};
+use crate::repository::{Repository, files_of, remove};
 
 const CASE: &str = include_str!("case.toml");
 /// The one file that holds wall times.
@@ -25,12 +25,13 @@ pub struct Place {
 
 impl Place {
     /// Makes the folder and runs the case undisturbed.
-    pub fn new(house: &House) -> Result<Self, String> {
-        let folder = house.target.join("faults");
+    pub fn new(repository: &Repository) -> Result<Self, String> {
+        let folder = repository.target.join("faults");
         remove(&folder)?;
         fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         fs::write(folder.join("case.toml"), CASE).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let mut place = Self { program: house.enmm(), folder, whole: BTreeMap::new(), duration: Duration::default() };
+        let mut place =
+            Self { program: repository.enmm(), folder, whole: BTreeMap::new(), duration: Duration::default() };
         let start = Instant::now();
         let answer = place.finish(place.start("whole", None)?)?;
         place.duration = start.elapsed();

@@ -26,9 +26,9 @@ pub fn with_model(handle: usize, act: impl FnOnce(&mut Model) -> Outcome) -> enm
         let _turn = shared.enter()?;
         let mut model = shared.lock()?;
         let outcome = act(&mut model);
-        let mail = model.take_mail();
+        let pending_messages = model.take_mail();
         drop(model);
-        mail.deliver(handle, &shared);
+        pending_messages.deliver(handle, &shared);
         outcome
     })
 }

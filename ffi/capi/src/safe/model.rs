@@ -87,13 +87,13 @@ pub struct Model {
 #[derive(Default)]
 pub struct Log {
     sink: Option<Sink>,
-    mail: Vec<(enmm_log_level, String)>,
+    pending_messages: Vec<(enmm_log_level, String)>,
 }
 
 impl Log {
     fn write(&mut self, level: enmm_log_level, message: impl FnOnce() -> String) {
         if self.sink.is_some() {
-            self.mail.push((level, message()));
+            self.pending_messages.push((level, message()));
         }
     }
 }
@@ -149,7 +149,7 @@ impl Model {
 
     /// Messages that have come together.
     pub fn take_mail(&mut self) -> Mail {
-        Mail(std::mem::take(&mut self.log.mail))
+        Mail(std::mem::take(&mut self.log.pending_messages))
     }
 
     /// Seeks the initial equilibrium.
@@ -199,7 +199,7 @@ impl Model {
         let steps = self.inner.simulation().state().step;
         let message = || format!("the initial equilibrium was sought in {steps} steps");
         self.log.write(enmm_log_level::ENMM_LOG_INFO, message);
-        if let Some(ratio) = self.inner.unrest() {
+        if let Some(ratio) = self.inner.initial_residual() {
             let message = || {
                 format!(
                     "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static \

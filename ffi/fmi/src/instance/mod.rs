@@ -69,7 +69,7 @@ pub struct Instance {
     filter: Filter,
     messages: Vec<Message>,
     cache: read::Cache,
-    states: saved::Shelf,
+    states: saved::SavedStates,
 }
 
 impl Instance {
@@ -103,7 +103,7 @@ impl Instance {
             filter: Filter::new(plan.logging),
             messages: Vec::new(),
             cache: read::Cache::default(),
-            states: saved::Shelf::default(),
+            states: saved::SavedStates::default(),
             table,
             loaded,
             model,
@@ -253,7 +253,7 @@ impl Instance {
         started.map_err(|error| format!("the initial equilibrium was not found: {error}"))?;
         let steps = self.model.simulation().state().step;
         self.log(Status::Ok, Category::All, format!("the initial equilibrium took {steps} internal steps"));
-        if let Some(ratio) = self.model.unrest() {
+        if let Some(ratio) = self.model.initial_residual() {
             let text = format!(
                 "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static \
                  stage needs a longer duration"

@@ -34,14 +34,14 @@ struct Entry {
 
 /// Saved states by number.
 #[derive(Debug, Default)]
-pub(super) struct Shelf {
+pub(super) struct SavedStates {
     entries: BTreeMap<usize, Entry>,
 }
 
 /// Numbers are unique in the process, so that a state of one instance is foreign to all others.
 static NEXT: AtomicUsize = AtomicUsize::new(1);
 
-impl Shelf {
+impl SavedStates {
     fn put(&mut self, number: Option<usize>, state: Whole) -> Result<usize, Failure> {
         let number = match number {
             Some(number) => self.entry(number).map(|_| number)?,
@@ -89,9 +89,9 @@ impl Instance {
         let legal = self.allow(Call::State);
         let outcome = legal.and_then(|()| {
             let entries = std::mem::take(&mut self.states.entries);
-            let mut shelf = Shelf { entries };
-            let taken = shelf.entry(number).and_then(|entry| self.take_whole(&entry.state));
-            self.states = shelf;
+            let mut saved = SavedStates { entries };
+            let taken = saved.entry(number).and_then(|entry| self.take_whole(&entry.state));
+            self.states = saved;
             taken
         });
         match outcome {

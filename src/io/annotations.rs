@@ -4,10 +4,10 @@ use crate::geometry::{NONE, Point};
 use crate::model::Simulation;
 use crate::model::case::Port;
 
-use super::picture::ModelDecor;
+use super::picture::ModelAnnotations;
 
 /// Title, stars, supports, monitors, ports, joints and counts of a model.
-pub fn model_decor(simulation: &Simulation) -> ModelDecor {
+pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
     let (model, case) = (simulation.model(), simulation.case());
     let covers = &model.covers;
     let supports = model.supports.iter().map(|support| {
@@ -21,7 +21,7 @@ pub fn model_decor(simulation: &Simulation) -> ModelDecor {
     let joints = (0..boundary.len()).filter(|&k| boundary.trace[k] != NONE);
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
     let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
-    ModelDecor {
+    ModelAnnotations {
         title: case.title.clone(),
         stars: covers.covers_by_star().into_iter().map(|(star, count)| (covers.mesh.node(star), count)).collect(),
         fixed,

@@ -1,16 +1,16 @@
 //! Small reproducible numbers.
 
 /// A generator of numbers that look random; the same seed gives the same ones.
-pub struct Dice(u64);
+pub struct Random(u64);
 
-impl Dice {
+impl Random {
     /// Starts from a seed.
     pub fn new(seed: u64) -> Self {
-        let mut dice = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut random = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         (0..4).for_each(|_| {
-            dice.next();
+            random.next();
         });
-        dice
+        random
     }
 
     /// A number from 0 to 1.

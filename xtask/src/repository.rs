@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Paths of the repository.
-pub struct House {
+pub struct Repository {
     /// Root of the repository.
     pub root: PathBuf,
     /// Cargo's target directory.
@@ -16,7 +16,7 @@ pub struct House {
     cargo: OsString,
 }
 
-impl House {
+impl Repository {
     /// Asks cargo for the paths.
     ///
     /// # Errors
