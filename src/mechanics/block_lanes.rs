@@ -1,8 +1,8 @@
 //! Velocities of a block's covers, eight side by side: the sums that its rigid motion follows from, and the writing of
 //! the kick (Eqs. 3, 5, 10–12).
 //!
-//! Positions count from one cover of the block and velocities from that cover's, so that one pass gives all sums without
-//! loss of digits wherever the block is and however fast it flies.
+//! Positions count from one cover of the block and velocities from that cover's, so that one pass gives all sums
+//! without loss of digits wherever the block is and however fast it flies.
 
 use std::ops::{AddAssign, Range};
 

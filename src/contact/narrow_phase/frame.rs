@@ -102,8 +102,8 @@ impl Frames {
         size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
     }
 
-    /// Frames of all edges and nodes, where `position` are the current positions of the boundary points; corners turn by more
-    /// than an angle given by its sine.
+    /// Frames of all edges and nodes, where `position` are the current positions of the boundary points; corners turn
+    /// by more than an angle given by its sine.
     pub fn update(&mut self, boundary: &Boundary, position: &[Point], flush_sine: f64, serial: bool) {
         let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, position[*next as usize]);
         let at = |node: u32| position[boundary.node_point[node as usize] as usize];

@@ -129,8 +129,8 @@ impl NarrowPhase<'_> {
         contact.expect();
     }
 
-    /// Covers that carry the position on an edge under a node: at a point of the boundary those of the point, since there
-    /// round-off decides which of two edges is the nearer.
+    /// Covers that carry the position on an edge under a node: at a point of the boundary those of the point, since
+    /// there round-off decides which of two edges is the nearer.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
         let (boundary, edge, band) = (self.boundary, candidate.edge as usize, CORNER_TOLERANCE * self.size);

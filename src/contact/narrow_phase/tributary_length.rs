@@ -106,7 +106,8 @@ impl NarrowPhase<'_> {
         })
     }
 
-    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's edge.
+    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's
+    /// edge.
     #[inline(always)]
     fn reach_beyond(&self, far: u32, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
         let far = self.node_position(far as usize).dot(&candidate.tangent);

@@ -2,8 +2,8 @@
 //!
 //! All contacts of two blocks are a block pair. Blocks are cut into runs of like work, which are the leaves of a binary
 //! tree. What lies within a run is solved before what lies between two runs, so that both halves of any part of the
-//! tree can be swept at once. Within a part block pairs come by colour: no two of a colour share a free block, or a cover
-//! of a held one, so that eight of them are solved side by side.
+//! tree can be swept at once. Within a part block pairs come by colour: no two of a colour share a free block, or a
+//! cover of a held one, so that eight of them are solved side by side.
 
 use std::cmp::Reverse;
 
@@ -77,8 +77,8 @@ pub struct Sequence {
     pub wide_pairs: Vec<WidePairs>,
     /// The number of them up to the end of each part.
     pub ends: Vec<u32>,
-    /// First turn of each row, and the number of turns. A row has as many contacts as there are block pairs with so many,
-    /// in the first lanes.
+    /// First turn of each row, and the number of turns. A row has as many contacts as there are block pairs with so
+    /// many, in the first lanes.
     pub first_turn: Vec<u32>,
     /// Contact of each turn.
     pub contacts: Vec<u32>,

@@ -73,8 +73,8 @@ pub struct WideBlock<L: Values> {
 }
 
 impl WidePairs {
-    /// Block pairs by their blocks, a free one first when there is one, and numbers of contacts, the longest first; their
-    /// rows begin at `first_row`.
+    /// Block pairs by their blocks, a free one first when there is one, and numbers of contacts, the longest first;
+    /// their rows begin at `first_row`.
     #[inline(always)]
     pub fn new(first_row: u32, block_pairs: impl ExactSizeIterator<Item = ([u32; 2], u32)>, view: &SolverView) -> Self {
         let mut wide_pairs = Self {

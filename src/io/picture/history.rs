@@ -224,7 +224,8 @@ fn unit_title(unit: &str, exponent: i32) -> String {
     }
 }
 
-/// Of the positions in one column of pixels only the first, the lowest, the highest and the last: the line looks the same.
+/// Of the positions in one column of pixels only the first, the lowest, the highest and the last: the line looks the
+/// same.
 pub(super) fn thinned(positions: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
     let mut thin: Vec<Pixel> = Vec::new();
     let mut column: Vec<Pixel> = Vec::new();

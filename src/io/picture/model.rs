@@ -49,8 +49,8 @@ pub struct ModelAnnotations {
     pub bolts: Vec<[Point; 2]>,
 }
 
-/// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the position where
-/// the stars have most covers.
+/// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the position
+/// where the stars have most covers.
 pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Picture {
     let model = Model { snapshot, annotations, spacing: star_spacing(annotations) };
     let detail = model.detail();

@@ -1,4 +1,5 @@
-//! Positions where blocks meet in a point: corners in notches and on faces, and corners that face each other at crossings.
+//! Positions where blocks meet in a point: corners in notches and on faces, and corners that face each other at
+//! crossings.
 
 use std::f64::consts::PI;
 

@@ -128,8 +128,8 @@ impl Step<'_> {
     }
 }
 
-/// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the positions reached, within
-/// what the joint can carry.
+/// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the positions reached,
+/// within what the joint can carry.
 fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
     let [normal, shear] = springs(contact, moved);
     contact.decide(normal, shear);
