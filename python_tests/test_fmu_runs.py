@@ -134,8 +134,7 @@ def rust():
     """Final block states of a case through the Rust API: six bit patterns for each block."""
 
     def run(case, h, steps):
-        command = ["cargo", "run", "--release", "--quiet", "--example", "cosimulation", "--"]
-        command += [str(CASES / f"{case}.toml"), repr(h), str(steps)]
+        command = [str(from_environment("ENMM_EXAMPLE")), str(CASES / f"{case}.toml"), repr(h), str(steps)]
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600, check=False)
         assert done.returncode == 0, done.stderr
         lines = [line.split() for line in done.stdout.splitlines()]

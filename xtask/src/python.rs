@@ -31,6 +31,7 @@ pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> 
     let mut pytest = command(repository)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places);
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
+    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation"));
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {

@@ -38,6 +38,11 @@ impl Repository {
         self.target.join("release").join(format!("enmm{}", std::env::consts::EXE_SUFFIX))
     }
 
+    /// An example as `cargo build --release --workspace --examples` leaves it.
+    pub fn example(&self, name: &str) -> PathBuf {
+        self.target.join("release").join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    }
+
     /// Folder in which tests tell the figures that documents quote.
     pub fn figures(&self) -> PathBuf {
         self.target.join("figures")
