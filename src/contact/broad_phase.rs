@@ -60,8 +60,9 @@ impl NeighbourList {
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.pairs.clone_from(&other.pairs);
-        self.found_at.clone_from(&other.found_at);
+        let Self { pairs, found_at } = other;
+        self.pairs.clone_from(pairs);
+        self.found_at.clone_from(found_at);
     }
 
     /// Makes the next step search anew.

@@ -20,8 +20,9 @@ impl Clone for ColumnState {
 
     /// Copies without allocating.
     fn clone_from(&mut self, other: &Self) {
-        self.displacement.clone_from(&other.displacement);
-        self.velocity.clone_from(&other.velocity);
+        let Self { displacement, velocity } = other;
+        self.displacement.clone_from(displacement);
+        self.velocity.clone_from(velocity);
     }
 }
 

@@ -114,19 +114,49 @@ impl Simulation {
     /// # Errors
     /// The first length, index or number that cannot.
     pub fn check(&self, state: &State) -> Fit {
+        // By name, so that a new field does not compile before it has a check.
+        let State {
+            stage: _,
+            stage_start: _,
+            stage_starts: _,
+            stage_step: _,
+            step: _,
+            part: _,
+            dt_last: _,
+            static_stretch: _,
+            displacement: _,
+            velocity: _,
+            stage_displacement: _,
+            stage_force: _,
+            acceleration: _,
+            plastic: _,
+            columns: _,
+            contacts,
+            neighbours,
+            support_force: _,
+            support_rest: _,
+            fix_active: _,
+            removed: _,
+            laws: _,
+            law_switch: _,
+            bolts: _,
+            drive: Drive { from, to, since, until },
+            events,
+            ledger,
+            counters,
+        } = state;
         self.check_clock(state)?;
         self.check_motion(state)?;
-        self.check_contacts(&state.contacts)?;
-        self.check_neighbours(&state.neighbours)?;
+        self.check_contacts(contacts)?;
+        self.check_neighbours(neighbours)?;
         self.check_stages(state)?;
-        self.check_inputs("drive.from", &state.drive.from)?;
-        self.check_inputs("drive.to", &state.drive.to)?;
-        self.check_events(&state.events)?;
-        let Drive { from: _, to: _, since, until } = &state.drive;
+        self.check_inputs("drive.from", from)?;
+        self.check_inputs("drive.to", to)?;
+        self.check_events(events)?;
         number("drive.since", *since, TIME)?;
         number("drive.until", *until, TIME)?;
-        check_ledger(&state.ledger)?;
-        check_counters(&state.counters)
+        check_ledger(ledger)?;
+        check_counters(counters)
     }
 
     fn check_clock(&self, state: &State) -> Fit {

@@ -53,10 +53,11 @@ impl Events {
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.list.clone_from(&other.list);
-        self.touching.clone_from(&other.touching);
-        self.detached.clone_from(&other.detached);
-        self.slipped.clone_from(&other.slipped);
-        self.failed.clone_from(&other.failed);
+        let Self { list, touching, detached, slipped, failed } = other;
+        self.list.clone_from(list);
+        self.touching.clone_from(touching);
+        self.detached.clone_from(detached);
+        self.slipped.clone_from(slipped);
+        self.failed.clone_from(failed);
     }
 }

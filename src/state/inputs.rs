@@ -54,14 +54,24 @@ impl Inputs {
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.gravity = other.gravity;
-        self.base_acceleration = other.base_acceleration;
-        self.water_level = other.water_level;
-        self.strength_factor = other.strength_factor;
-        self.block_force.clone_from(&other.block_force);
-        self.block_moment.clone_from(&other.block_moment);
-        self.port_traction.clone_from(&other.port_traction);
-        self.port_pressure.clone_from(&other.port_pressure);
+        let Self {
+            gravity,
+            base_acceleration,
+            water_level,
+            strength_factor,
+            block_force,
+            block_moment,
+            port_traction,
+            port_pressure,
+        } = other;
+        self.gravity = *gravity;
+        self.base_acceleration = *base_acceleration;
+        self.water_level = *water_level;
+        self.strength_factor = *strength_factor;
+        self.block_force.clone_from(block_force);
+        self.block_moment.clone_from(block_moment);
+        self.port_traction.clone_from(port_traction);
+        self.port_pressure.clone_from(port_pressure);
     }
 }
 
@@ -124,9 +134,11 @@ impl Drive {
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.from.copy_from(&other.from);
-        self.to.copy_from(&other.to);
-        (self.since, self.until) = (other.since, other.until);
+        let Self { from, to, since, until } = other;
+        self.from.copy_from(from);
+        self.to.copy_from(to);
+        self.since = *since;
+        self.until = *until;
     }
 
     /// Gravity at a share of the way (m/s²).

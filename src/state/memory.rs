@@ -4,7 +4,7 @@ use crate::contact::Boundary;
 use crate::cover::Covers;
 use crate::mechanics::MassMatrix;
 
-use super::{Events, ImplicitWorkspace, Inputs, Model, State, Workspace};
+use super::{Drive, Events, ImplicitWorkspace, Inputs, Model, State, Workspace};
 
 /// What a part of a heap is, and its bytes.
 pub type Part = (&'static str, usize);
@@ -59,15 +59,46 @@ impl State {
 
     /// Bytes of what changes in time, by part.
     pub fn memory(&self) -> Vec<Part> {
-        let motion = sum(&[&self.displacement, &self.velocity, &self.acceleration]);
+        let Self {
+            displacement,
+            velocity,
+            acceleration,
+            stage_displacement,
+            stage_force,
+            contacts,
+            neighbours,
+            plastic,
+            columns,
+            support_force,
+            support_rest,
+            fix_active,
+            bolts,
+            drive: Drive { from, to, since: _, until: _ },
+            events: happened,
+            removed,
+            // A few entries for every law and stage of the case, or numbers.
+            laws: _,
+            law_switch: _,
+            stage_starts: _,
+            stage: _,
+            stage_start: _,
+            stage_step: _,
+            step: _,
+            part: _,
+            dt_last: _,
+            static_stretch: _,
+            ledger: _,
+            counters: _,
+        } = self;
+        let of_columns = columns.iter().map(|column| sum(&[&column.displacement, &column.velocity])).sum::<usize>();
         vec![
-            ("motion", motion + sum(&[&self.stage_displacement, &self.stage_force])),
-            ("contacts", self.contacts.bytes()),
-            ("near pairs", self.neighbours.bytes()),
-            ("plastic strain", self.plastic.bytes()),
-            ("supports and bolts", sum(&[&self.support_force, &self.support_rest, &self.bolts])),
-            ("inputs", inputs(&self.drive.from) + inputs(&self.drive.to)),
-            ("events", events(&self.events) + self.removed.bytes()),
+            ("motion", sum(&[displacement, velocity, acceleration, stage_displacement, stage_force]) + of_columns),
+            ("contacts", contacts.bytes()),
+            ("near pairs", neighbours.bytes()),
+            ("plastic strain", plastic.bytes()),
+            ("supports and bolts", sum(&[support_force, support_rest, fix_active, bolts])),
+            ("inputs", inputs(from) + inputs(to)),
+            ("events", events(happened) + removed.bytes()),
         ]
     }
 }
@@ -127,11 +158,22 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
 }
 
 fn inputs(inputs: &Inputs) -> usize {
-    sum(&[&inputs.block_force, &inputs.block_moment, &inputs.port_traction, &inputs.port_pressure])
+    let Inputs {
+        block_force,
+        block_moment,
+        port_traction,
+        port_pressure,
+        gravity: _,
+        base_acceleration: _,
+        water_level: _,
+        strength_factor: _,
+    } = inputs;
+    sum(&[block_force, block_moment, port_traction, port_pressure])
 }
 
 fn events(events: &Events) -> usize {
-    sum(&[&events.list, &events.touching, &events.detached, &events.slipped, &events.failed])
+    let Events { list, touching, detached, slipped, failed } = events;
+    sum(&[list, touching, detached, slipped, failed])
 }
 
 fn implicit(implicit: &ImplicitWorkspace) -> usize {

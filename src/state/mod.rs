@@ -89,31 +89,60 @@ pub struct State {
 }
 
 impl State {
-    /// Copies another state of the same model without allocating.
+    /// Copies another state of the same model without allocating. Every field is named here, so that none is forgotten.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { stage, stage_start, stage_step, step, part, dt_last, ledger, counters, .. } = self;
-        (*stage, *stage_start, *stage_step, *step) = (other.stage, other.stage_start, other.stage_step, other.step);
-        (*part, *dt_last, *ledger, *counters) = (other.part, other.dt_last, other.ledger, other.counters);
-        self.stage_starts.clone_from(&other.stage_starts);
-        self.displacement.clone_from(&other.displacement);
-        self.velocity.clone_from(&other.velocity);
-        self.contacts.clone_from(&other.contacts);
-        self.neighbours.copy_from(&other.neighbours);
-        self.support_force.clone_from(&other.support_force);
-        self.support_rest.clone_from(&other.support_rest);
-        self.fix_active.clone_from(&other.fix_active);
-        self.removed.clone_from(&other.removed);
-        self.laws.clone_from(&other.laws);
-        self.law_switch.clone_from(&other.law_switch);
-        self.stage_displacement.clone_from(&other.stage_displacement);
-        self.stage_force.clone_from(&other.stage_force);
-        self.bolts.clone_from(&other.bolts);
-        self.plastic.clone_from(&other.plastic);
-        self.columns.clone_from(&other.columns);
-        self.acceleration.clone_from(&other.acceleration);
-        self.drive.copy_from(&other.drive);
-        self.static_stretch = other.static_stretch;
-        self.events.copy_from(&other.events);
+        let Self {
+            stage,
+            stage_start,
+            stage_starts,
+            stage_step,
+            step,
+            part,
+            dt_last,
+            displacement,
+            velocity,
+            contacts,
+            neighbours,
+            support_force,
+            support_rest,
+            fix_active,
+            removed,
+            laws,
+            law_switch,
+            stage_displacement,
+            stage_force,
+            drive,
+            bolts,
+            plastic,
+            columns,
+            acceleration,
+            static_stretch,
+            events,
+            ledger,
+            counters,
+        } = other;
+        (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
+        (self.part, self.dt_last, self.static_stretch) = (*part, *dt_last, *static_stretch);
+        (self.ledger, self.counters) = (*ledger, *counters);
+        self.stage_starts.clone_from(stage_starts);
+        self.displacement.clone_from(displacement);
+        self.velocity.clone_from(velocity);
+        self.contacts.clone_from(contacts);
+        self.support_force.clone_from(support_force);
+        self.support_rest.clone_from(support_rest);
+        self.fix_active.clone_from(fix_active);
+        self.removed.clone_from(removed);
+        self.laws.clone_from(laws);
+        self.law_switch.clone_from(law_switch);
+        self.stage_displacement.clone_from(stage_displacement);
+        self.stage_force.clone_from(stage_force);
+        self.bolts.clone_from(bolts);
+        self.plastic.clone_from(plastic);
+        self.columns.clone_from(columns);
+        self.acceleration.clone_from(acceleration);
+        self.neighbours.copy_from(neighbours);
+        self.drive.copy_from(drive);
+        self.events.copy_from(events);
     }
 }
 
