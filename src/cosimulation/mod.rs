@@ -24,7 +24,7 @@ use crate::geometry::Vector;
 use crate::io::{LoadedCase, RestPlan};
 pub use crate::model::case::limits;
 use crate::model::case::{Case, StageKind};
-use crate::model::{BlockState, Simulation};
+use crate::model::{BlockState, Simulation, settle};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
@@ -210,12 +210,11 @@ impl Cosimulation {
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
         for _ in 0..initial_stages(self.case()) {
             let plan = RestPlan::of(&self.simulation);
-            let mut last = None;
-            while !self.simulation.stage_is_over(last.as_ref()) {
-                let wanted = plan.report_due(self.simulation.state().stage_step);
-                let report = self.step(None, wanted)?;
-                last = wanted.then_some(report);
-            }
+            let step = |model: &mut Self| {
+                let wanted = plan.report_due(model.simulation.state().stage_step);
+                model.step(None, wanted).map(|report| wanted.then_some(report))
+            };
+            let last = settle::until_over(self, Self::simulation, step)?;
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
             self.progress.initial_residual = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
             self.next_stage()?;

@@ -5,6 +5,7 @@ pub mod case;
 pub mod fit;
 pub mod limit_analysis;
 mod observe;
+pub mod settle;
 mod simulation;
 pub mod snapshot;
 pub mod strength_reduction;

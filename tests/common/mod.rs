@@ -29,16 +29,7 @@ pub fn simulation(text: &str) -> Simulation {
 
 /// Runs the stage in progress to its end; returns the last report.
 pub fn run_stage(simulation: &mut Simulation) -> StepReport {
-    let mut last = StepReport::default();
-    let mut k = 0u64;
-    while !simulation.stage_is_over(Some(&last).filter(|r| r.dt > 0.0 && r.time >= simulation.state().stage_start)) {
-        let report = simulation.advance(k.is_multiple_of(10)).unwrap_or_else(|e| panic!("{e}"));
-        if report.dt > 0.0 {
-            last = report;
-        }
-        k += 1;
-    }
-    last
+    simulation.run_stage().unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Runs all stages; returns the last report of each.

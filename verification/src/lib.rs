@@ -18,7 +18,7 @@ mod runner;
 mod selection;
 pub mod text;
 
-pub use model::{Setup, Trouble, run_all, run_stage};
+pub use model::{Setup, Trouble, run_all};
 pub use outcome::{Origin, Outcome, Plot, Row, Series, Tolerance};
 pub use problem::{Parameter, Problem, Values};
 pub use record::{ParameterRecord, ProblemRecord, Record, RowRecord, ToleranceKind};

@@ -61,32 +61,14 @@ impl Setup {
     }
 }
 
-/// Runs the stage in progress to its end; returns the last report.
-///
-/// # Errors
-/// A numerical failure.
-pub fn run_stage(simulation: &mut Simulation) -> Result<StepReport, Trouble> {
-    let start = simulation.state().stage_start;
-    let mut last = StepReport::default();
-    let mut step = 0u64;
-    while !simulation.stage_is_over(Some(&last).filter(|r| r.dt > 0.0 && r.time >= start)) {
-        let report = simulation.advance(step.is_multiple_of(10))?;
-        if report.dt > 0.0 {
-            last = report;
-        }
-        step += 1;
-    }
-    Ok(last)
-}
-
 /// Runs all stages; returns the last report of each.
 ///
 /// # Errors
 /// A numerical failure, or a stage that does not fit.
 pub fn run_all(simulation: &mut Simulation) -> Result<Vec<StepReport>, Trouble> {
-    let mut reports = vec![run_stage(simulation)?];
+    let mut reports = vec![simulation.run_stage()?];
     while simulation.next_stage()? {
-        reports.push(run_stage(simulation)?);
+        reports.push(simulation.run_stage()?);
     }
     Ok(reports)
 }

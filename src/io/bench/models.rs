@@ -95,13 +95,7 @@ impl Model {
             let elements = simulation.model().covers.element_count() as u64;
             return advance(simulation, (WARM_UPDATES / elements).clamp(WARM_STEPS_MIN, WARM_STEPS));
         }
-        loop {
-            let report = simulation.advance(true)?;
-            if simulation.stage_is_over(Some(&report)) {
-                break;
-            }
-            advance(simulation, REPORT_STEPS - 1)?;
-        }
+        simulation.run_stage_with(REPORT_STEPS, None)?;
         if *self == Self::Failing {
             simulation.next_stage().map_err(BenchError::Build)?;
             advance(simulation, simulation.steps_in(FAILING_FOR))?;

@@ -17,6 +17,7 @@ use crate::io::vtu::PvdWriter;
 use crate::model::Simulation;
 use crate::model::case::{Invalid, StageKind};
 use crate::model::fit::{self, Unfit};
+use crate::model::settle;
 use crate::state::{Ledger, Seconds, State};
 use crate::step::{StepError, StepReport};
 
@@ -78,6 +79,9 @@ enum StageEnd {
     Interrupted,
     Failed(StepError),
 }
+
+/// What ends a stage before it is over.
+type Halt = Result<StageEnd, RunError>;
 
 struct Driver<'a> {
     loaded: &'a LoadedCase,
@@ -184,29 +188,33 @@ impl<'a> Driver<'a> {
     fn run_stage(&mut self) -> Result<StageEnd, RunError> {
         let plan = Plan::of(&self.simulation);
         let recorded = self.progress.done.len() > self.simulation.state().stage as usize;
-        let mut last = None;
-        while !recorded && !self.simulation.stage_is_over(last.as_ref()) {
-            if self.options.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                return Ok(StageEnd::Interrupted);
-            }
-            let step = self.simulation.state().stage_step;
-            if plan.checkpoint_due(step) {
-                self.save()?;
-            }
-            if plan.frame_due(step) {
-                self.push_frame()?;
-            }
-            self.tell();
-            match self.step(&plan)? {
-                Ok(report) => last = report,
-                Err(error) => return Ok(StageEnd::Failed(error)),
-            }
+        if recorded {
+            return self.end_stage(None, recorded);
         }
-        self.end_stage(last, recorded)
+        match settle::until_over(self, |driver| &driver.simulation, |driver| driver.pass(&plan)) {
+            Ok(last) => self.end_stage(last, recorded),
+            Err(halt) => halt,
+        }
+    }
+
+    /// What is due at the start of a step, and the step.
+    fn pass(&mut self, plan: &Plan) -> Result<Option<StepReport>, Halt> {
+        if self.options.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Ok(StageEnd::Interrupted));
+        }
+        let step = self.simulation.state().stage_step;
+        if plan.checkpoint_due(step) {
+            self.save().map_err(Err)?;
+        }
+        if plan.frame_due(step) {
+            self.push_frame().map_err(Err)?;
+        }
+        self.tell();
+        self.step(plan)
     }
 
     /// One step, with a report and a row when they are due.
-    fn step(&mut self, plan: &Plan) -> Result<Result<Option<StepReport>, StepError>, RunError> {
+    fn step(&mut self, plan: &Plan) -> Result<Option<StepReport>, Halt> {
         let step = self.simulation.state().stage_step;
         let row = plan.row_due(step);
         if row || step.is_multiple_of(GOOD_STEPS) {
@@ -219,18 +227,15 @@ impl<'a> Driver<'a> {
             self.begin_row();
         }
         let wanted = plan.report_due(step);
-        let report = match self.simulation.advance(wanted) {
-            Ok(report) => report,
-            Err(error) => return Ok(Err(error)),
-        };
+        let report = self.simulation.advance(wanted).map_err(|error| Ok(StageEnd::Failed(error)))?;
         if !wanted {
-            return Ok(Ok(None));
+            return Ok(None);
         }
         self.note(&report);
         if row {
-            self.write_row(&report, &before, dt_before, sweeps_mean)?;
+            self.write_row(&report, &before, dt_before, sweeps_mean).map_err(Err)?;
         }
-        Ok(Ok(Some(report)))
+        Ok(Some(report))
     }
 
     /// Notes that there is a row now.

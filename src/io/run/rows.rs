@@ -6,11 +6,10 @@ use std::path::Path;
 use crate::geometry::Vector;
 use crate::io::picture::Series;
 use crate::model::case::StageKind;
+use crate::model::settle::REST_STEPS;
 use crate::model::{Case, Simulation};
 use crate::step::StepReport;
 
-/// Steps between reports of a static stage, which tell whether it is at rest.
-const REST_STEPS: u64 = 10;
 /// Rows of a stage that names no interval.
 const ROWS: f64 = 500.0;
 /// Frames of a stage that names no interval.

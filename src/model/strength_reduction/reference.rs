@@ -1,14 +1,13 @@
 //! The slope at rest before its strength is reduced.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
 use crate::model::Simulation;
 use crate::model::case::{Case, Invalid, Stage, StageKind};
-use crate::step::{StepError, StepReport};
+use crate::model::settle::REST_STEPS;
+use crate::step::StepError;
 
-/// Steps between reports of a static stage.
-const REPORT_STEPS: u64 = 10;
 /// Name of the stage of the trials.
 const TRIAL: &str = "strength reduction";
 /// Damping ratio of the deformation of blocks in trials: none of it acts on rigid motion. With less, columns that are
@@ -103,11 +102,12 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
     let drive = simulation.drive();
     (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
     while simulation.stage().kind == StageKind::Static {
-        let outcome = run_static(&mut simulation, interrupt)?;
+        let outcome = simulation.run_stage_with(REST_STEPS, interrupt);
         let (time, stage) = (simulation.time(), simulation.stage().name.clone());
         match outcome {
-            Ok(report) if simulation.at_rest(&report) => {}
-            Ok(report) => {
+            Ok(None) => return Err(ReductionError::Interrupted),
+            Ok(Some(report)) if simulation.at_rest(&report) => {}
+            Ok(Some(report)) => {
                 return Ok(Settled::NotAtRest { stage, time, unbalanced: report.unbalanced, failure: None });
             }
             Err(error) => return Ok(Settled::NotAtRest { stage, time, unbalanced: f64::NAN, failure: Some(error) }),
@@ -115,28 +115,4 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
         simulation.next_stage()?;
     }
     Ok(Settled::AtRest(Box::new(simulation)))
-}
-
-/// Runs the static stage in progress to its end; the last report, or the numerical failure.
-fn run_static(
-    simulation: &mut Simulation,
-    interrupt: Option<&AtomicBool>,
-) -> Result<Result<StepReport, StepError>, ReductionError> {
-    let start = simulation.time();
-    let mut last = StepReport::default();
-    for step in 0u64.. {
-        if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-            return Err(ReductionError::Interrupted);
-        }
-        let wanted = step.is_multiple_of(REPORT_STEPS);
-        match simulation.advance(wanted) {
-            Ok(report) if wanted && report.time >= start => last = report,
-            Ok(_) => {}
-            Err(error) => return Ok(Err(error)),
-        }
-        if simulation.stage_is_over(wanted.then_some(&last)) {
-            break;
-        }
-    }
-    Ok(Ok(last))
 }

@@ -6,8 +6,8 @@ use enmm::model::case::Integrator;
 use enmm::step::energies;
 
 use super::{Entry, FAILING, Failure, Run};
+use crate::Trouble;
 use crate::problems::{Beam, Plane};
-use crate::{Trouble, run_stage};
 
 /// Line of a case that sets the implicit step (s).
 fn step_line(step: Option<f64>) -> String {
@@ -26,7 +26,7 @@ pub(super) fn beam(integrator: Integrator, rows: f64, step: Option<f64>) -> Resu
         step_line(step)
     );
     let mut run = Run::start(integrator, text)?;
-    let report = run_stage(&mut run.simulation)?;
+    let report = run.simulation.run_stage()?;
     let [left, middle, right] = [0, 1, 2].map(|k| -run.simulation.monitor(k).0.y);
     let exact = beam.uniform(1e4, 0.0) - beam.uniform(1e4, 4.0);
     let error = (middle - 0.5 * (left + right)) / exact - 1.0;
@@ -51,11 +51,11 @@ pub(super) fn incline(integrator: Integrator, size: f64, step: Option<f64>) -> R
         step_line(step)
     );
     let mut run = Run::start(integrator, text)?;
-    let report = run_stage(&mut run.simulation)?;
+    let report = run.simulation.run_stage()?;
     let at_rest = run.simulation.at_rest(&report);
     run.simulation.next_stage()?;
     let (start, from) = (run.simulation.time(), run.simulation.monitor(0).0);
-    run_stage(&mut run.simulation)?;
+    run.simulation.run_stage()?;
     let (slid, time) = ((run.simulation.monitor(0).0 - from).norm(), run.simulation.time() - start);
     let exact = 0.5 * 9.81 * (dip.sin() - dip.cos() * friction.tan()) * time * time;
     let variant = step.map_or_else(|| format!("h = {size} m"), |dt| format!("dt = {dt:.2e} s"));
@@ -95,7 +95,7 @@ pub fn slope_text(spacing: f64, seconds: f64) -> String {
 /// call fills.
 pub(super) fn slope(integrator: Integrator, spacing: f64, places: &mut Vec<Vector>) -> Result<Entry, Trouble> {
     let mut run = Run::start(integrator, slope_text(spacing, 0.0))?;
-    let report = run_stage(&mut run.simulation)?;
+    let report = run.simulation.run_stage()?;
     let at_rest = run.simulation.at_rest(&report);
     let mine = block_displacements(&run.simulation);
     if places.is_empty() {
@@ -175,7 +175,7 @@ pub(crate) fn fail(simulation: &mut Simulation, seconds: f64) -> Result<Totals, 
 /// displacement from that of the explicit method, which comes first.
 pub(super) fn failure(integrator: Integrator, spacing: f64, known: &mut Option<Totals>) -> Result<Failure, Trouble> {
     let mut run = Run::start(integrator, slope_text(spacing, 2.0 * FAILING))?;
-    let report = run_stage(&mut run.simulation)?;
+    let report = run.simulation.run_stage()?;
     let at_rest = run.simulation.at_rest(&report);
     run.restart();
     let totals = fail(&mut run.simulation, FAILING)?;

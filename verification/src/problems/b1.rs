@@ -4,7 +4,7 @@ use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
 use super::beam::{Beam, Plane};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B1",
@@ -107,7 +107,7 @@ fn solve(setup: &mut Setup, beam: &Beam, load: Load, rows: f64) -> std::result::
     );
     let name = format!("b1_{}_{load:?}_{rows}_rows", beam.plane.name()).to_lowercase();
     let mut simulation = setup.simulation(&name, text)?;
-    let report = run_stage(&mut simulation)?;
+    let report = simulation.run_stage()?;
     if !simulation.at_rest(&report) {
         return Err(Trouble(format!("{name}: the beam has not come to rest in its time")));
     }

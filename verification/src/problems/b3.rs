@@ -3,7 +3,7 @@
 use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B3",
@@ -32,7 +32,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     for rows in [0.25 * finest, 0.5 * finest, finest] {
         let size = height / rows;
         let mut simulation = setup.simulation(&format!("b3_{rows}_rows"), text(setup, size))?;
-        let report = run_stage(&mut simulation)?;
+        let report = simulation.run_stage()?;
         if !simulation.at_rest(&report) {
             return Err(Trouble(format!("b3, {rows} rows: the column has not come to rest in its time")));
         }

@@ -1,7 +1,7 @@
 //! C1: a block on an incline.
 
 use super::incline::{G, rock, turn};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
@@ -98,7 +98,7 @@ impl Incline {
     /// Settles the block under a friction 5° above the slope, drops the friction and kicks the block down the plane.
     fn release(&self, setup: &mut Setup, name: &str, speed: f64) -> Result<Slide, Trouble> {
         let mut simulation = setup.simulation(name, self.text(setup.get("mesh")))?;
-        run_stage(&mut simulation)?;
+        simulation.run_stage()?;
         simulation.next_stage()?;
         let covers = &simulation.model().covers;
         let middle = turn(&[[0.52 * self.long(), 0.48]], -self.slope)[0];

@@ -4,7 +4,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::step::{StepReport, block_motion};
 
 use super::plane::{turned, written};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C12",
@@ -106,7 +106,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
     let text = case(setup, delta, pretension);
     setup.cases.retain(|(name, _)| *name != name_of(delta));
     let mut simulation = setup.simulation(&name_of(delta), text)?;
-    run_stage(&mut simulation)?;
+    simulation.run_stage()?;
     simulation.next_stage()?;
     let slope = setup.get("a_deg");
     let (s, c) = slope.to_radians().sin_cos();

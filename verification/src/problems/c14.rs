@@ -3,7 +3,7 @@
 use super::block::G;
 use super::incline::turn;
 use super::limit::Scene;
-use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
@@ -111,7 +111,7 @@ impl Blocks {
             text += &format!("[[monitor]]\nname = \"block {k}\"\npoint = {point:?}\n");
         }
         let mut simulation = setup.simulation(&self.name, text)?;
-        run_stage(&mut simulation)?;
+        simulation.run_stage()?;
         simulation.next_stage()?;
         let (s, c) = a.to_radians().sin_cos();
         let places = |simulation: &Simulation| -> Vec<f64> {

@@ -6,7 +6,7 @@ use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
 
 use super::plane::{turned, written};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C3",
@@ -100,7 +100,7 @@ struct Slide {
 }
 
 fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
-    run_stage(simulation)?;
+    simulation.run_stage()?;
     simulation.next_stage()?;
     let (slope, length) = (setup.get("a_deg"), setup.get("length"));
     let middles = turned(&[[1.5 * length, 0.5 - STEP], [0.5 * length, 0.5]], slope);

@@ -4,7 +4,7 @@ use enmm::model::Simulation;
 use enmm::step::StepReport;
 
 use super::shear_box::{Drive, JointState, joint_state, share};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D3",
@@ -83,7 +83,7 @@ fn shear(
     distance: f64,
     steps: usize,
 ) -> Result<(Vec<JointState>, f64, StepReport), Trouble> {
-    run_stage(simulation)?;
+    simulation.run_stage()?;
     simulation.next_stage()?;
     let mut drive = Drive::along(simulation, 0);
     let (mut states, mut report, mut greatest) = (Vec::new(), StepReport::default(), 0.0f64);
@@ -195,7 +195,7 @@ fn close(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     for (k, share) in shares.into_iter().enumerate() {
         simulation.drive().to.port_pressure[0] = share * stress;
         simulation.drive().arrive();
-        report = run_stage(&mut simulation)?;
+        report = simulation.run_stage()?;
         let state = joint_state(&simulation);
         let way = if k < 5 { "loading" } else { "unloading" };
         let reason = "at rest after each change of the pressure; the block closes the joint evenly to 1e-3";

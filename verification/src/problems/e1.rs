@@ -5,7 +5,7 @@ use enmm::model::case::Integrator;
 use enmm::step::StepReport;
 
 use crate::comparison::{Totals, block_displacements, difference, fail, slope_text};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "E1",
@@ -52,7 +52,7 @@ fn spacing(setup: &Setup, name: &str) -> f64 {
 fn settled(setup: &mut Setup, name: &str, text: String) -> Result<(Simulation, StepReport), Trouble> {
     let name = format!("{name}_{:?}", setup.integrator).to_lowercase();
     let mut simulation = setup.simulation(&name, text)?;
-    let report = run_stage(&mut simulation)?;
+    let report = simulation.run_stage()?;
     if !simulation.at_rest(&report) {
         return Err(Trouble(format!("{name}: the slope has not come to rest in its time")));
     }

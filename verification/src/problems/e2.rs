@@ -3,7 +3,7 @@
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_stage};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "E2",
@@ -66,7 +66,7 @@ fn text(setup: &Setup, columns: usize, courses: usize, bond: bool, seconds: f64)
 /// Settles masonry, lets it rest, and judges the second half of the rest.
 fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seconds: f64) -> Result<(), Trouble> {
     let mut simulation = setup.simulation(&format!("e2_{name}"), text)?;
-    let report = run_stage(&mut simulation)?;
+    let report = simulation.run_stage()?;
     if !simulation.at_rest(&report) {
         return Err(Trouble(format!("e2, {name}: has not come to rest in its time")));
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use enmm::geometry::{Point, Vector};
 use enmm::step::{StepReport, block_motion};
 
-use crate::{Setup, Trouble, run_stage};
+use crate::{Setup, Trouble};
 
 /// Friction (degrees above the dip) under which the block settles.
 const SETTLE: f64 = 10.0;
@@ -78,7 +78,7 @@ impl Slider<'_> {
     /// The case does not fit, or the run fails.
     pub fn slide(&self, setup: &mut Setup, name: &str) -> Result<Slide, Trouble> {
         let mut simulation = setup.simulation(name, self.text())?;
-        run_stage(&mut simulation)?;
+        simulation.run_stage()?;
         simulation.next_stage()?;
         let (sin, cos) = self.dip.to_radians().sin_cos();
         let down = Vector::new(cos, -sin);
