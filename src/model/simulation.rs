@@ -1,5 +1,7 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
+use std::sync::OnceLock;
+
 use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Ledger, Model, State, Workspace};
@@ -24,6 +26,8 @@ pub struct Simulation {
     built: Built,
     workspace: Workspace,
     regime: Regime,
+    /// The report on the state now, once someone has asked for it: it costs a step.
+    report: OnceLock<StepReport>,
 }
 
 impl Simulation {
@@ -41,8 +45,13 @@ impl Simulation {
     /// As [`Simulation::new`].
     pub fn build(case: Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Self, Invalid> {
         let built = build(&case, tell)?;
-        let mut simulation =
-            Self { case, built, workspace: Workspace::default(), regime: Regime::Dynamic { damping: 0.0 } };
+        let mut simulation = Self {
+            case,
+            built,
+            workspace: Workspace::default(),
+            regime: Regime::Dynamic { damping: 0.0 },
+            report: OnceLock::new(),
+        };
         simulation.begin_stage(0, 0.0)?;
         Ok(simulation)
     }
@@ -51,6 +60,7 @@ impl Simulation {
     #[must_use]
     pub fn with_entrance(mut self, rule: EntranceRule) -> Self {
         self.built.model.entrance = rule;
+        self.report.take();
         self
     }
 
@@ -97,6 +107,7 @@ impl Simulation {
 
     /// What a host has set, to be changed.
     pub fn drive(&mut self) -> &mut Drive {
+        self.report.take();
         &mut self.built.state.drive
     }
 
@@ -126,6 +137,7 @@ impl Simulation {
 
     /// Makes regime and buffers those of the state.
     fn take_up(&mut self) {
+        self.report.take();
         self.regime = self.regime_of(self.built.state.stage as usize);
         step::prepare(&self.built.model, &self.built.state, &mut self.workspace);
     }
@@ -161,6 +173,7 @@ impl Simulation {
     /// # Errors
     /// A numerical failure; the state is then spoilt and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
+        self.report.take();
         step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)
     }
 
@@ -169,19 +182,26 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_part(&mut self, dt: f64) -> Result<StepReport, StepError> {
+        self.report.take();
         step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, dt)
     }
 
-    /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances.
+    /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances. They are worked out
+    /// once for every state, as a step beside the model, and the same bits on any threads.
     pub fn report(&self) -> StepReport {
         self.report_on(self.workspace.serial)
     }
 
     /// As [`Simulation::report`]; with `serial` on the calling thread alone.
     pub fn report_on(&self, serial: bool) -> StepReport {
+        // Not `get_or_init`: a thread of the pool that waits for others may take up work that asks for it, too.
+        if let Some(report) = self.report.get() {
+            return *report;
+        }
         let mut state = self.state().clone();
         state.drive.hold_last();
-        step::outlook(self.model(), self.regime, state, serial)
+        let report = step::outlook(self.model(), self.regime, state, serial);
+        *self.report.get_or_init(|| report)
     }
 
     /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
@@ -256,6 +276,7 @@ impl Simulation {
     }
 
     fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
+        self.report.take();
         let before = self.energies();
         self.excavate(stage)?;
         change_laws(&self.case, stage, &mut self.built.state.laws, &mut self.built.state.law_switch);
