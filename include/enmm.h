@@ -490,6 +490,18 @@ typedef struct enmm_energies {
    * Work of quiet boundaries and free-field columns: less what waves carry away.
    */
   double radiation;
+  /**
+   * Energy in bolts.
+   */
+  double bolt_stored;
+  /**
+   * Energy that bolts were installed with by their pretension.
+   */
+  double bolt_installed;
+  /**
+   * Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
+   */
+  double bolt_dissipation;
 } enmm_energies;
 
 /**

@@ -126,7 +126,7 @@ fn table(summary: &Summary, directory: &Path) -> String {
             100.0 * summary.penetration_max_relative
         ),
     );
-    row("energy residual", format!("{:.2e} of the largest term", summary.energy.residual_relative));
+    row("energy residual", format!("{:.2e} of the largest term", summary.energy.residual_relative()));
     row("wall time", format!("{:.1} s", summary.wall_seconds.total));
     lines.join("\n")
 }

@@ -9,10 +9,10 @@ mod parameter;
 mod saved;
 mod threads;
 
-pub use crate::state::{Event, EventKind, PortKind};
+pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
-pub use observe::{PortState, Totals};
+pub use observe::{PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
 

@@ -3,7 +3,7 @@
 use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
 use crate::geometry::{Point, Vector};
 use crate::model::Simulation;
-use crate::state::{Event, EventKind, Ledger, Port, PortKind};
+use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
 
 use super::Cosimulation;
 
@@ -50,12 +50,39 @@ pub struct Totals {
     pub penetration_max: f64,
     /// Net over applied force.
     pub unbalanced: f64,
+    /// Critical internal step (s).
+    pub critical_dt: f64,
     /// Blocks that have detached.
     pub detached_blocks: u32,
     /// Joints that have slipped.
     pub slipped_joints: u32,
     /// Blocks that have failed.
     pub failed_blocks: u32,
+}
+
+/// Sums and extremes as outputs show them, but for the energies: the FMUs, and by their names the structures of C and
+/// Python. New ones go to the end.
+pub const TOTALS: [Quantity<Totals>; 11] = [
+    extreme("displacement_max", "m", "Largest displacement", |totals| totals.displacement_max),
+    extreme("velocity_max", "m/s", "Largest velocity", |totals| totals.velocity_max),
+    extreme("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
+    Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |totals| totals.unbalanced),
+    extreme("critical_dt", "s", "Stability limit of the internal step", |totals| totals.critical_dt),
+    Quantity::count("open_contacts", "Contacts without force", |totals| f64::from(totals.open_contacts)),
+    Quantity::count("slipping_contacts", "Contacts at their shear limit", |totals| f64::from(totals.slipping_contacts)),
+    Quantity::count("locked_contacts", "Contacts below their shear limit", |totals| f64::from(totals.locked_contacts)),
+    Quantity::count("detached_blocks", "Blocks that have detached", |totals| f64::from(totals.detached_blocks)),
+    Quantity::count("slipped_joints", "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
+    Quantity::count("failed_blocks", "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
+];
+
+const fn extreme(
+    name: &'static str,
+    unit: &'static str,
+    text: &'static str,
+    get: fn(&Totals) -> f64,
+) -> Quantity<Totals> {
+    Quantity::new([name, name], unit, text, get)
 }
 
 impl Cosimulation {
@@ -89,6 +116,7 @@ impl Cosimulation {
             locked_contacts: contacts(ContactState::Lock),
             penetration_max: state.counters.penetration_max,
             unbalanced: report.unbalanced,
+            critical_dt: self.simulation.model().critical_dt,
             detached_blocks: events(EventKind::Detached),
             slipped_joints: events(EventKind::Slipped),
             failed_blocks: events(EventKind::Failed),

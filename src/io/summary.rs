@@ -3,14 +3,15 @@
 use std::io;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::checkpoint::engine_version;
 use super::files::{at_path, write_atomic};
 use crate::contact::{BoltSegment, BoltState};
 use crate::model::Simulation;
 use crate::model::case::StageKind;
-use crate::state::{Ledger, Seconds};
+use crate::state::{ENERGIES, Ledger, Seconds};
 use crate::step::StepError;
 
 /// How a run ended.
@@ -53,7 +54,8 @@ pub struct Summary {
     /// The open–close iteration over the whole run.
     pub open_close: OpenCloseRecord,
     /// Energy ledger at the last report (J/m).
-    pub energy: EnergyRecord,
+    #[serde(serialize_with = "energies")]
+    pub energy: Ledger,
     /// Elements that have yielded.
     pub yielded_elements: usize,
     /// Bolts at the end, in the order of the case.
@@ -265,64 +267,14 @@ pub struct OpenCloseRecord {
     pub searches: u64,
 }
 
-/// Energy ledger (J/m).
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EnergyRecord {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Strain energy.
-    pub strain: f64,
-    /// Potential energy of gravity.
-    pub potential: f64,
-    /// Energy stored in contact and support springs.
-    pub stored: f64,
-    /// Heat of friction.
-    pub friction: f64,
-    /// Energy dissipated by contact springs.
-    pub contact_dissipation: f64,
-    /// Energy taken by damping.
-    pub damping: f64,
-    /// Energy taken by rock that yields.
-    pub yielding: f64,
-    /// Work of bolts.
-    pub bolt_work: f64,
-    /// Energy stored in bolts.
-    pub bolt_stored: f64,
-    /// Energy dissipated by bolts.
-    pub bolt_dissipation: f64,
-    /// Work of quiet boundaries and free-field columns.
-    pub radiation: f64,
-    /// Work of loads.
-    pub external_work: f64,
-    /// Energy of the start and of what was excavated.
-    pub baseline: f64,
-    /// What the ledger does not explain.
-    pub residual: f64,
-    /// The residual over the largest term.
-    pub residual_relative: f64,
-}
-
-impl From<&Ledger> for EnergyRecord {
-    fn from(ledger: &Ledger) -> Self {
-        Self {
-            kinetic: ledger.kinetic,
-            strain: ledger.strain,
-            potential: ledger.potential,
-            stored: ledger.stored,
-            friction: ledger.friction,
-            contact_dissipation: ledger.contact_dissipation(),
-            damping: ledger.damping,
-            yielding: ledger.yielding,
-            bolt_work: ledger.bolt_work,
-            bolt_stored: ledger.bolt_stored,
-            bolt_dissipation: ledger.bolt_dissipation(),
-            radiation: ledger.radiation,
-            external_work: ledger.external_work,
-            baseline: ledger.baseline,
-            residual: ledger.residual(),
-            residual_relative: ledger.residual_relative(),
-        }
+/// Writes all energies of the table (J/m), and the residual over the largest term.
+fn energies<S: Serializer>(ledger: &Ledger, out: S) -> Result<S::Ok, S::Error> {
+    let mut map = out.serialize_map(Some(ENERGIES.len() + 1))?;
+    for energy in &ENERGIES {
+        map.serialize_entry(energy.name, &(energy.get)(ledger))?;
     }
+    map.serialize_entry("residual_relative", &ledger.residual_relative())?;
+    map.end()
 }
 
 /// Wall time (s) by part of the step.
@@ -395,7 +347,7 @@ impl Summary {
                 judged: counters.judged,
                 searches: counters.searches,
             },
-            energy: EnergyRecord::from(record.ledger),
+            energy: *record.ledger,
             yielded_elements: simulation.yielded_elements(),
             bolts: BoltRecord::of(simulation),
             penetration_max: counters.penetration_max,

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Quantity;
+
 /// Energies (J per metre of depth). Works are those done on the rock since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -94,5 +96,110 @@ impl Ledger {
         .into_iter()
         .map(f64::abs)
         .fold(0.0, f64::max)
+    }
+}
+
+/// Energies and works as outputs show them: `history.csv` in this order, `summary.json`, the FMUs, and by their names
+/// the structures of C and Python. New ones go to the end.
+pub const ENERGIES: [Quantity<Ledger>; 18] = [
+    energy(["kinetic", "kinetic_energy"], "Kinetic energy per metre of depth", |ledger| ledger.kinetic),
+    energy(["strain", "strain_energy"], "Strain energy per metre of depth", |ledger| ledger.strain),
+    energy(["potential", "potential_energy"], "Potential energy of gravity since the start", |ledger| ledger.potential),
+    energy(["stored", "stored_energy"], "Energy in contact and support springs", |ledger| ledger.stored),
+    energy(["friction", "friction_heat"], "Energy turned into heat by slip", |ledger| ledger.friction),
+    energy(
+        ["contact_dissipation", "contact_dissipation"],
+        "Energy that contacts and supports lost in other ways than slip",
+        |ledger| ledger.contact_dissipation(),
+    ),
+    energy(["damping", "damping_loss"], "Energy taken by damping", |ledger| ledger.damping),
+    energy(["external_work", "external_work"], "Work of loads and inputs", |ledger| ledger.external_work),
+    energy(["residual", "energy_residual"], "Energy that appeared from nowhere", |ledger| ledger.residual()),
+    energy(["yielding", "yielding_loss"], "Energy taken by yielding rock", |ledger| ledger.yielding),
+    energy(["bolt_work", "bolt_work"], "Work of bolts on the blocks", |ledger| ledger.bolt_work),
+    energy(["radiation", "radiation"], "Work of quiet boundaries: less what waves carry away", |ledger| {
+        ledger.radiation
+    }),
+    energy(["baseline", "baseline_energy"], "Energy of the start, less what left with excavated blocks", |ledger| {
+        ledger.baseline
+    }),
+    energy(["contact_work", "contact_work"], "Work of contact forces on the blocks", |ledger| ledger.contact_work),
+    energy(["support_work", "support_work"], "Work of supports on the blocks", |ledger| ledger.support_work),
+    energy(["bolt_stored", "bolt_stored_energy"], "Energy in bolts", |ledger| ledger.bolt_stored),
+    energy(
+        ["bolt_installed", "bolt_installed_energy"],
+        "Energy that bolts were installed with by their pretension",
+        |ledger| ledger.bolt_installed,
+    ),
+    energy(["bolt_dissipation", "bolt_dissipation"], "Energy that bolts lost by yielding and rupture", |ledger| {
+        ledger.bolt_dissipation()
+    }),
+];
+
+const fn energy(names: [&'static str; 2], text: &'static str, get: fn(&Ledger) -> f64) -> Quantity<Ledger> {
+    Quantity::new(names, "J/m", text, get)
+}
+
+/// Those whose sum, with these signs, is the residual.
+pub const BALANCE: [(&str, f64); 11] = [
+    ("kinetic", 1.0),
+    ("strain", 1.0),
+    ("potential", 1.0),
+    ("damping", 1.0),
+    ("yielding", 1.0),
+    ("contact_work", -1.0),
+    ("support_work", -1.0),
+    ("bolt_work", -1.0),
+    ("radiation", -1.0),
+    ("external_work", -1.0),
+    ("baseline", -1.0),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every field has another power of two, so that no two sums agree by chance; so small a sum is exact.
+    fn distinct() -> Ledger {
+        Ledger {
+            kinetic: 1.0,
+            strain: 2.0,
+            potential: 4.0,
+            stored: 8.0,
+            friction: 16.0,
+            contact_work: 32.0,
+            support_work: 64.0,
+            damping: 128.0,
+            yielding: 256.0,
+            bolt_work: 512.0,
+            bolt_stored: 1024.0,
+            bolt_installed: 2048.0,
+            radiation: 4096.0,
+            external_work: 8192.0,
+            baseline: 16384.0,
+        }
+    }
+
+    #[test]
+    fn the_table_sums_to_the_residual_and_shows_every_field() {
+        let ledger = distinct();
+        let get = |name: &str| {
+            let found = ENERGIES.iter().find(|energy| energy.name == name);
+            (found.unwrap_or_else(|| panic!("{name} is not in the table")).get)(&ledger)
+        };
+        let sum: f64 = BALANCE.iter().map(|(name, sign)| sign * get(name)).sum();
+        assert_eq!(sum, ledger.residual());
+        let fields = serde_json::to_value(ledger).expect("a ledger");
+        for (field, value) in fields.as_object().expect("fields") {
+            assert_eq!(Some(get(field)), value.as_f64(), "{field}");
+        }
+    }
+
+    #[test]
+    fn names_in_the_table_are_their_own() {
+        for names in [ENERGIES.map(|energy| energy.name), ENERGIES.map(|energy| energy.column)] {
+            let own: std::collections::BTreeSet<&str> = names.into_iter().collect();
+            assert_eq!(own.len(), ENERGIES.len());
+        }
     }
 }

@@ -7,16 +7,18 @@ mod inputs;
 mod ledger;
 mod memory;
 mod model;
+mod quantity;
 mod workspace;
 
 pub use events::{Event, EventKind, Events};
 pub use implicit::{Implicit, ImplicitWorkspace, Rule};
 pub use inputs::{Drive, Inputs};
-pub use ledger::Ledger;
+pub use ledger::{BALANCE, ENERGIES, Ledger};
 pub use memory::Part;
 pub use model::{
     BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
 };
+pub use quantity::Quantity;
 pub use workspace::{ContactOutcome, PatchSums, Seconds, Workspace};
 
 use serde::{Deserialize, Serialize};

@@ -232,6 +232,12 @@ pub struct enmm_energies {
     pub bolt_work: f64,
     /// Work of quiet boundaries and free-field columns: less what waves carry away.
     pub radiation: f64,
+    /// Energy in bolts.
+    pub bolt_stored: f64,
+    /// Energy that bolts were installed with by their pretension.
+    pub bolt_installed: f64,
+    /// Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
+    pub bolt_dissipation: f64,
 }
 
 /// Sums and extremes over the model.
@@ -389,7 +395,7 @@ sized! {
     }
     enmm_energies 128 {
         struct_size kinetic strain potential stored friction contact_work support_work damping external_work baseline
-        contact_dissipation residual yielding bolt_work radiation
+        contact_dissipation residual yielding bolt_work radiation bolt_stored bolt_installed bolt_dissipation
     }
     enmm_totals 72 {
         struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts

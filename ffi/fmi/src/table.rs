@@ -1,9 +1,10 @@
 //! The one table of variables: both model descriptions, every getter and every setter follow it.
 
 use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
-use enmm::cosimulation::{Parameter, PortKind, parameters};
+use enmm::cosimulation::{Parameter, PortKind, TOTALS, parameters};
 use enmm::model::Case;
 use enmm::model::case::Port;
+use enmm::state::ENERGIES;
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -90,55 +91,15 @@ pub enum Motion {
     ContactCount,
 }
 
-/// A sum or an extreme over the whole model.
+/// An output of the whole model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Total {
-    /// Kinetic energy (J/m).
-    KineticEnergy,
-    /// Strain energy (J/m).
-    StrainEnergy,
-    /// Potential energy (J/m).
-    PotentialEnergy,
-    /// Energy in contact springs (J/m).
-    StoredEnergy,
-    /// Heat of friction (J/m).
-    FrictionHeat,
-    /// Energy taken by damping (J/m).
-    DampingLoss,
-    /// Energy taken by yielding rock (J/m).
-    YieldingLoss,
-    /// Work of bolts (J/m).
-    BoltWork,
-    /// Work of quiet boundaries and free-field columns (J/m).
-    Radiation,
-    /// Work of loads and inputs (J/m).
-    ExternalWork,
-    /// Energy that appeared from nowhere (J/m).
-    EnergyResidual,
-    /// Largest displacement (m).
-    DisplacementMax,
-    /// Largest velocity (m/s).
-    VelocityMax,
-    /// Largest penetration so far (m).
-    PenetrationMax,
-    /// Net over applied force.
-    UnbalancedRatio,
-    /// Stability limit of the internal step (s).
-    CriticalDt,
+    /// An energy or a work: its place in [`ENERGIES`].
+    Energy(usize),
+    /// A sum or an extreme: its place in [`TOTALS`].
+    Extreme(usize),
     /// Internal step (s).
     InternalDt,
-    /// Contacts without force.
-    OpenContacts,
-    /// Contacts at their shear limit.
-    SlidingContacts,
-    /// Contacts below it.
-    LockedContacts,
-    /// Blocks that have detached.
-    DetachedBlocks,
-    /// Joints that have slipped.
-    SlippedJoints,
-    /// Blocks that have failed.
-    FailedBlocks,
     /// Events so far.
     EventCount,
     /// Time of the last event (s); 0 when there was none.
@@ -506,12 +467,16 @@ impl Rows {
                 self.output(&name, &what, unit, Quantity::Monitor(k, motion));
             }
         }
-        for &(total, name, what, unit, kind) in TOTALS {
-            self.output(name, what, unit, Quantity::Total(total)).kind = kind;
-        }
+        let (first, later) = totals();
+        first.into_iter().for_each(|total| self.total(total));
         if version == Version::Three {
             self.block_outputs();
         }
+        later.into_iter().for_each(|total| self.total(total));
+    }
+
+    fn total(&mut self, (total, name, what, unit, kind): TotalRow) {
+        self.output(name, what, unit, Quantity::Total(total)).kind = kind;
     }
 
     fn block_outputs(&mut self) {
@@ -581,32 +546,74 @@ fn port_motions(kind: PortKind) -> &'static [Row] {
 
 type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
 
-const TOTALS: &[TotalRow] = &[
-    (Total::KineticEnergy, "kinetic_energy", "Kinetic energy per metre of depth", "J/m", Type::Real),
-    (Total::StrainEnergy, "strain_energy", "Strain energy per metre of depth", "J/m", Type::Real),
-    (Total::PotentialEnergy, "potential_energy", "Potential energy of gravity since the start", "J/m", Type::Real),
-    (Total::StoredEnergy, "stored_energy", "Energy in contact and support springs", "J/m", Type::Real),
-    (Total::FrictionHeat, "friction_heat", "Energy turned into heat by slip", "J/m", Type::Real),
-    (Total::DampingLoss, "damping_loss", "Energy taken by damping", "J/m", Type::Real),
-    (Total::YieldingLoss, "yielding_loss", "Energy taken by yielding rock", "J/m", Type::Real),
-    (Total::BoltWork, "bolt_work", "Work of bolts on the blocks", "J/m", Type::Real),
-    (Total::Radiation, "radiation", "Work of quiet boundaries: less what waves carry away", "J/m", Type::Real),
-    (Total::ExternalWork, "external_work", "Work of loads and inputs", "J/m", Type::Real),
-    (Total::EnergyResidual, "energy_residual", "Energy that appeared from nowhere", "J/m", Type::Real),
-    (Total::DisplacementMax, "displacement_max", "Largest displacement", "m", Type::Real),
-    (Total::VelocityMax, "velocity_max", "Largest velocity", "m/s", Type::Real),
-    (Total::PenetrationMax, "penetration_max", "Largest penetration so far", "m", Type::Real),
-    (Total::UnbalancedRatio, "unbalanced_ratio", "Net over applied force", "", Type::Real),
-    (Total::CriticalDt, "critical_dt", "Stability limit of the internal step", "s", Type::Real),
+/// Outputs of the whole model that no other interface has under these names.
+const OWN_TOTALS: [TotalRow; 5] = [
     (Total::InternalDt, "internal_dt", "Internal step", "s", Type::Real),
     (Total::LastEventTime, "last_event_time", "Time of the last event, 0 if there was none", "s", Type::Real),
-    (Total::OpenContacts, "open_contacts", "Contacts without force", "", Type::Integer),
-    (Total::SlidingContacts, "sliding_contacts", "Contacts at their shear limit", "", Type::Integer),
-    (Total::LockedContacts, "locked_contacts", "Contacts below their shear limit", "", Type::Integer),
-    (Total::DetachedBlocks, "detached_blocks", "Blocks that have detached", "", Type::Integer),
-    (Total::SlippedJoints, "slipped_joints", "Joints that have slipped", "", Type::Integer),
-    (Total::FailedBlocks, "failed_blocks", "Blocks that have failed", "", Type::Integer),
     (Total::EventCount, "event_count", "Events so far", "", Type::Integer),
     (Total::LastEventKind, "last_event_kind", "Last event: 0 none, 1 detached, 2 slipped, 3 failed", "", Type::Integer),
     (Total::LastEventSubject, "last_event_subject", "Block or joint of the last event, -1 if none", "", Type::Integer),
 ];
+
+/// Second name of a variable, which importers know, and the name in the tables of the engine.
+const ALIAS: [&str; 2] = ["sliding_contacts", "slipping_contacts"];
+
+/// Outputs of the whole model that keep the value references they have always had. All others stand behind every other
+/// variable, so that a new row in a table of the engine becomes a new variable and moves none.
+const FIRST_TOTALS: [&str; 27] = [
+    "kinetic_energy",
+    "strain_energy",
+    "potential_energy",
+    "stored_energy",
+    "friction_heat",
+    "damping_loss",
+    "yielding_loss",
+    "bolt_work",
+    "radiation",
+    "external_work",
+    "energy_residual",
+    "displacement_max",
+    "velocity_max",
+    "penetration_max",
+    "unbalanced_ratio",
+    "critical_dt",
+    "internal_dt",
+    "last_event_time",
+    "open_contacts",
+    "sliding_contacts",
+    "locked_contacts",
+    "detached_blocks",
+    "slipped_joints",
+    "failed_blocks",
+    "event_count",
+    "last_event_kind",
+    "last_event_subject",
+];
+
+/// Outputs of the whole model: those of [`FIRST_TOTALS`] in its order, and all others in that of the tables.
+fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
+    let kind = |is_count| if is_count { Type::Integer } else { Type::Real };
+    let energies = ENERGIES.iter().enumerate().map(|(k, q)| (Total::Energy(k), q.column, q.text, q.unit, Type::Real));
+    let extremes =
+        TOTALS.iter().enumerate().map(|(k, q)| (Total::Extreme(k), q.column, q.text, q.unit, kind(q.is_count)));
+    let mut rows: Vec<TotalRow> = energies.chain(extremes).chain(OWN_TOTALS).collect();
+    let known = rows.iter().find(|row| row.1 == ALIAS[1]).copied();
+    rows.extend(known.map(|(total, _, what, unit, kind)| (total, ALIAS[0], what, unit, kind)));
+    let place = |row: &TotalRow| FIRST_TOTALS.iter().position(|name| *name == row.1);
+    let (mut first, later): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| place(row).is_some());
+    first.sort_by_key(place);
+    (first, later)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_first_output_is_in_a_table() {
+        let (first, later) = totals();
+        assert_eq!(first.iter().map(|row| row.1).collect::<Vec<_>>(), FIRST_TOTALS);
+        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len() + 1);
+        assert!(later.iter().any(|row| row.1 == ALIAS[1]));
+    }
+}

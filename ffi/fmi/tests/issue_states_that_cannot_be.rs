@@ -8,7 +8,7 @@ use enmm::io::{checkpoint, load_case};
 use enmm_fmi::instance::{Instance, Plan};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;
-use enmm_fmi::table::{Causality, Quantity, Table, Total, Type, Variable, Version};
+use enmm_fmi::table::{Causality, Table, Type, Variable, Version};
 use serde::Serialize;
 use serde::ser::{SerializeTuple, Serializer};
 
@@ -54,8 +54,8 @@ fn step(instance: &mut Instance) -> Status {
 
 /// Values of all outputs that are numbers, without the net force over an applied one that may be next to nothing.
 fn outputs(instance: &mut Instance) -> Vec<f64> {
-    let ratio = Quantity::Total(Total::UnbalancedRatio);
-    let is_output = |v: &&Variable| v.causality == Causality::Output && v.kind == Type::Real && v.quantity != ratio;
+    let is_output =
+        |v: &&Variable| v.causality == Causality::Output && v.kind == Type::Real && v.name != "unbalanced_ratio";
     let list: Vec<_> = instance.table().variables.iter().filter(is_output).map(|v| (v.reference, v.size())).collect();
     let mut values = vec![0.0; list.iter().map(|(_, size)| size).sum()];
     let references: Vec<u32> = list.iter().map(|(reference, _)| *reference).collect();

@@ -54,7 +54,7 @@ class Energies(ctypes.Structure):
         ("struct_size", c_size_t),
         *_doubles("kinetic", "strain", "potential", "stored", "friction", "contact_work", "support_work"),
         *_doubles("damping", "external_work", "baseline", "contact_dissipation", "residual"),
-        *_doubles("yielding", "bolt_work", "radiation"),
+        *_doubles("yielding", "bolt_work", "radiation", "bolt_stored", "bolt_installed", "bolt_dissipation"),
     ]
 
 

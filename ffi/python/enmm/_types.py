@@ -126,6 +126,12 @@ class Energies(NamedTuple):
     """Work of bolts on the blocks."""
     radiation: float
     """Work of quiet boundaries and free-field columns: less what waves carry away."""
+    bolt_stored: float
+    """Energy in bolts."""
+    bolt_installed: float
+    """Energy that bolts were installed with by their pretension."""
+    bolt_dissipation: float
+    """Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored."""
 
 
 class Totals(NamedTuple):

@@ -8,12 +8,21 @@ use crate::io::picture::Series;
 use crate::model::case::StageKind;
 use crate::model::settle::REST_STEPS;
 use crate::model::{Case, Simulation};
+use crate::state::{ENERGIES, Quantity};
 use crate::step::StepReport;
 
 /// Rows of a stage that names no interval.
 const ROWS: f64 = 500.0;
 /// Frames of a stage that names no interval.
 const FRAMES: f64 = 20.0;
+
+/// What a row tells of its step behind the energies.
+const REPORTED: [Quantity<StepReport>; 4] = [
+    Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |report| report.unbalanced),
+    Quantity::new(["penetration_max"; 2], "m", "Largest penetration", |report| report.penetration_max),
+    Quantity::count("locked", "Contacts below their shear limit", |report| f64::from(report.locked)),
+    Quantity::count("slipping", "Contacts at their shear limit", |report| f64::from(report.slipping)),
+];
 
 /// Steps between outputs of one stage.
 #[derive(Debug, Clone, Copy)]
@@ -72,21 +81,9 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
             columns.push((format!("{}_{part}", monitor.name), unit));
         }
     }
-    let energies = [
-        "kinetic_energy",
-        "strain_energy",
-        "potential_energy",
-        "stored_energy",
-        "friction_heat",
-        "contact_dissipation",
-        "damping_loss",
-        "external_work",
-        "energy_residual",
-    ];
-    columns.extend(energies.map(|name| (name.to_owned(), "J/m")));
-    columns.push(("unbalanced_ratio".to_owned(), ""));
-    columns.push(("penetration_max".to_owned(), "m"));
-    columns.extend(["locked", "slipping", "sweeps_mean"].map(|name| (name.to_owned(), "")));
+    columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
+    columns.extend(REPORTED.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
+    columns.push(("sweeps_mean".to_owned(), ""));
     columns
 }
 
@@ -110,23 +107,9 @@ pub fn row(
         let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
         row.extend([u.x, u.y, velocity.x, velocity.y]);
     }
-    let ledger = &report.ledger;
-    row.extend([
-        ledger.kinetic,
-        ledger.strain,
-        ledger.potential,
-        ledger.stored,
-        ledger.friction,
-        ledger.contact_dissipation(),
-        ledger.damping,
-        ledger.external_work,
-        ledger.residual(),
-        report.unbalanced,
-        report.penetration_max,
-        f64::from(report.locked),
-        f64::from(report.slipping),
-        sweeps_mean,
-    ]);
+    row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
+    row.extend(REPORTED.iter().map(|quantity| (quantity.get)(report)));
+    row.push(sweeps_mean);
     row
 }
 
@@ -137,12 +120,15 @@ pub fn row(
 pub fn series(path: &Path) -> io::Result<Vec<Series>> {
     let mut reader = csv::Reader::from_path(path)?;
     let headers = reader.headers()?.clone();
+    // Terms of the balance that stand behind the residual are left to readers of the table.
+    let pictured = ENERGIES.iter().map(|energy| energy.column).take_while(|column| *column != "energy_residual");
+    let pictured: Vec<&str> = pictured.collect();
     let mut series: Vec<(usize, Series)> = headers
         .iter()
         .enumerate()
         .filter_map(|(k, header)| {
             let (name, unit) = header.strip_suffix(']').and_then(|h| h.rsplit_once(" [")).unwrap_or((header, ""));
-            let energy = unit == "J/m" && name != "energy_residual";
+            let energy = unit == "J/m" && pictured.contains(&name);
             let shown = k > 1 && (energy || name.ends_with("_ux") || name.ends_with("_uy"));
             shown.then(|| (k, Series { name: name.to_owned(), unit: unit.to_owned(), points: Vec::new() }))
         })

@@ -1,9 +1,10 @@
 //! What hosts read, in the structures of C.
 
 use engine::contact::ContactState;
-use engine::cosimulation::{EventKind, PortKind};
+use engine::cosimulation::{EventKind, PortKind, Totals};
 use engine::geometry::{Point, polygon};
 use engine::model::BlockState;
+use engine::state::Ledger;
 
 use super::failure::{Failure, Outcome};
 use super::model::Model;
@@ -19,44 +20,12 @@ impl Model {
 
     /// Energies and works.
     pub fn energies(&self) -> enmm_energies {
-        let ledger = self.inner.totals().ledger;
-        enmm_energies {
-            struct_size: size_of::<enmm_energies>(),
-            kinetic: ledger.kinetic,
-            strain: ledger.strain,
-            potential: ledger.potential,
-            stored: ledger.stored,
-            friction: ledger.friction,
-            contact_work: ledger.contact_work,
-            support_work: ledger.support_work,
-            damping: ledger.damping,
-            external_work: ledger.external_work,
-            baseline: ledger.baseline,
-            contact_dissipation: ledger.contact_dissipation(),
-            residual: ledger.residual(),
-            yielding: ledger.yielding,
-            bolt_work: ledger.bolt_work,
-            radiation: ledger.radiation,
-        }
+        energies(&self.inner.totals().ledger)
     }
 
     /// Sums and extremes.
     pub fn totals(&self) -> enmm_totals {
-        let totals = self.inner.totals();
-        enmm_totals {
-            struct_size: size_of::<enmm_totals>(),
-            displacement_max: totals.displacement_max,
-            velocity_max: totals.velocity_max,
-            penetration_max: totals.penetration_max,
-            unbalanced: totals.unbalanced,
-            critical_dt: self.inner.simulation().model().critical_dt,
-            open_contacts: totals.open_contacts,
-            slipping_contacts: totals.slipping_contacts,
-            locked_contacts: totals.locked_contacts,
-            detached_blocks: totals.detached_blocks,
-            slipped_joints: totals.slipped_joints,
-            failed_blocks: totals.failed_blocks,
-        }
+        totals(&self.inner.totals())
     }
 
     /// All contacts.
@@ -250,6 +219,49 @@ impl Model {
     }
 }
 
+/// The table of energies as a structure.
+fn energies(ledger: &Ledger) -> enmm_energies {
+    enmm_energies {
+        struct_size: size_of::<enmm_energies>(),
+        kinetic: ledger.kinetic,
+        strain: ledger.strain,
+        potential: ledger.potential,
+        stored: ledger.stored,
+        friction: ledger.friction,
+        contact_work: ledger.contact_work,
+        support_work: ledger.support_work,
+        damping: ledger.damping,
+        external_work: ledger.external_work,
+        baseline: ledger.baseline,
+        contact_dissipation: ledger.contact_dissipation(),
+        residual: ledger.residual(),
+        yielding: ledger.yielding,
+        bolt_work: ledger.bolt_work,
+        radiation: ledger.radiation,
+        bolt_stored: ledger.bolt_stored,
+        bolt_installed: ledger.bolt_installed,
+        bolt_dissipation: ledger.bolt_dissipation(),
+    }
+}
+
+/// The table of sums and extremes as a structure.
+fn totals(totals: &Totals) -> enmm_totals {
+    enmm_totals {
+        struct_size: size_of::<enmm_totals>(),
+        displacement_max: totals.displacement_max,
+        velocity_max: totals.velocity_max,
+        penetration_max: totals.penetration_max,
+        unbalanced: totals.unbalanced,
+        critical_dt: totals.critical_dt,
+        open_contacts: totals.open_contacts,
+        slipping_contacts: totals.slipping_contacts,
+        locked_contacts: totals.locked_contacts,
+        detached_blocks: totals.detached_blocks,
+        slipped_joints: totals.slipped_joints,
+        failed_blocks: totals.failed_blocks,
+    }
+}
+
 fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
     let flag = |holds: bool, bit: u32| if holds { bit } else { 0 };
     enmm_block_state {
@@ -277,5 +289,82 @@ fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
         contact_count: state.contact_count,
         reserved: 0,
         largest_penetration: state.penetration_max,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use engine::cosimulation::{Quantity, TOTALS};
+    use engine::state::ENERGIES;
+
+    use super::*;
+
+    const ABI: &str = include_str!("../../../python/enmm/_abi.py");
+    const TYPES: &str = include_str!("../../../python/enmm/_types.py");
+
+    /// Fields of a structure as its `Debug` writes them, but for its size.
+    fn fields(structure: &str) -> Vec<(&str, f64)> {
+        let inside = structure.split_once(" { ").and_then(|(_, rest)| rest.strip_suffix(" }")).expect("fields");
+        let pairs = inside.split(", ").map(|field| field.split_once(": ").expect("name: value"));
+        pairs.skip(1).map(|(name, value)| (name, value.parse().expect("a number"))).collect()
+    }
+
+    /// A field for every row of the table and a row for every field, with the same value; Python reads them by the same
+    /// names in the same order.
+    fn hold<T>(structure: &str, table: &[Quantity<T>], value: &T, python: &str) {
+        let fields = fields(structure);
+        for quantity in table {
+            let found = fields.iter().find(|(name, _)| *name == quantity.name);
+            assert_eq!(found.map(|field| field.1), Some((quantity.get)(value)), "{}", quantity.name);
+        }
+        assert_eq!(fields.len(), table.len(), "a field that is in no table: {fields:?}");
+        let own: Vec<&str> = fields.iter().map(|field| field.0).collect();
+        let class = |text: &'static str, head: &str, end: &str| {
+            let body = text.split_once(head).and_then(|(_, rest)| rest.split_once(end));
+            body.unwrap_or_else(|| panic!("{head} is not there")).0
+        };
+        let texts = class(ABI, &format!("class {python}(ctypes"), "]\n").split('"').skip(1).step_by(2);
+        let is_name = |text: &&str| !text.is_empty() && !text.contains('`') && *text != "struct_size";
+        assert_eq!(texts.filter(is_name).collect::<Vec<_>>(), own, "{python}");
+        let lines = class(TYPES, &format!("class {python}(NamedTuple"), "\nclass ").lines();
+        let typed = lines.filter_map(|line| line.strip_suffix(": float").or(line.strip_suffix(": int")));
+        assert_eq!(typed.map(str::trim).collect::<Vec<_>>(), own, "{python}");
+    }
+
+    #[test]
+    fn structures_and_python_hold_the_tables_of_quantities() {
+        let ledger = Ledger {
+            kinetic: 1.0,
+            strain: 2.0,
+            potential: 4.0,
+            stored: 8.0,
+            friction: 16.0,
+            contact_work: 32.0,
+            support_work: 64.0,
+            damping: 128.0,
+            yielding: 256.0,
+            bolt_work: 512.0,
+            bolt_stored: 1024.0,
+            bolt_installed: 2048.0,
+            radiation: 4096.0,
+            external_work: 8192.0,
+            baseline: 16384.0,
+        };
+        hold(&format!("{:?}", energies(&ledger)), &ENERGIES, &ledger, "Energies");
+        let sums = Totals {
+            ledger,
+            displacement_max: 1.0,
+            velocity_max: 2.0,
+            open_contacts: 3,
+            slipping_contacts: 4,
+            locked_contacts: 5,
+            penetration_max: 6.0,
+            unbalanced: 7.0,
+            critical_dt: 8.0,
+            detached_blocks: 9,
+            slipped_joints: 10,
+            failed_blocks: 11,
+        };
+        hold(&format!("{:?}", totals(&sums)), &TOTALS, &sums, "Totals");
     }
 }

@@ -1,8 +1,9 @@
 //! Getters. What the model computes for all outputs at once is kept until it moves.
 
-use enmm::cosimulation::{EventKind, PortState, Totals};
+use enmm::cosimulation::{EventKind, PortState, TOTALS, Totals};
 use enmm::geometry::Vector;
 use enmm::model::BlockState;
+use enmm::state::ENERGIES;
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};
@@ -143,9 +144,7 @@ impl Instance {
     fn total(&mut self, total: Total) -> f64 {
         let model = &self.model;
         let last = model.simulation().state().events.list.len().checked_sub(1).and_then(|k| model.events().nth(k));
-        let slope = model.simulation().model();
         match total {
-            Total::CriticalDt => slope.critical_dt,
             Total::InternalDt => model.internal_step(),
             Total::EventCount => model.events().len() as f64,
             Total::LastEventTime => last.map_or(0.0, |event| self.experiment.start + event.time),
@@ -153,7 +152,8 @@ impl Instance {
             Total::LastEventSubject => {
                 last.filter(|event| event.subject != u32::MAX).map_or(-1.0, |event| f64::from(event.subject))
             }
-            _ => of_totals(self.cache.totals.get_or_insert_with(|| model.totals()), total),
+            Total::Energy(k) => (ENERGIES[k].get)(&self.cache.totals.get_or_insert_with(|| model.totals()).ledger),
+            Total::Extreme(k) => (TOTALS[k].get)(self.cache.totals.get_or_insert_with(|| model.totals())),
         }
     }
 }
@@ -208,33 +208,5 @@ fn of_block(block: &BlockState, motion: Motion) -> f64 {
         Motion::Penetration => block.penetration_max,
         Motion::ContactCount => f64::from(block.contact_count),
         Motion::ContactForce(_) | Motion::NormalForce | Motion::ShearForce | Motion::Slip => 0.0,
-    }
-}
-
-fn of_totals(totals: &Totals, total: Total) -> f64 {
-    let ledger = &totals.ledger;
-    match total {
-        Total::KineticEnergy => ledger.kinetic,
-        Total::StrainEnergy => ledger.strain,
-        Total::PotentialEnergy => ledger.potential,
-        Total::StoredEnergy => ledger.stored,
-        Total::FrictionHeat => ledger.friction,
-        Total::DampingLoss => ledger.damping,
-        Total::YieldingLoss => ledger.yielding,
-        Total::BoltWork => ledger.bolt_work,
-        Total::Radiation => ledger.radiation,
-        Total::ExternalWork => ledger.external_work,
-        Total::EnergyResidual => ledger.residual(),
-        Total::DisplacementMax => totals.displacement_max,
-        Total::VelocityMax => totals.velocity_max,
-        Total::PenetrationMax => totals.penetration_max,
-        Total::UnbalancedRatio => totals.unbalanced,
-        Total::OpenContacts => f64::from(totals.open_contacts),
-        Total::SlidingContacts => f64::from(totals.slipping_contacts),
-        Total::LockedContacts => f64::from(totals.locked_contacts),
-        Total::DetachedBlocks => f64::from(totals.detached_blocks),
-        Total::SlippedJoints => f64::from(totals.slipped_joints),
-        Total::FailedBlocks => f64::from(totals.failed_blocks),
-        _ => 0.0,
     }
 }

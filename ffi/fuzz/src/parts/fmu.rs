@@ -8,7 +8,7 @@ use engine::cosimulation::Cosimulation;
 use engine::io::{LoadedCase, parse_case};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;
-use enmm_fmi::table::{Causality, Quantity, Table, Total, Type, Version};
+use enmm_fmi::table::{Causality, Table, Type, Version};
 use enmm_fmi2 as fmi2;
 use enmm_fmi3 as fmi3;
 
@@ -60,9 +60,9 @@ impl Fmu {
 
     /// Outputs that must be finite: all but the net force over an applied one that may be next to nothing.
     pub fn outputs(&self) -> Vec<(u32, usize)> {
-        let ratio = Quantity::Total(Total::UnbalancedRatio);
         let list = self.table.variables.iter();
-        let list = list.filter(|v| v.causality == Causality::Output && v.kind == Type::Real && v.quantity != ratio);
+        let list =
+            list.filter(|v| v.causality == Causality::Output && v.kind == Type::Real && v.name != "unbalanced_ratio");
         list.map(|v| (v.reference, v.size())).collect()
     }
 }

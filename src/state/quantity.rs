@@ -1,0 +1,31 @@
+//! A number that outputs show: its names, unit, meaning and value, stated once for all files and interfaces.
+
+/// A number that outputs show of a `T`.
+#[derive(Debug, Clone, Copy)]
+pub struct Quantity<T> {
+    /// Name among its like: a field in C and Python, a key in `summary.json`.
+    pub name: &'static str,
+    /// Name among all others: a column of `history.csv`, a variable of an FMU.
+    pub column: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// What it is, in a line.
+    pub text: &'static str,
+    /// Whether it counts something.
+    pub is_count: bool,
+    /// Its value.
+    pub get: fn(&T) -> f64,
+}
+
+impl<T> Quantity<T> {
+    /// A number with a unit.
+    pub const fn new(names: [&'static str; 2], unit: &'static str, text: &'static str, get: fn(&T) -> f64) -> Self {
+        let [name, column] = names;
+        Self { name, column, unit, text, is_count: false, get }
+    }
+
+    /// A count, which has the same name everywhere.
+    pub const fn count(name: &'static str, text: &'static str, get: fn(&T) -> f64) -> Self {
+        Self { name, column: name, unit: "", text, is_count: true, get }
+    }
+}
