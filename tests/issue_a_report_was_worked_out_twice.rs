@@ -1,12 +1,11 @@
 //! A report on a state costs a step. It is worked out once for every state, and anew whenever the state, its inputs or
 //! its stage have changed: nothing that is kept is ever old.
 
-mod common;
-
+use std::path::Path;
 use std::time::Instant;
 
-use common::simulation;
 use enmm::geometry::Vector;
+use enmm::io::parse_case;
 use enmm::model::Simulation;
 
 const CASE: &str = r#"
@@ -36,6 +35,11 @@ kind = "dynamic"
 duration = 1.0
 "#;
 
+fn built() -> Simulation {
+    let loaded = parse_case(CASE, "two.toml", Path::new(".")).unwrap_or_else(|error| panic!("{error}"));
+    Simulation::new(loaded.case).unwrap_or_else(|invalid| panic!("{}: {}", invalid.key, invalid.message))
+}
+
 /// What is told now is what a copy without anything kept tells.
 fn is_of_now(simulation: &Simulation, after: &str) {
     let mut copy = simulation.clone();
@@ -46,7 +50,7 @@ fn is_of_now(simulation: &Simulation, after: &str) {
 
 #[test]
 fn a_report_is_always_that_of_the_state_now() {
-    let mut simulation = simulation(CASE);
+    let mut simulation = built();
     let start = simulation.state().clone();
     is_of_now(&simulation, "the start");
     let first = simulation.report();
@@ -68,11 +72,14 @@ fn a_report_is_always_that_of_the_state_now() {
 /// Half of a first look is far more than a copy of some numbers takes.
 #[test]
 fn a_second_look_costs_nothing() {
-    let simulation = simulation(CASE);
-    let looked = [(); 2].map(|()| {
+    let simulation = built();
+    let look = || {
         let clock = Instant::now();
         let _ = simulation.report();
         clock.elapsed()
-    });
-    assert!(looked[1] < looked[0] / 2, "{looked:?}");
+    };
+    let first = look();
+    // The quickest of some: a busy machine may hold one of them up.
+    let again = (0..20).map(|_| look()).min().unwrap_or(first);
+    assert!(again < first / 2, "{again:?} after {first:?}");
 }
