@@ -20,6 +20,8 @@ pub use narrow_phase::{
     AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, PenetratingContacts, entrance_edges,
 };
 pub use pair::Pair;
+#[doc(hidden)]
+pub use solver::reference;
 pub use solver::{BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};

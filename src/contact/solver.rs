@@ -2,6 +2,8 @@
 
 mod anchor;
 mod order;
+#[doc(hidden)]
+pub mod reference;
 mod subdomain;
 mod support;
 mod wide_contact;

@@ -1,0 +1,129 @@
+//! Claim: the contact solver that steps use finds what plain Gauss–Seidel over the equations of theory §5 finds.
+
+mod common;
+
+use common::simulation;
+use enmm::contact::{ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
+use enmm::model::Simulation;
+
+/// Both solvers sweep until no force changes by more than this share of itself.
+const SETTLED: f64 = 1e-13;
+/// Forces and velocities may then differ by what is left of a change that decays by some per cent in each sweep.
+const TOLERANCE: f64 = 1e-9;
+
+/// A slope in 13 blocks on joints with cohesion and tension; the master joint is curved in spring and strength. It
+/// rests, then loses its strength and fails.
+const SLOPE: &str = r#"
+title = "a slope on joints"
+[domain]
+outline = [[0, 0], [60, 0], [60, 40], [34, 40], [16, 10], [0, 10]]
+joint_law = "joint"
+[mesh]
+size = 5.0
+angle_deg = 7.0
+[[joint]]
+points = [[15, 8], [62, 37]]
+law = "master"
+[[joint_set]]
+dip_deg = 33.0
+spacing = 6.1
+spacing_sd = 0.5
+seed = 11
+region = [[15, 9], [33, 41], [58, 41]]
+[[joint_set]]
+dip_deg = 118.0
+spacing = 6.3
+spacing_sd = 0.6
+seed = 12
+region = [[15, 9], [33, 41], [58, 41]]
+[rock.gneiss]
+density = 2650
+young = 5e9
+poisson = 0.25
+[joint_law.joint]
+friction_deg = 45
+cohesion = 2e4
+tension = 1e4
+[joint_law.master]
+kind = "barton_bandis"
+friction_deg = 28.0
+jrc = 10.0
+jcs = 60e6
+[[fix]]
+edge = [[0, 0], [60, 0]]
+[[stage]]
+name = "gravity"
+kind = "static"
+duration = 8.0
+[[stage]]
+name = "failure"
+kind = "dynamic"
+duration = 3.0
+damping = 0.1
+[[stage.law]]
+law = "joint"
+friction_deg = 8
+cohesion = 0
+tension = 0
+[[stage.law]]
+law = "master"
+friction_deg = 8
+"#;
+
+/// Solves the contacts of the next step in both ways; returns how many are open, slip and lock.
+fn compare(simulation: &Simulation) -> [usize; 3] {
+    let (model, (state, mut workspace)) = (simulation.model(), simulation.look_ahead());
+    let (dt, masses) = (model.dt, &workspace.mass_matrix);
+    let (kick, theta) = (0.5 * (state.dt_last + dt), model.theta);
+    let options = SolverOptions { dt, kick, theta, tolerance: SETTLED, sweeps_max: 100_000, serial: true };
+    let mut plain = workspace.contacts.clone();
+    assert!(plain.iter().any(|contact| contact.is_curved()) || state.stage > 0, "no contact of the master joint");
+    let (expected, report) = reference::solve(masses, &options, &mut plain);
+    assert!(report.unsettled <= SETTLED, "the reference has not settled: {report:?}");
+
+    let mut solver = OpenClose::default();
+    solver.prepare(masses, &[], &[]);
+    let near_pairs = &state.neighbours.pairs;
+    solver.arrange(&model.boundary, near_pairs, masses, &model.covers.block_covers, &workspace.contacts);
+    let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
+    let report = solver.run(masses, &options, &mut workspace.contacts, &mut others);
+    assert!(report.unsettled <= SETTLED, "the solver has not settled: {report:?}");
+    solver.impulses(masses, &mut workspace.increment, &mut workspace.push);
+
+    let largest = plain.iter().map(|contact| contact.history.normal_force).fold(0.0, f64::max);
+    for (k, (found, plain)) in workspace.contacts.iter().zip(&plain).enumerate() {
+        let (found, plain) = (&found.history, &plain.history);
+        let apart = (found.normal_force - plain.normal_force).hypot(found.shear_force - plain.shear_force);
+        assert!(apart <= TOLERANCE * largest, "contact {k}: {found:?} instead of {plain:?}");
+        assert_eq!(found.state, plain.state, "contact {k}: {found:?} instead of {plain:?}");
+    }
+    let fastest = expected.increment.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    for (i, (found, plain)) in workspace.increment.iter().zip(&expected.increment).enumerate() {
+        assert!((found - plain).norm() <= TOLERANCE * fastest, "cover {i}: {found} instead of {plain}");
+    }
+    let hardest = expected.block_impulse.iter().map(|b| b.impulse.norm()).fold(0.0, f64::max);
+    for (block, (found, plain)) in workspace.push.iter().zip(&expected.block_impulse).enumerate() {
+        let apart = (found.impulse - plain.impulse).norm().max((found.weighted - plain.weighted).norm());
+        assert!(apart <= TOLERANCE * hardest, "block {block}: {found:?} instead of {plain:?}");
+        assert!((found.moment - plain.moment).abs() <= TOLERANCE * hardest * model.covers.mesh.size, "block {block}");
+    }
+    let states = [ContactState::Open, ContactState::Slip, ContactState::Lock];
+    states.map(|state| plain.iter().filter(|contact| contact.history.state == state).count())
+}
+
+#[test]
+fn the_solver_of_steps_agrees_with_the_method_written_out() {
+    let mut slope = simulation(SLOPE);
+    let mut seen = [0; 3];
+    for (steps, stage) in [(1, "load comes"), (400, "rests"), (1, "loses its strength"), (300, "fails")] {
+        if stage == "loses its strength" {
+            slope.next_stage().unwrap_or_else(|e| panic!("{e}"));
+        }
+        for _ in 0..steps {
+            slope.advance(false).unwrap_or_else(|e| panic!("{stage}: {e}"));
+        }
+        let states = compare(&slope);
+        seen = [0, 1, 2].map(|k| seen[k] + states[k]);
+    }
+    assert!(seen.iter().all(|&count| count > 20), "open, slip and lock: {seen:?}");
+}
