@@ -303,8 +303,8 @@ impl Spread<'_> {
 pub struct Own<'a> {
     /// Factor on the velocity.
     pub factor: f64,
-    /// Time (s) over which forces act.
-    pub dt: f64,
+    /// Time (s) for which forces act.
+    pub kick: f64,
     /// Body loads (m/s²) on a held block.
     pub acceleration: Vector,
     /// Row-sum masses and 1/m along x and y of a held block's covers, the latter unless all can move; none for a free
@@ -330,10 +330,10 @@ impl Own<'_> {
         (v, add): ([L::F; 2], [L::F; 2]),
         (f, mass): ([L::F; 2], L::F),
     ) -> [L::F; 2] {
-        let (factor, dt) = (lanes.splat(self.factor), lanes.splat(self.dt));
+        let (factor, kick) = (lanes.splat(self.factor), lanes.splat(self.kick));
         let mut out = [factor * v[0] + add[0], factor * v[1] + add[1]];
         let Some((row_sum, inverse)) = self.held else {
-            let share = dt / mass;
+            let share = kick / mass;
             return [out[0] + f[0] * share, out[1] + f[1] * share];
         };
         let row_sum = lanes.load_some(&row_sum[range.clone()], 0.0);
@@ -348,7 +348,8 @@ impl Own<'_> {
             }
         };
         let body = splat(lanes, self.acceleration);
-        [out[0] + (f[0] + body[0] * row_sum) * inverse[0] * dt, out[1] + (f[1] + body[1] * row_sum) * inverse[1] * dt]
+        let pushed = [f[0] + body[0] * row_sum, f[1] + body[1] * row_sum];
+        [out[0] + pushed[0] * inverse[0] * kick, out[1] + pushed[1] * inverse[1] * kick]
     }
 }
 
@@ -484,8 +485,8 @@ pub struct End<'a> {
 /// What is wanted of the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Wants {
-    /// Time (s) by which positions move.
-    pub dt: f64,
+    /// Time (s) for which covers move.
+    pub moves_for: f64,
     /// Whether contacts push the block.
     pub is_pushed: bool,
     /// Whether any increment is not zero.
@@ -507,7 +508,7 @@ impl End<'_> {
         push: &Common,
         wants: Wants,
     ) -> (WorkSums, [f64; 2], f64) {
-        let (zero, still, dt) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.dt));
+        let (zero, still, moves_for) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.moves_for));
         let (mut sums, mut row, mut fastest, mut squares, mut farthest) = ([zero; 6], [zero; 2], zero, zero, zero);
         let (push, with) = (push.shared(lanes), splat(lanes, from.velocity));
         let common = self.spread.map_or(Common::default(), |spread| *spread.common).shared(lanes);
@@ -550,7 +551,7 @@ impl End<'_> {
             let square = v[0] * v[0] + v[1] * v[1];
             (fastest, squares) = (lanes.max(square, fastest), squares + square);
             lanes.store_some_pairs(v, &mut velocity[range.clone()]);
-            let u = [u[0] + v[0] * dt, u[1] + v[1] * dt];
+            let u = [u[0] + v[0] * moves_for, u[1] + v[1] * moves_for];
             farthest = lanes.max(u[0] * u[0] + u[1] * u[1], farthest);
             lanes.store_some_pairs(u, &mut displacement[range]);
         }

@@ -203,10 +203,10 @@ impl BlockStart {
             let mean = (sums.weighted - sums.force * (mass_matrix.square[block] * share)) * share;
             let pushed = sums.force * share - mean + step.acceleration * mass_matrix.lightness;
             let spin = self.motion(mass_matrix, block).spin * torque;
-            let by_force = Common::about(pushed * step.dt, spin * step.dt, self.centre);
+            let by_force = Common::about(pushed * step.kick, spin * step.kick, self.centre);
             common.velocity += by_force.velocity;
             common.spin += by_force.spin;
-            common.weighted = sums.force * (-share * step.dt);
+            common.weighted = sums.force * (-share * step.kick);
         }
         common
     }
@@ -237,6 +237,6 @@ pub struct KickStep {
     pub acceleration: Vector,
     /// Damping; that of deformation is the block's own.
     pub damping: Damping,
-    /// Time (s) over which forces act.
-    pub dt: f64,
+    /// Time (s) for which forces act.
+    pub kick: f64,
 }

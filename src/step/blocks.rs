@@ -116,15 +116,15 @@ pub(super) struct Pass<'a> {
     pub movable: &'a [bool],
     /// Whether contacts, supports or bolts may ask for each cover.
     pub exposed: &'a [bool],
-    /// Time (s) over which forces act.
-    pub dt: f64,
+    /// Time (s) for which forces act.
+    pub kick: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
 }
 
 impl Pass<'_> {
     fn step(&self, block: usize) -> KickStep {
-        KickStep { acceleration: self.acceleration, damping: self.damping[block], dt: self.dt }
+        KickStep { acceleration: self.acceleration, damping: self.damping[block], kick: self.kick }
     }
 
     fn span(&self, block: usize, covers: Range<usize>) -> Span<'_> {
@@ -150,7 +150,7 @@ impl Pass<'_> {
         };
         Own {
             factor,
-            dt: self.dt,
+            kick: self.kick,
             acceleration: self.acceleration,
             held: held.then(|| {
                 (&self.mass_matrix.row_sum[covers.clone()], inverse(self.mass_matrix, self.movable[chunk], covers))
@@ -459,8 +459,8 @@ pub(super) struct Finish<'a> {
     pub movable: &'a [bool],
     /// Whether contacts, supports or bolts may ask for each cover.
     pub exposed: &'a [bool],
-    /// Time (s) by which positions move.
-    pub dt: f64,
+    /// Time (s) for which covers move now: 0 where a report wants the positions before.
+    pub moves_for: f64,
     /// Whether the work of body loads is asked for.
     pub is_loaded: bool,
     pub grain: usize,
@@ -542,7 +542,8 @@ impl Finish<'_> {
         }
         let is_damped = is_damping(self.damping[block]);
         let bits = end.increment.iter().fold(0, |bits, v| bits | v.x.to_bits() | v.y.to_bits());
-        let wants = Wants { dt: self.dt, is_pushed, is_touched: bits != 0, is_damped, is_loaded: self.is_loaded };
+        let wants =
+            Wants { moves_for: self.moves_for, is_pushed, is_touched: bits != 0, is_damped, is_loaded: self.is_loaded };
         end.finish(lanes, from, &common, wants)
     }
 

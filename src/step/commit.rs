@@ -8,17 +8,18 @@ use crate::mechanics;
 use crate::state::{Ledger, Workspace};
 
 use super::blocks::{self, Finish, Finished, Totals};
-use super::{Regime, Step, StepReport, guard, report};
+use super::{Regime, Step, StepReport, StepTimes, guard, report};
 
 impl Step<'_> {
-    /// Ends a sub-step of `dt` (s); returns the report of its start when one is wanted.
-    pub(super) fn commit(&mut self, dt: f64) -> StepReport {
+    /// Ends a sub-step; returns the report of its start when one is wanted.
+    pub(super) fn commit(&mut self, times: StepTimes) -> StepReport {
+        let StepTimes { dt, .. } = times;
         let clock = Instant::now();
-        let totals = self.finish(dt);
-        self.settle_contacts(dt);
-        let works = self.works(dt, &totals);
-        let report = if self.report { self.report(dt, &works) } else { StepReport::default() };
-        self.capture_stage_force(dt);
+        let totals = self.finish(times);
+        self.settle_contacts(times);
+        let works = self.works(times, &totals);
+        let report = if self.report { self.report(times, &works) } else { StepReport::default() };
+        self.capture_stage_force(times.kick);
         self.commit_columns(dt);
         if self.report {
             self.drift(dt);
@@ -38,10 +39,10 @@ impl Step<'_> {
         report
     }
 
-    /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers for `dt` (s) unless a
-    /// report wants the positions before.
-    fn finish(&mut self, dt: f64) -> Totals {
-        let is_loaded = self.extra(dt) != Vector::zeros();
+    /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers unless a report wants the
+    /// positions before.
+    fn finish(&mut self, StepTimes { dt, window, .. }: StepTimes) -> Totals {
+        let is_loaded = self.extra(window) != Vector::zeros();
         let (model, state) = (self.model, &mut *self.state);
         let Workspace {
             mass_matrix,
@@ -68,7 +69,7 @@ impl Step<'_> {
             damping,
             movable,
             exposed,
-            dt: if self.report { 0.0 } else { dt },
+            moves_for: if self.report { 0.0 } else { dt },
             is_loaded,
             grain: blocks::grain(*serial),
         };
@@ -102,7 +103,7 @@ impl Step<'_> {
     }
 
     /// Energies at the start of this sub-step and the unbalanced ratio.
-    fn report(&mut self, dt: f64, works: &Ledger) -> StepReport {
+    fn report(&mut self, times: StepTimes, works: &Ledger) -> StepReport {
         self.fill_damped();
         let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
         let kinetic =
@@ -118,9 +119,9 @@ impl Step<'_> {
         let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
         StepReport {
             time: self.time,
-            dt,
+            dt: times.dt,
             ledger,
-            unbalanced: self.unbalanced(dt),
+            unbalanced: self.unbalanced(times),
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
             penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
@@ -129,29 +130,28 @@ impl Step<'_> {
     }
 
     /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
-    fn unbalanced(&self, dt: f64) -> f64 {
+    fn unbalanced(&self, StepTimes { kick, window, .. }: StepTimes) -> f64 {
         let (mass_matrix, workspace) = (&self.model.mass_matrix, &*self.workspace);
-        let kick_dt = 0.5 * (self.state.dt_last + dt);
-        let acceleration = self.acceleration(dt);
+        let acceleration = self.acceleration(window);
         let (mut net, mut applied) = (0.0, 0.0);
         for i in 0..mass_matrix.mass.len() {
-            net += ((workspace.predicted[i] - workspace.damped[i]) * (mass_matrix.mass[i] / kick_dt)).norm_squared();
+            net += ((workspace.predicted[i] - workspace.damped[i]) * (mass_matrix.mass[i] / kick)).norm_squared();
             applied += (workspace.load_force[i] + acceleration * mass_matrix.row_sum[i]).norm_squared();
         }
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
         report::unbalanced(net, applied.max(stage)).sqrt()
     }
 
-    /// The forces out of balance in the first step of a static stage that begins under full load.
-    fn capture_stage_force(&mut self, dt: f64) {
+    /// The forces out of balance in the first step of a static stage that begins under full load; they acted for `kick`
+    /// (s).
+    fn capture_stage_force(&mut self, kick: f64) {
         if self.state.stage_step > 0 || !matches!(self.regime, Regime::Static { ramp: 0.0 }) {
             return;
         }
         self.fill_damped();
-        let kick_dt = 0.5 * (self.state.dt_last + dt);
         let workspace = &*self.workspace;
         for (i, force) in self.state.stage_force.iter_mut().enumerate() {
-            *force = (workspace.predicted[i] - workspace.damped[i]) * (self.model.mass_matrix.mass[i] / kick_dt);
+            *force = (workspace.predicted[i] - workspace.damped[i]) * (self.model.mass_matrix.mass[i] / kick);
         }
     }
 }

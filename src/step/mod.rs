@@ -11,6 +11,7 @@ mod prepare;
 mod quiet;
 mod report;
 mod settle;
+mod times;
 mod touch;
 mod works;
 mod yielding;
@@ -25,6 +26,7 @@ use crate::contact::{SolverReport, VertexEdge};
 use crate::mechanics::Damping;
 use crate::state::{Model, State, Workspace};
 
+use times::{StepTimes, Window};
 use touch::CONTACTS;
 
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
@@ -126,8 +128,9 @@ pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) ->
     if model.implicit.is_some() {
         step.implicit_contacts(dt);
     } else {
-        step.set_out(dt);
-        step.touch(dt);
+        let times = step.times(dt);
+        step.set_out(times);
+        step.touch(times);
     }
     (state, workspace)
 }
@@ -141,8 +144,9 @@ pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, 
         step.implicit_contacts(dt);
         return workspace.contacts.iter().for_each(see);
     }
-    step.set_out(dt);
-    step.entrance_by_pieces(dt, see);
+    let times = step.times(dt);
+    step.set_out(times);
+    step.entrance_by_pieces(times, see);
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
@@ -202,10 +206,11 @@ impl Step<'_> {
         if let Some(implicit) = &model.implicit {
             return self.implicit_interval(implicit, dt);
         }
-        self.set_out(dt);
-        self.touch(dt);
-        self.answer(dt);
-        let swept = self.open_close(dt);
+        let times = self.times(dt);
+        self.set_out(times);
+        self.touch(times);
+        self.answer(times);
+        let swept = self.open_close(times);
         if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
             self.state.counters.halved += 1;
             let first = self.interval(0.5 * dt, halvings + 1);
@@ -214,27 +219,27 @@ impl Step<'_> {
             return first;
         }
         self.count(dt, &swept);
-        self.commit(dt)
+        self.commit(times)
     }
 
-    /// Positions, near pairs, yielding and predicted velocities of a step of `dt` (s).
-    fn set_out(&mut self, dt: f64) {
+    /// Positions, near pairs, yielding and predicted velocities of a sub-step.
+    fn set_out(&mut self, times: StepTimes) {
         self.locate();
         self.search();
         self.yield_rock();
-        self.predict(dt);
+        self.predict(times);
     }
 
-    /// The contacts of a step of `dt` (s), judged piece by piece: all together they can be larger than the model. The
+    /// The contacts of a sub-step, judged piece by piece: all together they can be larger than the model. The
     /// near pairs of the state are spoilt.
-    fn entrance_by_pieces(&mut self, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
+    fn entrance_by_pieces(&mut self, times: StepTimes, see: &mut dyn FnMut(&VertexEdge)) {
         let all = std::mem::take(&mut self.state.neighbours.pairs);
         let mut rest = all.as_slice();
         while let Some(last) = rest.get(PIECE).or(rest.last()) {
             let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
             self.state.neighbours.pairs.clear();
             self.state.neighbours.pairs.extend_from_slice(piece);
-            self.touch(dt);
+            self.touch(times);
             self.workspace.contacts.iter().for_each(&mut *see);
             rest = others;
         }

@@ -7,7 +7,7 @@ use crate::mechanics::Damping;
 use crate::state::Workspace;
 
 use super::blocks::KickOut;
-use super::{DECAY_MAX, Regime, Step, applied, blocks, ramp, yielding};
+use super::{DECAY_MAX, Regime, Step, StepTimes, Window, applied, blocks, ramp, yielding};
 
 impl Step<'_> {
     /// Plastic strain at the current displacements.
@@ -18,13 +18,12 @@ impl Step<'_> {
     }
 
     /// Internal forces, loads and the kick of every block without contact forces.
-    pub(super) fn predict(&mut self, dt: f64) {
+    pub(super) fn predict(&mut self, times: StepTimes) {
         let clock = Instant::now();
-        let kick_dt = 0.5 * (self.state.dt_last + dt);
         self.load();
-        self.damping = self.damping_of(dt);
+        self.damping = self.damping_of(times.dt);
         let (acceleration, grain, is_loaded) =
-            (self.acceleration(dt), blocks::grain(self.workspace.serial), self.workspace.is_loaded);
+            (self.acceleration(times.window), blocks::grain(self.workspace.serial), self.workspace.is_loaded);
         self.damp_blocks();
         let Workspace { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
             &mut *self.workspace;
@@ -36,13 +35,13 @@ impl Step<'_> {
             damping,
             movable,
             exposed,
-            dt: kick_dt,
+            kick: times.kick,
             grain,
             load_force: if is_loaded { load_force } else { &[] },
         };
         pass.kick(&mut KickOut { predicted, motion, start, sums });
         self.workspace.speed_max = self.workspace.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
-        self.kick_columns(dt);
+        self.kick_columns(times);
         for (spin, motion) in self.workspace.mass_matrix.spin.iter_mut().zip(&self.workspace.motion) {
             *spin = motion.spin;
         }
@@ -74,9 +73,9 @@ impl Step<'_> {
         }
     }
 
-    /// Acceleration of all rock (m/s²) in a step of `dt` (s).
-    pub(super) fn acceleration(&self, dt: f64) -> Vector {
-        let base = applied::base_motion(self.model, self.regime, self.state, self.kick_of(dt));
+    /// Acceleration of all rock (m/s²) while forces act.
+    pub(super) fn acceleration(&self, window: Window) -> Vector {
+        let base = applied::base_motion(self.model, self.regime, self.state, window);
         applied::acceleration(self.model, self.state, self.time) * self.ramp() - base
     }
 

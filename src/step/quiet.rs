@@ -5,8 +5,7 @@ use crate::geometry::Vector;
 use crate::mechanics::{ColumnDrive, ColumnState, Foot};
 use crate::state::{Model, State};
 
-use super::applied::{self, Kick};
-use super::{DECAY_MAX, Regime, Step};
+use super::{DECAY_MAX, Regime, Step, StepTimes, applied};
 
 /// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
@@ -43,24 +42,19 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// The interval over which the forces of a step of `dt` (s) act.
-    pub(super) fn kick_of(&self, dt: f64) -> Kick {
-        Kick { from: self.time - 0.5 * self.state.dt_last, to: self.time + 0.5 * dt }
-    }
-
-    /// Velocities of the free-field columns after a step of `dt` (s).
-    pub(super) fn kick_columns(&mut self, dt: f64) {
+    /// Velocities of the free-field columns after a sub-step.
+    pub(super) fn kick_columns(&mut self, StepTimes { dt, window, .. }: StepTimes) {
         let Regime::Dynamic { damping } = self.regime else { return };
-        let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));
-        let length = kick.to - kick.from;
+        let (model, state) = (self.model, &*self.state);
+        let kick = window.to - window.from;
         let host = state.drive.base_acceleration(state.drive.share(self.time));
-        let acceleration = -(host + applied::base_motion(model, self.regime, state, kick));
+        let acceleration = -(host + applied::base_motion(model, self.regime, state, window));
         for (k, column) in model.columns.iter().enumerate() {
             let wave = match column.foot {
                 Foot::Rigid => Vector::zeros(),
-                Foot::Quiet(quiet) => applied::wave(model, self.regime, state, kick, quiet),
+                Foot::Quiet(quiet) => applied::wave(model, self.regime, state, window, quiet),
             };
-            let drive = ColumnDrive { acceleration, wave, kick: length };
+            let drive = ColumnDrive { acceleration, wave, kick };
             let decay = |block: u32| (-(damping * dt * model.block_frequency[block as usize]).min(DECAY_MAX)).exp();
             column.kick(&state.columns[k], &drive, decay, &mut self.workspace.columns[k]);
         }
@@ -77,10 +71,10 @@ impl Step<'_> {
         }
     }
 
-    /// What the supports answer to in a step of `dt` (s): springs to the position at its end (Eq. 23), dashpots to the
+    /// What the supports answer to in a sub-step: springs to the position at its end (Eq. 23), dashpots to the
     /// mean of the velocities before and after it (Eqs. 46, 47).
-    pub(super) fn load_supports(&mut self, dt: f64) {
-        let (model, state, kick) = (self.model, &*self.state, self.kick_of(dt));
+    pub(super) fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
+        let (model, state) = (self.model, &*self.state);
         let regime = self.regime;
         let workspace = &mut *self.workspace;
         let mut wave = (u32::MAX, Vector::zeros());
@@ -97,7 +91,7 @@ impl Step<'_> {
                 continue;
             };
             if wave.0 != quiet {
-                wave = (quiet, applied::wave(model, regime, state, kick, quiet));
+                wave = (quiet, applied::wave(model, regime, state, window, quiet));
             }
             row.viscosity = 0.5 * support.stiffness;
             row.target = 2.0 * support.stiffness * wave.1.dot(&support.direction)

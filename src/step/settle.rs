@@ -7,8 +7,8 @@ use crate::contact::{ContactHistory, ContactState, JointLaw, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Workspace};
 
-use super::Step;
 use super::touch::CONTACTS;
+use super::{Step, StepTimes};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
@@ -80,13 +80,13 @@ fn contact_cache(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64
 
 impl Step<'_> {
     /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
-    pub(super) fn settle_contacts(&mut self, dt: f64) {
+    pub(super) fn settle_contacts(&mut self, StepTimes { dt, kick, .. }: StepTimes) {
         let state = &mut *self.state;
         let Workspace { contacts, predicted, outcomes, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
         let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
-        let (kick, fade) = (0.5 * (state.dt_last + dt), (-dt / OFFSET_FADE).exp());
+        let fade = (-dt / OFFSET_FADE).exp();
         let settle = |((contacts, histories), outcome)| {
             dispatch(Settle { contacts, histories, outcome, laws, velocities, dt, kick, fade });
         };

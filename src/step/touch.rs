@@ -11,7 +11,7 @@ use crate::cover::Weights;
 use crate::geometry::Point;
 use crate::state::Workspace;
 
-use super::{Regime, Step};
+use super::{Regime, Step, StepTimes};
 
 /// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
 const SKIN: f64 = 0.1;
@@ -72,14 +72,14 @@ impl Step<'_> {
         REACH * self.model.covers.mesh.size + 8.0 * dt * self.workspace.speed_max
     }
 
-    /// Contacts that take part in an explicit step of `dt` (s), and how they answer.
-    pub(super) fn touch(&mut self, dt: f64) {
-        self.entrance(self.reach(dt), self.state.dt_last, Some(dt));
+    /// Contacts that take part in an explicit sub-step, and how they answer.
+    pub(super) fn touch(&mut self, times: StepTimes) {
+        self.entrance(self.reach(times.dt), self.state.dt_last, Some(times));
     }
 
-    /// Contacts nearer than `reach` (m), in an explicit step of `dt` (s) with how they answer; covers have moved for
-    /// `dt_last` (s) with the velocities of the state.
-    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, dt: Option<f64>) {
+    /// Contacts nearer than `reach` (m), with how they answer in an explicit sub-step of some `times`; covers have
+    /// moved for `dt_last` (s) with the velocities of the state.
+    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, times: Option<StepTimes>) {
         let clock = Instant::now();
         let damping = match self.regime {
             Regime::Dynamic { damping } => Some(damping),
@@ -89,7 +89,8 @@ impl Step<'_> {
         let size = model.covers.mesh.size;
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
-        let approach = |dt| Approach { predicted: &workspace.predicted, dt, kick: 0.5 * (dt_last + dt), damping };
+        let predicted = &workspace.predicted;
+        let approach = |StepTimes { dt, kick, .. }| Approach { predicted, dt, kick, damping };
         let narrow = NarrowPhase {
             boundary: &model.boundary,
             position: &workspace.position,
@@ -107,7 +108,7 @@ impl Step<'_> {
             history: &state.contacts,
             cache: &workspace.contact_cache,
             penetrating: &workspace.penetrating,
-            approach: dt.map(approach),
+            approach: times.map(approach),
             size,
             rule: model.entrance,
             flush_cosine: model.entrance.flush_cosine(),
@@ -122,10 +123,10 @@ impl Step<'_> {
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
-    /// How supports and bolts answer in a step of `dt` (s).
-    pub(super) fn answer(&mut self, dt: f64) {
+    /// How supports and bolts answer.
+    pub(super) fn answer(&mut self, times: StepTimes) {
         let clock = Instant::now();
-        self.load_supports(dt);
+        self.load_supports(times);
         self.load_bolts();
         self.workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
@@ -147,9 +148,9 @@ impl Step<'_> {
     }
 
     /// Open–close iteration on the predicted velocities.
-    pub(super) fn open_close(&mut self, dt: f64) -> SolverReport {
+    pub(super) fn open_close(&mut self, times: StepTimes) -> SolverReport {
         let clock = Instant::now();
-        let kick = 0.5 * (self.state.dt_last + dt);
+        let StepTimes { dt, kick, .. } = times;
         let (model, workspace) = (self.model, &mut *self.workspace);
         let Workspace { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = workspace;
         let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);

@@ -20,7 +20,7 @@ impl Step<'_> {
         for (mean, moved) in workspace.predicted.iter_mut().zip(&workspace.implicit.moved) {
             *mean = moved / inertia.dt;
         }
-        self.settle_contacts(inertia.dt);
+        self.settle_contacts(self.times(inertia.dt));
         self.move_covers(implicit, inertia);
         if let Regime::Dynamic { damping } = self.regime {
             works.damping += self.implicit_damp(implicit, damping, inertia);

@@ -17,7 +17,7 @@ use crate::mechanics::MassMatrix;
 use crate::state::{Implicit, Model, Rule, Workspace};
 
 use super::touch::{CUTOFF, REACH};
-use super::{Regime, Step, StepReport, applied, ramp};
+use super::{Regime, Step, StepReport, Window, applied, ramp};
 
 /// Factor on a sub-step that has not settled.
 const CUT: f64 = 0.3;
@@ -155,7 +155,7 @@ impl Step<'_> {
         let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
         let moved_for = if self.state.step > 0 { self.model.dt } else { 0.0 };
         self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), moved_for, None);
-        self.load_supports(dt);
+        self.load_supports(self.times(dt));
         let buffers = &mut self.workspace.implicit;
         buffers.forces_before.clear();
         let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
@@ -175,7 +175,7 @@ impl Step<'_> {
                 continue;
             }
             let share = ramp(self.regime, time - self.state.stage_start);
-            let whole = applied::Kick { from: self.time, to: self.time + dt };
+            let whole = Window { from: self.time, to: self.time + dt };
             let base = applied::base_motion(self.model, self.regime, self.state, whole);
             let acceleration = applied::acceleration(self.model, self.state, time) * share - base;
             for (force, mass) in force.iter_mut().zip(&self.model.mass_matrix.row_sum) {
