@@ -1,43 +1,32 @@
-//! One internal step: order of the stages, open–close iteration, damping, checks, report. Knows nothing of files.
+//! One internal step by either integrator ([`explicit`], [`implicit`]), checks, events and reports. Knows nothing of
+//! files.
 
 mod applied;
-mod blocks;
-mod commit;
+mod contacts;
 mod events;
+mod explicit;
 mod guard;
 mod implicit;
-mod predict;
+mod integrator;
 mod prepare;
 mod quiet;
 mod report;
 mod settle;
 mod times;
-mod touch;
-mod works;
-mod yielding;
 
 pub use applied::{acceleration, push_forces};
+pub(crate) use contacts::CUTOFF;
 pub use guard::{Failure, StepError};
 pub use prepare::{begin_stage, prepare};
 pub use report::{StepReport, block_motion, energies, momentum};
-pub(crate) use touch::CUTOFF;
 
-use crate::contact::{SolverReport, VertexEdge};
+use crate::contact::VertexEdge;
 use crate::mechanics::Damping;
 use crate::state::{Model, State, Workspace};
 
+use contacts::CONTACTS;
 use times::{StepTimes, Window};
-use touch::CONTACTS;
 
-/// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
-const UNSETTLED: f64 = 0.1;
-/// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
-/// of the critical step for d > 0.62.
-const DECAY_MAX: f64 = 0.3;
-/// Near pairs that are judged together, about, when contacts are only shown.
-const PIECE: usize = 1 << 16;
-/// Most times that a step is halved.
-const HALVINGS_MAX: u32 = 4;
 /// Covers from which a step is worth other threads than the caller's own.
 pub const THREADS_FROM: usize = 4096;
 
@@ -106,10 +95,7 @@ pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) ->
     let rest = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
     step.report = true;
-    match &model.implicit {
-        Some(implicit) => step.implicit_outlook(implicit, rest),
-        None => step.interval(rest, 0),
-    }
+    integrator::of(model).begin(&mut step, rest)
 }
 
 /// A copy of the state, with buffers of its own.
@@ -125,13 +111,7 @@ pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) ->
     let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    if model.implicit.is_some() {
-        step.implicit_contacts(dt);
-    } else {
-        let times = step.times(dt);
-        step.set_out(times);
-        step.touch(times);
-    }
+    integrator::of(model).judge(&mut step, dt);
     (state, workspace)
 }
 
@@ -140,13 +120,7 @@ pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, 
     let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    if model.implicit.is_some() {
-        step.implicit_contacts(dt);
-        return workspace.contacts.iter().for_each(see);
-    }
-    let times = step.times(dt);
-    step.set_out(times);
-    step.entrance_by_pieces(times, see);
+    integrator::of(model).each_contact(&mut step, dt, see);
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
@@ -197,62 +171,11 @@ impl Step<'_> {
     /// dearer for every parallel part by itself.
     fn on_threads(&mut self, dt: f64) -> StepReport {
         let is_small = self.model.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
-        if self.workspace.serial || is_small { self.interval(dt, 0) } else { rayon::scope(|_| self.interval(dt, 0)) }
-    }
-
-    /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
-    fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
-        let model = self.model;
-        if let Some(implicit) = &model.implicit {
-            return self.implicit_interval(implicit, dt);
+        let integrator = integrator::of(self.model);
+        if self.workspace.serial || is_small {
+            integrator.cover(self, dt)
+        } else {
+            rayon::scope(|_| integrator.cover(self, dt))
         }
-        let times = self.times(dt);
-        self.set_out(times);
-        self.touch(times);
-        self.answer(times);
-        let swept = self.open_close(times);
-        if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
-            self.state.counters.halved += 1;
-            let first = self.interval(0.5 * dt, halvings + 1);
-            self.report = false;
-            self.interval(0.5 * dt, halvings + 1);
-            return first;
-        }
-        self.count(dt, &swept);
-        self.commit(times)
-    }
-
-    /// Positions, near pairs, yielding and predicted velocities of a sub-step.
-    fn set_out(&mut self, times: StepTimes) {
-        self.locate();
-        self.search();
-        self.yield_rock();
-        self.predict(times);
-    }
-
-    /// The contacts of a sub-step, judged piece by piece: all together they can be larger than the model. The
-    /// near pairs of the state are spoilt.
-    fn entrance_by_pieces(&mut self, times: StepTimes, see: &mut dyn FnMut(&VertexEdge)) {
-        let all = std::mem::take(&mut self.state.neighbours.pairs);
-        let mut rest = all.as_slice();
-        while let Some(last) = rest.get(PIECE).or(rest.last()) {
-            let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
-            self.state.neighbours.pairs.clear();
-            self.state.neighbours.pairs.extend_from_slice(piece);
-            self.touch(times);
-            self.workspace.contacts.iter().for_each(&mut *see);
-            rest = others;
-        }
-    }
-
-    fn count(&mut self, dt: f64, swept: &SolverReport) {
-        let counters = &mut self.state.counters;
-        counters.substeps += 1;
-        counters.sweeps += u64::from(swept.sweeps);
-        counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
-        counters.unsettled += u64::from(swept.unsettled > self.model.tolerance);
-        counters.judged += swept.judged;
-        counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
-        counters.dt_max = counters.dt_max.max(dt);
     }
 }

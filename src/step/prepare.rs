@@ -4,7 +4,7 @@ use crate::contact::{Support, SupportRow};
 use crate::geometry::Vector;
 use crate::state::{Model, State, Workspace};
 
-use super::{Regime, applied, implicit, quiet};
+use super::{Regime, applied, integrator, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
@@ -26,7 +26,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     hold(model, state, workspace);
     expose(model, &mut workspace.exposed);
     workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
-    implicit::prepare(model, &workspace.mass_matrix, &mut workspace.implicit);
+    integrator::of(model).prepare(model, workspace);
 }
 
 /// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
@@ -70,8 +70,9 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
         force: state.support_force[k],
     }));
     let is_static = !state.stage_displacement.is_empty();
-    if is_static && model.implicit.is_none() && model.mass_scaling > 1.0 {
-        mass_matrix.lighten(model.mass_scaling);
+    let lightness = integrator::of(model).lightness(model);
+    if is_static && lightness > 1.0 {
+        mass_matrix.lighten(lightness);
     }
     mass_matrix.mark_fixed(&model.covers);
     workspace.damping_of = None;
@@ -88,9 +89,7 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
 pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
     if at_rest {
         state.dt_last = 0.0;
-        if model.implicit.is_some() && stage > 0 {
-            implicit::stop(model, state);
-        }
+        integrator::of(model).stop(model, state, stage);
     }
     state.acceleration.clear();
     state.static_stretch = 0.0;

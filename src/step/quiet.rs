@@ -1,11 +1,11 @@
-//! Quiet boundaries and free-field columns: springs that freeze, dashpots that take over, columns that move beside.
+//! Quiet boundaries: springs that freeze, dashpots that take over, and what supports answer to.
 
 use crate::contact::{Resistance, Support};
 use crate::geometry::Vector;
-use crate::mechanics::{ColumnDrive, ColumnState, Foot};
+use crate::mechanics::ColumnState;
 use crate::state::{Model, State};
 
-use super::{DECAY_MAX, Regime, Step, StepTimes, applied};
+use super::{Regime, Step, StepTimes, applied};
 
 /// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
@@ -42,35 +42,6 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// Velocities of the free-field columns after a sub-step.
-    pub(super) fn kick_columns(&mut self, StepTimes { dt, window, .. }: StepTimes) {
-        let Regime::Dynamic { damping } = self.regime else { return };
-        let (model, state) = (self.model, &*self.state);
-        let kick = window.to - window.from;
-        let host = state.drive.base_acceleration(state.drive.share(self.time));
-        let acceleration = -(host + applied::base_motion(model, self.regime, state, window));
-        for (k, column) in model.columns.iter().enumerate() {
-            let wave = match column.foot {
-                Foot::Rigid => Vector::zeros(),
-                Foot::Quiet(quiet) => applied::wave(model, self.regime, state, window, quiet),
-            };
-            let drive = ColumnDrive { acceleration, wave, kick };
-            let decay = |block: u32| (-(damping * dt * model.block_frequency[block as usize]).min(DECAY_MAX)).exp();
-            column.kick(&state.columns[k], &drive, decay, &mut self.workspace.columns[k]);
-        }
-    }
-
-    /// Ends a step of the free-field columns.
-    pub(super) fn commit_columns(&mut self, dt: f64) {
-        if !matches!(self.regime, Regime::Dynamic { .. }) {
-            return;
-        }
-        for (column, velocity) in self.state.columns.iter_mut().zip(&self.workspace.columns) {
-            column.velocity.copy_from_slice(velocity);
-            column.displacement.iter_mut().zip(velocity).for_each(|(u, v)| *u += v * dt);
-        }
-    }
-
     /// What the supports answer to in a sub-step: springs to the position at its end (Eq. 23), dashpots to the
     /// mean of the velocities before and after it (Eqs. 46, 47).
     pub(super) fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {

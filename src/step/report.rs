@@ -2,11 +2,10 @@
 
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, MassMatrix};
+use crate::mechanics::{self, BlockCovers, MassMatrix};
 use crate::state::{Ledger, Model, State, Workspace};
 
-use super::blocks::block_covers;
-use super::{implicit, quiet};
+use super::{integrator, quiet};
 
 /// A step as seen from outside; energies hold at the step's start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -42,11 +41,8 @@ pub(super) fn speed_max(model: &Model, state: &State) -> f64 {
     (0..boundary.len()).map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
 
-/// Kinetic energy (J/m) of all blocks that can move.
+/// Kinetic energy (J/m) by lumped masses of all blocks that can move.
 pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
-    if let Some(implicit) = &model.implicit {
-        return implicit::kinetic_energy(model, implicit, mass_matrix, velocity);
-    }
     (0..model.covers.block_count())
         .filter(|&b| !mass_matrix.fixed[b])
         .map(|b| mechanics::kinetic_energy(&block_covers(model, mass_matrix, displacement, velocity, b)))
@@ -96,7 +92,7 @@ pub(super) fn bolt_stored(model: &Model, state: &State) -> f64 {
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
 pub fn energies(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledger {
     Ledger {
-        kinetic: kinetic(model, mass_matrix, &state.displacement, &state.velocity),
+        kinetic: integrator::of(model).kinetic(model, mass_matrix, &state.displacement, &state.velocity),
         strain: strain(model, state),
         potential: potential(model, state),
         ..state.ledger
@@ -121,4 +117,16 @@ pub fn block_motion(model: &Model, state: &State, mass_matrix: &MassMatrix, bloc
     let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
     let kinetic = if mass_matrix.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
     (centre, velocity, spin, kinetic)
+}
+
+/// One block's slices: for its energy, momentum and damping.
+pub(super) fn block_covers<'a>(
+    model: &'a Model,
+    mass_matrix: &'a MassMatrix,
+    displacement: &'a [Vector],
+    velocity: &'a [Vector],
+    block: usize,
+) -> BlockCovers<'a> {
+    let range = model.covers.covers_of(block);
+    BlockCovers { mass_matrix, block, range, star: &model.covers.star_position, displacement, velocity }
 }

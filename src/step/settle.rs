@@ -7,7 +7,7 @@ use crate::contact::{ContactHistory, ContactState, JointLaw, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Workspace};
 
-use super::touch::CONTACTS;
+use super::contacts::CONTACTS;
 use super::{Step, StepTimes};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.

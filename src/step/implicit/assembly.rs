@@ -64,7 +64,7 @@ impl Step<'_> {
     /// Assembles the matrix at the slots reached and the contacts as they are judged, and factorises it.
     pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
         self.workspace.implicit.matrix.zero();
-        self.add_elements(inertia.factor, 1.0);
+        self.add_elements(inertia.element_mass, inertia.factor, 1.0);
         self.add_contacts();
         self.add_supports();
         self.finish_matrix()
@@ -81,10 +81,9 @@ impl Step<'_> {
     }
 
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
-    pub(super) fn add_elements(&mut self, mass: f64, stiffness: f64) {
+    pub(super) fn add_elements(&mut self, element_mass: &[[f64; 6]], mass: f64, stiffness: f64) {
         let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
-        let Some(implicit) = &model.implicit else { return };
         for (e, slots) in buffers.element_slots.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
@@ -96,8 +95,8 @@ impl Step<'_> {
             for (k, [a, b]) in PAIRS.into_iter().enumerate() {
                 let (row, column) = if ids[a] >= ids[b] { (a, b) } else { (b, a) };
                 let mut block = stiffness_block(area, rock, turned[row], turned[column]);
-                block[0] += mass * implicit.element_mass[e][k];
-                block[3] += mass * implicit.element_mass[e][k];
+                block[0] += mass * element_mass[e][k];
+                block[3] += mass * element_mass[e][k];
                 buffers.matrix.add(slots[k], ids[column], block, a == b);
             }
         }

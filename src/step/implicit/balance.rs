@@ -71,15 +71,12 @@ impl Step<'_> {
         for (sum, (applied, internal)) in buffers.residual.iter_mut().zip(bearing_and_rest) {
             *sum += applied + internal;
         }
-        if let Some(implicit) = &model.implicit {
-            for (mass, ids) in implicit.element_mass.iter().zip(&model.covers.element_covers) {
-                push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
-            }
-            if !inertia.rests {
-                let momentum =
-                    buffers.field.iter().zip(&model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
-                scale = scale.max(momentum.sum::<f64>().sqrt());
-            }
+        for (mass, ids) in inertia.element_mass.iter().zip(&model.covers.element_covers) {
+            push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+        }
+        if !inertia.rests {
+            let momentum = buffers.field.iter().zip(&model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
+            scale = scale.max(momentum.sum::<f64>().sqrt());
         }
         self.drop_held();
         let buffers = &self.workspace.implicit;

@@ -11,9 +11,7 @@ use crate::step::report::{potential, speed_max, stored, strain, unbalanced};
 
 impl Step<'_> {
     /// Ends a sub-step with the forces and positions that the iteration left.
-    pub(super) fn implicit_commit(&mut self, inertia: &Inertia) {
-        let model = self.model;
-        let Some(implicit) = &model.implicit else { return };
+    pub(super) fn implicit_commit(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let clock = Instant::now();
         let mut works = self.implicit_works(implicit, inertia);
         let workspace = &mut *self.workspace;
@@ -105,9 +103,8 @@ impl Step<'_> {
     }
 
     /// Energies and the unbalanced ratio at the start of this sub-step.
-    pub(super) fn implicit_report(&mut self, dt: f64) -> StepReport {
+    pub(super) fn implicit_report(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let model = self.model;
-        let Some(implicit) = &model.implicit else { return StepReport::default() };
         let unbalanced = self.implicit_unbalanced();
         let (state, workspace) = (&*self.state, &*self.workspace);
         let mut ledger = state.ledger;

@@ -7,16 +7,16 @@ mod commit;
 mod motion;
 mod open_close;
 
-pub use motion::kinetic_energy;
-pub(super) use motion::stop;
-
 use std::time::Instant;
 
+use crate::contact::VertexEdge;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::{Implicit, Model, Rule, Workspace};
+use crate::state::{Implicit, Model, Rule, State, Workspace};
 
-use super::touch::{CUTOFF, REACH};
+use self::motion::kinetic_energy;
+use super::contacts::{CUTOFF, REACH};
+use super::integrator::Integrator;
 use super::{Regime, Step, StepReport, Window, applied, ramp};
 
 /// Factor on a sub-step that has not settled.
@@ -25,35 +25,69 @@ const CUT: f64 = 0.3;
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
 const REACH_STEPS: f64 = 2.0;
-/// Sizes the buffers; the matrix gets its pattern in the next step.
-pub(super) fn prepare(model: &Model, mass_matrix: &MassMatrix, workspace: &mut crate::state::ImplicitWorkspace) {
-    if model.implicit.is_none() {
-        return;
+
+impl Integrator for Implicit {
+    /// The matrix gets its pattern in the next step.
+    fn prepare(&self, model: &Model, workspace: &mut Workspace) {
+        let Workspace { mass_matrix, implicit: buffers, .. } = workspace;
+        let covers = model.covers.cover_count();
+        for field in [
+            &mut buffers.moved,
+            &mut buffers.offset,
+            &mut buffers.applied,
+            &mut buffers.applied_before,
+            &mut buffers.internal,
+            &mut buffers.internal_before,
+            &mut buffers.residual,
+            &mut buffers.field,
+        ] {
+            field.clear();
+            field.resize(covers, Vector::zeros());
+        }
+        buffers.unknowns.resize(2 * covers, 0.0);
+        buffers.held.clear();
+        buffers.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
+        buffers.any_held = buffers.held.contains(&true);
+        buffers.matrix.clear();
     }
-    let covers = model.covers.cover_count();
-    for field in [
-        &mut workspace.moved,
-        &mut workspace.offset,
-        &mut workspace.applied,
-        &mut workspace.applied_before,
-        &mut workspace.internal,
-        &mut workspace.internal_before,
-        &mut workspace.residual,
-        &mut workspace.field,
-    ] {
-        field.clear();
-        field.resize(covers, Vector::zeros());
+
+    fn stop(&self, model: &Model, state: &mut State, stage: u32) {
+        if stage > 0 {
+            motion::stop(model, self, state);
+        }
     }
-    workspace.unknowns.resize(2 * covers, 0.0);
-    workspace.held.clear();
-    workspace.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
-    workspace.any_held = workspace.held.contains(&true);
-    workspace.matrix.clear();
+
+    fn lightness(&self, _: &Model) -> f64 {
+        1.0
+    }
+
+    fn cover(&self, step: &mut Step, dt: f64) -> StepReport {
+        step.implicit_interval(self, dt)
+    }
+
+    fn begin(&self, step: &mut Step, dt: f64) -> StepReport {
+        step.implicit_begin(self, dt)
+    }
+
+    fn judge(&self, step: &mut Step, dt: f64) {
+        step.implicit_contacts(dt);
+    }
+
+    fn each_contact(&self, step: &mut Step, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
+        step.implicit_contacts(dt);
+        step.workspace.contacts.iter().for_each(see);
+    }
+
+    fn kinetic(&self, model: &Model, mass_matrix: &MassMatrix, _: &[Vector], velocity: &[Vector]) -> f64 {
+        kinetic_energy(model, self, mass_matrix, velocity)
+    }
 }
 
 /// How inertia enters a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Inertia {
+struct Inertia<'a> {
+    /// Consistent mass of each element.
+    element_mass: &'a [[f64; 6]],
     /// Length (s).
     dt: f64,
     /// Acceleration over displacement (1/s²): 1/(β·dt²).
@@ -65,13 +99,13 @@ struct Inertia {
 }
 
 impl Step<'_> {
-    fn inertia(&mut self, implicit: &Implicit, dt: f64) -> Inertia {
+    fn inertia<'a>(&mut self, implicit: &'a Implicit, dt: f64) -> Inertia<'a> {
         let (factor, end, rests) = match (self.regime, implicit.rule) {
             (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
             (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
             (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
         };
-        Inertia { dt, factor, end, rests }
+        Inertia { element_mass: &implicit.element_mass, dt, factor, end, rests }
     }
 
     /// Inertia over displacement (1/s²) of a static sub-step (Eq. 72): that of a step from rest over a time that grows
@@ -87,7 +121,7 @@ impl Step<'_> {
 
 impl Step<'_> {
     /// Covers `dt` (s) by sub-steps: one that does not settle is cut, and the rest follows.
-    pub(super) fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
+    fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let (mut left, mut part, mut cuts) = (dt, dt, 0);
         let mut first = None;
         loop {
@@ -105,18 +139,13 @@ impl Step<'_> {
                 continue;
             }
             self.state.counters.unsettled += u64::from(!settled);
-            self.implicit_commit(&inertia);
+            self.implicit_commit(implicit, &inertia);
             left -= part;
             if left <= 1e-9 * dt || self.singular {
                 return first.unwrap_or_default();
             }
             (part, cuts) = (left, 0);
         }
-    }
-
-    /// The report that the next step would give; nothing advances.
-    pub(super) fn implicit_outlook(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
-        self.implicit_begin(implicit, dt)
     }
 
     /// Near pairs, contacts, loads and forces at the start of a sub-step.
@@ -136,14 +165,14 @@ impl Step<'_> {
         }
         let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
         if trapezoidal && self.state.acceleration.is_empty() {
-            self.implicit_start_acceleration();
+            self.implicit_start_acceleration(implicit);
         }
         self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
-        if self.report { self.implicit_report(dt) } else { StepReport::default() }
+        if self.report { self.implicit_report(implicit, dt) } else { StepReport::default() }
     }
 
     /// Contacts that take part in a sub-step of `dt` (s), with the forces of the last one.
-    pub(super) fn implicit_contacts(&mut self, dt: f64) {
+    fn implicit_contacts(&mut self, dt: f64) {
         let searches = self.state.counters.searches;
         self.locate();
         self.search();

@@ -28,8 +28,7 @@ pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], blo
 }
 
 /// Takes the velocities of a static stage, which its steps do not use, and their energy, which its reports hold.
-pub fn stop(model: &Model, state: &mut State) {
-    let Some(implicit) = &model.implicit else { return };
+pub fn stop(model: &Model, implicit: &Implicit, state: &mut State) {
     let moving = (0..model.covers.block_count()).filter(|&b| !state.removed[b]);
     let energy: f64 = moving.map(|b| block_energy(model, implicit, &state.velocity, b)).sum();
     state.ledger.damping -= energy;
@@ -38,7 +37,7 @@ pub fn stop(model: &Model, state: &mut State) {
 
 impl Step<'_> {
     /// M·a = forces at the start of the sub-step, solved for a; contacts are judged by the limits that hold now.
-    pub(super) fn implicit_start_acceleration(&mut self) {
+    pub(super) fn implicit_start_acceleration(&mut self, implicit: &Implicit) {
         self.implicit_judge();
         let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
         self.workspace.implicit.forces_before.clear();
@@ -46,7 +45,7 @@ impl Step<'_> {
         self.start_balance();
         let buffers = &mut self.workspace.implicit;
         buffers.matrix.zero();
-        self.add_elements(1.0, 0.0);
+        self.add_elements(&implicit.element_mass, 1.0, 0.0);
         if self.finish_matrix().is_err() {
             self.singular = true;
         }

@@ -9,9 +9,7 @@ use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 use crate::contact::BlockImpulse;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
-use crate::mechanics::{
-    BlockCovers, BlockMotion, BlockStart, Chunk, Chunks, Damping, KickStep, MassMatrix, element_lanes,
-};
+use crate::mechanics::{BlockMotion, BlockStart, Chunk, Chunks, Damping, KickStep, MassMatrix, element_lanes};
 use crate::state::{Model, PatchSums, State};
 
 use super::DECAY_MAX;
@@ -617,16 +615,4 @@ pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Da
         }
         mass => mass,
     }
-}
-
-/// One block's slices: for its energy, momentum and damping.
-pub(super) fn block_covers<'a>(
-    model: &'a Model,
-    mass_matrix: &'a MassMatrix,
-    displacement: &'a [Vector],
-    velocity: &'a [Vector],
-    block: usize,
-) -> BlockCovers<'a> {
-    let range = model.covers.covers_of(block);
-    BlockCovers { mass_matrix, block, range, star: &model.covers.star_position, displacement, velocity }
 }

@@ -92,7 +92,7 @@ impl Step<'_> {
         let (model, state) = (self.model, &*self.state);
         let Workspace { mass_matrix, damped, .. } = &mut *self.workspace;
         for block in 0..model.covers.block_count() {
-            let covers = blocks::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
+            let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
             let out = &mut damped[model.covers.covers_of(block)];
             if mass_matrix.fixed[block] {
                 out.fill(Vector::zeros());

@@ -1,0 +1,60 @@
+//! What contacts, supports and bolts answer: who takes part in an explicit sub-step, and the open–close iteration.
+
+use std::time::Instant;
+
+use crate::contact::{BoltView, OtherConstraints, SolverOptions, SolverReport};
+use crate::state::Workspace;
+
+use super::{REACH, Step, StepTimes};
+
+impl Step<'_> {
+    /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
+    fn reach(&self, dt: f64) -> f64 {
+        REACH * self.model.covers.mesh.size + 8.0 * dt * self.workspace.speed_max
+    }
+
+    /// Contacts that take part in an explicit sub-step, and how they answer.
+    pub(super) fn touch(&mut self, times: StepTimes) {
+        self.entrance(self.reach(times.dt), self.state.dt_last, Some(times));
+    }
+
+    /// How supports and bolts answer.
+    pub(super) fn answer(&mut self, times: StepTimes) {
+        let clock = Instant::now();
+        self.load_supports(times);
+        self.load_bolts();
+        self.workspace.seconds.entrance += clock.elapsed().as_secs_f64();
+    }
+
+    /// Bolts that bear in this step.
+    fn load_bolts(&mut self) {
+        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
+        let view = BoltView {
+            star: &model.covers.star_position,
+            displacement: &state.displacement,
+            predicted: &workspace.predicted,
+            mass_matrix: &workspace.mass_matrix,
+            motion: &workspace.motion,
+        };
+        let rows = model.bolts.iter().zip(&state.bolts).enumerate();
+        let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
+        workspace.bolts.clear();
+        workspace.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
+    }
+
+    /// Open–close iteration on the predicted velocities.
+    pub(super) fn open_close(&mut self, times: StepTimes) -> SolverReport {
+        let clock = Instant::now();
+        let StepTimes { dt, kick, .. } = times;
+        let (model, workspace) = (self.model, &mut *self.workspace);
+        let Workspace { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = workspace;
+        let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
+        let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
+        let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &model.covers.block_covers);
+        open_close.arrange(&model.boundary, near_pairs, mass_matrix, block_covers, contacts);
+        let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
+        open_close.impulses(mass_matrix, increment, push);
+        workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+        swept
+    }
+}
