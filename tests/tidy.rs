@@ -15,6 +15,9 @@ const THEORY: &str = "docs/theory.md";
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
 /// What stands in guides for a path of the reader's choice.
 const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "verification/src/problems/xx.rs"];
+const GLOSSARY: &str = "docs/glossary.md";
+/// Rooms whose public types the glossary explains.
+const EXPLAINED: [&str; 3] = ["contact", "step", "mechanics"];
 /// Heads of the sections that tell a tale by names of the code.
 const TALES: &str = "## The life of a ";
 
@@ -112,6 +115,17 @@ fn names_in_the_lives_of_a_step_and_a_contact_are_those_of_the_code() {
     let code: String = files.iter().filter(|file| file.within(&["src/"])).map(|file| code_only(&file.text)).collect();
     assert!(guide.text.matches(TALES).count() == 2, "the lives of a step and of a contact");
     hold(name_problems(guide, &words(&code).into_iter().map(|(_, word, _)| word).collect()));
+}
+
+#[test]
+fn the_glossary_explains_every_public_type_of_contact_step_and_mechanics() {
+    let files = repository();
+    let glossary = files.iter().find(|file| file.path == GLOSSARY).expect("docs/glossary.md");
+    let types: Vec<String> = EXPLAINED.iter().flat_map(|room| public_types(room, &files)).collect();
+    assert!(types.len() > 60, "public types of {EXPLAINED:?}: {types:?}");
+    let code: String = files.iter().filter(|file| file.within(&["src/"])).map(|file| code_only(&file.text)).collect();
+    let known = words(&code).into_iter().map(|(_, word, _)| word).collect();
+    hold(glossary_problems(glossary, &types, &known));
 }
 
 #[test]
@@ -268,6 +282,43 @@ fn name_problems(guide: &File, known: &BTreeSet<&str>) -> Vec<String> {
         }
     }
     problems
+}
+
+/// Types that callers of a room can name: its re-exports, and what it and its public modules declare.
+fn public_types(room: &str, files: &[File]) -> BTreeSet<String> {
+    let root = format!("src/{room}/");
+    let code = |path: &str| files.iter().find(|file| file.path == path).map(|file| code_only(&file.text));
+    let head = code(&format!("{root}mod.rs")).unwrap_or_default();
+    let is_type = |word: &str| word.starts_with(char::is_uppercase) && word.contains(char::is_lowercase);
+    let uses = head.split("pub use ").skip(1).map(|rest| rest.split(';').next().unwrap_or_default());
+    let used = uses.flat_map(words).map(|(_, word, _)| word.to_owned()).filter(|word| is_type(word));
+    let modules = head.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    let inner = modules
+        .filter_map(|module| code(&format!("{root}{module}.rs")).or_else(|| code(&format!("{root}{module}/mod.rs"))));
+    let declared = inner.chain([head.clone()]).flat_map(|code| declared_types(&code)).collect::<Vec<_>>();
+    used.chain(declared).collect()
+}
+
+/// Names of the public types that code declares at the start of a line.
+fn declared_types(code: &str) -> Vec<String> {
+    let kinds = ["struct ", "enum ", "trait ", "type ", "union "];
+    let declared = |line: &str| {
+        let rest = line.strip_prefix("pub ")?;
+        let name = kinds.iter().find_map(|kind| rest.strip_prefix(kind))?;
+        words(name).first().map(|&(_, word, _)| word.to_owned())
+    };
+    code.lines().filter_map(declared).collect()
+}
+
+/// Types without a row, and rows whose name the code does not have: a row begins with the name between backticks.
+fn glossary_problems(glossary: &File, types: &[String], known: &BTreeSet<&str>) -> Vec<String> {
+    let name = |line| str::strip_prefix(line, "| `").and_then(|rest| rest.split_once("` |")).map(|(name, _)| name);
+    let rows: Vec<(usize, &str)> = numbered(&glossary.text).filter_map(|(k, line)| Some((k, name(line)?))).collect();
+    let explained: BTreeSet<&str> = rows.iter().map(|&(_, name)| name).collect();
+    let missing = types.iter().filter(|name| !explained.contains(name.as_str()));
+    let missing = missing.map(|name| format!("{}: no row for `{name}`", glossary.path));
+    let unknown = rows.iter().filter(|(_, name)| !known.contains(name));
+    missing.chain(unknown.map(|(k, name)| format!("{}:{k}: `{name}` is no name in src/", glossary.path))).collect()
 }
 
 /// Sources and documents may name the data that is shared; the data itself stays outside.
@@ -658,6 +709,22 @@ fn names_rule_is_seen_failing() {
     let wrong = |text: &str| name_problems(&file("ARCHITECTURE.md", text), &known).len();
     assert_eq!(wrong("## The life of a step\n`Step::interval`, `interval`, `a = b`, `src/a.rs`\n## Next\n`absent`"), 0);
     assert_eq!(wrong("## The life of a step\n`Step::absent` and `Absent`"), 2);
+}
+
+#[test]
+fn glossary_rule_is_seen_failing() {
+    let files = [
+        file("src/step/mod.rs", "pub mod parts;\npub use a::{B, C as Dd, run, CUTOFF};\npub enum Kind {}\nstruct Own;"),
+        file("src/step/parts.rs", "pub struct Part<'a> {}\npub(super) struct Hidden;\n// pub struct Comment;"),
+        file("src/step/a.rs", "pub struct Unseen;"),
+    ];
+    let types: Vec<String> = public_types("step", &files).into_iter().collect();
+    assert_eq!(types, ["Dd", "Kind", "Part"]);
+    let known = BTreeSet::from(["Dd", "Kind", "Part"]);
+    let wrong = |text: &str| glossary_problems(&file(GLOSSARY, text), &types, &known).len();
+    assert_eq!(wrong("| `Dd` | a |\n| `Kind` | b |\n| `Part` | c |\n| word | `absent` |"), 0);
+    assert_eq!(wrong("| `Dd` | a |\n| `Kind` | b |"), 1);
+    assert_eq!(wrong("| `Dd` | a |\n| `Kind` | b |\n| `Part` | c |\n| `Gone` | d |"), 1);
 }
 
 #[test]
