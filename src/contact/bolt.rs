@@ -7,6 +7,9 @@ use crate::mechanics::MassMatrix;
 use super::Pair;
 
 /// A free length of a bar between two material points; forces per metre of depth.
+#[doc(alias = "anchor")]
+#[doc(alias = "cable")]
+#[doc(alias = "truss")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoltSegment {
     /// Bolt of the case that it belongs to.

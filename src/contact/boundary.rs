@@ -30,6 +30,8 @@ impl Default for BoundaryOptions {
 }
 
 /// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]` inside one element, rock on its left.
+#[doc(alias = "collision geometry")]
+#[doc(alias = "vertices and edges")]
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Covers of the element that carries point `k`.

@@ -19,6 +19,7 @@ use grid::Grid;
 const RUN: usize = 1024;
 
 /// A node and an edge that may meet before the next search.
+#[doc(alias = "candidate pair")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct NearPair {
     /// Node.
@@ -30,6 +31,8 @@ pub struct NearPair {
 }
 
 /// What the last search found, and where the nodes were then.
+#[doc(alias = "Verlet list")]
+#[doc(alias = "broad phase")]
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NeighbourList {
     /// Near pairs, ordered by node, side and edge.
@@ -100,6 +103,8 @@ pub struct SearchView<'a> {
 }
 
 /// Buffers of a search.
+#[doc(alias = "cell list")]
+#[doc(alias = "uniform grid")]
 #[derive(Debug, Clone, Default)]
 pub struct SearchGrid {
     grid: Grid,

@@ -5,6 +5,8 @@ use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
 /// Two material points of two blocks (or of one), as the open–close iteration needs them (Eq. 17).
+#[doc(alias = "Jacobian")]
+#[doc(alias = "anchors")]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pair {
     /// Blocks of both points.

@@ -5,6 +5,8 @@ const CENTRED: f64 = 0.25;
 
 /// What a spring asks for: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all impulses so far.
 /// Of a linear spring it is the force times 1 + `kept`, of a curved one the closure (m) that the force follows from.
+#[doc(alias = "soft constraint")]
+#[doc(alias = "penalty")]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SoftSpring<T = f64> {
     /// Force (N/m), or closure (m).
@@ -16,6 +18,7 @@ pub struct SoftSpring<T = f64> {
 }
 
 /// A spring normal or shear, and what acts on it in a step.
+#[doc(alias = "penalty")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// Stiffness (N/m per metre).

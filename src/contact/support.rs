@@ -15,6 +15,9 @@ pub enum Resistance {
 }
 
 /// A spring or dashpot between a material point and the ground.
+#[doc(alias = "boundary spring")]
+#[doc(alias = "dashpot")]
+#[doc(alias = "Lysmer-Kuhlemeyer")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
     /// Fixity of the case that it belongs to.

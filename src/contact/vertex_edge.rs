@@ -19,6 +19,8 @@ pub enum ContactState {
 }
 
 /// What a contact remembers from step to step; identified by node and side.
+#[doc(alias = "warm start")]
+#[doc(alias = "contact memory")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactHistory {
     /// Boundary node that may enter.
@@ -50,6 +52,9 @@ pub struct ContactHistory {
 }
 
 /// A contact during one step: geometry, how it answers, and forces. What the sweeps read comes first.
+#[doc(alias = "contact")]
+#[doc(alias = "corner-edge contact")]
+#[doc(alias = "contact constraint")]
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
 pub struct VertexEdge {

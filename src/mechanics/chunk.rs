@@ -26,6 +26,8 @@ const ROW_MIN: usize = 4;
 const NO_ELEMENT: u32 = u32::MAX;
 
 /// Whole blocks, or a part of one.
+#[doc(alias = "tile")]
+#[doc(alias = "cache block")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chunk {
     /// Blocks: those that begin here.

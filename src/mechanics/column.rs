@@ -43,6 +43,8 @@ pub enum Foot {
 }
 
 /// A column of rock of unit width: equal cells between nodes, each with the rock at its middle (Eq. 49).
+#[doc(alias = "free field")]
+#[doc(alias = "site response")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// Height y of the foot (m).

@@ -17,6 +17,8 @@ pub const UNCOUPLED: u32 = u32::MAX;
 pub struct NotPositive;
 
 /// Lower triangle by columns, in blocks of two by two; the symbolic factorisation holds while the pattern does.
+#[doc(alias = "stiffness matrix")]
+#[doc(alias = "Cholesky")]
 #[derive(Debug, Clone, Default)]
 pub struct CoverMatrix {
     /// First block of each cover's column, and the number of blocks at the end.

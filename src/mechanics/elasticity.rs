@@ -1,6 +1,8 @@
 //! Linear elastic constants in the plane and the time step that they allow.
 
 /// Elastic constants and density of one rock in the plane.
+#[doc(alias = "Hooke")]
+#[doc(alias = "Lame constants")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elasticity {
     /// First Lamé constant of the plane problem (Pa).

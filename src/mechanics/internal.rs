@@ -8,6 +8,8 @@ use super::Elasticity;
 pub type PreStress = [f64; 3];
 
 /// Stress before any displacement that varies with height alone.
+#[doc(alias = "in-situ stress")]
+#[doc(alias = "geostatic stress")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressField {
     /// Stress xx, yy, xy (Pa) at the reference height.
@@ -26,6 +28,9 @@ impl StressField {
 }
 
 /// Deformation gradient of an element, split into rotation and stretch (Eq. 6).
+#[doc(alias = "deformation gradient")]
+#[doc(alias = "polar decomposition")]
+#[doc(alias = "corotational")]
 #[derive(Debug, Clone, Copy)]
 pub struct Deformation {
     f: [f64; 4],

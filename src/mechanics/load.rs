@@ -7,6 +7,7 @@ use super::MassMatrix;
 use super::pressure::{inward, part};
 
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
+#[doc(alias = "load curve")]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeTable(pub Vec<[f64; 2]>);
 

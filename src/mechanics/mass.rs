@@ -9,6 +9,9 @@ use super::Elasticity;
 ///
 /// A free block has the rigid-exact metric; a block that is held anywhere has the plain lumped one, in which the
 /// block terms vanish (`inverse_total` = `spin` = 0).
+#[doc(alias = "lumped mass")]
+#[doc(alias = "consistent mass")]
+#[doc(alias = "rigid-exact metric")]
 #[derive(Debug, Clone, Default)]
 pub struct MassMatrix {
     /// Lumped mass m of each cover (kg/m).

@@ -11,6 +11,7 @@ fn turned(v: Vector) -> Vector {
 }
 
 /// How velocities decay in a step.
+#[doc(alias = "dynamic relaxation")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// Velocity relative to the block's rigid motion is multiplied by the factor (Eq. 11).
@@ -20,6 +21,7 @@ pub enum Damping {
 }
 
 /// Where a block is.
+#[doc(alias = "rigid body")]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockMotion {
     /// Centroid (m).

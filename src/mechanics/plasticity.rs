@@ -36,6 +36,7 @@ enum Plane {
 }
 
 /// Strength of a rock.
+#[doc(alias = "elastic-plastic")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MohrCoulomb {
     /// Elastic constants in the plane.
@@ -120,6 +121,7 @@ pub fn equivalent_strain(plastic: &PlasticStrain) -> f64 {
 }
 
 /// The planes between elastic and plastic states of a rock (Eq. 56).
+#[doc(alias = "return mapping")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YieldSurface {
     elasticity: Elasticity,

@@ -1,6 +1,8 @@
 //! Records of ground motion: piecewise linear in time, and their exact means over a kick.
 
 /// Rows of time (s) and value, linear between and zero outside; a jump is the end of the rows.
+#[doc(alias = "accelerogram")]
+#[doc(alias = "time history")]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Record(pub Vec<[f64; 2]>);
 

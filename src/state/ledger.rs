@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Quantity;
 
 /// Energies (J per metre of depth). Works are those done on the rock since the start.
+#[doc(alias = "energy balance")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Kinetic energy now.

@@ -91,6 +91,8 @@ pub struct BaseMotion {
 }
 
 /// A boundary that holds in static stages, and in dynamic ones bears what it bore and lets waves leave.
+#[doc(alias = "absorbing boundary")]
+#[doc(alias = "viscous boundary")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuietBoundary {
     /// Fixity of its springs.
@@ -117,6 +119,7 @@ pub struct FreeFieldPoint {
 }
 
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
+#[doc(alias = "slope")]
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Covers, elements and blocks.

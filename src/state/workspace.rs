@@ -11,6 +11,7 @@ use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurfac
 use super::ImplicitWorkspace;
 
 /// Buffers, sized at the first step and reused.
+#[doc(alias = "scratch buffers")]
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
     /// Masses with the fixities of the stage.

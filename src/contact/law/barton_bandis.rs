@@ -4,6 +4,8 @@
 pub const ANGLE_MAX: f64 = 70.0 * std::f64::consts::PI / 180.0;
 
 /// Rough joint faces.
+#[doc(alias = "Barton-Bandis")]
+#[doc(alias = "JRC")]
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Roughness {
     /// Residual friction angle φr (rad).
@@ -24,6 +26,7 @@ impl Roughness {
 
 /// Normal spring whose force grows without bound as the closure v nears a greatest one: N = k·v/(1 − v/v_max). Loading
 /// and unloading run along the same curve. A greatest closure of infinity is the linear spring.
+#[doc(alias = "hyperbolic closure")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
     /// Initial stiffness k (N/m per metre).

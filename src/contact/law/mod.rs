@@ -6,6 +6,10 @@ pub use barton_bandis::{Closure, Roughness};
 
 /// A joint: Mohr–Coulomb with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21), or, with a
 /// roughness, Barton–Bandis (Eq. 33).
+#[doc(alias = "Mohr-Coulomb")]
+#[doc(alias = "Coulomb friction")]
+#[doc(alias = "interface law")]
+#[doc(alias = "fracture")]
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct JointLaw {
     /// Normal stiffness (Pa/m).
@@ -37,6 +41,8 @@ pub struct JointLaw {
 }
 
 /// Forces (N/m) that a contact of some length can carry.
+#[doc(alias = "friction cone")]
+#[doc(alias = "yield criterion")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Limits {
     /// Friction on a straight line.

@@ -3,6 +3,8 @@
 /// Constants of contact. Lengths are relative to the mesh size unless told otherwise.
 ///
 /// They are no setting of a case: tests halve and double each of them, and answers stay (theory §5).
+#[doc(alias = "tolerance")]
+#[doc(alias = "slop")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EntranceRule {
     /// Height of a ledge up to which it catches nothing; one of twice that catches in full.

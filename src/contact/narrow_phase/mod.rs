@@ -33,6 +33,8 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 const TIE_TOLERANCE: f64 = 1e-6;
 
 /// What the narrow phase reads.
+#[doc(alias = "entrance")]
+#[doc(alias = "vertex rule")]
 pub struct NarrowPhase<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
@@ -99,6 +101,7 @@ pub struct Approach<'a> {
 }
 
 /// Where the contacts of the last step are in the list that is ordered by node and side.
+#[doc(alias = "persistent manifold")]
 #[derive(Debug, Clone, Default)]
 pub struct ContactCache {
     /// First contact of each node, and the number of contacts.

@@ -19,6 +19,8 @@ struct PenetratingContact {
 }
 
 /// The contacts of the last step that are in penetration, by their nodes and by the node segments that they lie on.
+#[doc(alias = "overlap")]
+#[doc(alias = "bearing")]
 #[derive(Debug, Clone, Default)]
 pub struct PenetratingContacts {
     /// First of each node, and their number.
