@@ -75,6 +75,8 @@ pub struct OtherConstraints<'a> {
 }
 
 /// Buffers of the iteration.
+#[doc(alias = "constraint solver")]
+#[doc(alias = "Gauss-Seidel")]
 #[derive(Debug, Clone, Default)]
 pub struct OpenClose {
     order: SolverOrder,

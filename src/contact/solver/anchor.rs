@@ -6,6 +6,7 @@ use crate::geometry::{NONE, Vector};
 use super::SolverView;
 
 /// Impulse sums of a block: what turns one contact's impulse into everybody's velocity in constant time (Eq. 17).
+#[doc(alias = "solver velocity")]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockImpulse {
     /// P = Σ impulses (N·s/m).

@@ -23,6 +23,8 @@ const LEAVES_MAX: usize = 4096;
 const OVERFLOW: u32 = u64::BITS - 1;
 
 /// In what block pair every near pair of a node and a side is.
+#[doc(alias = "graph colouring")]
+#[doc(alias = "islands")]
 #[derive(Debug, Clone, Default)]
 pub struct SolverOrder {
     /// Near nodes and sides, sorted, the first near pair of each, and its block pair.

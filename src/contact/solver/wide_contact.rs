@@ -36,6 +36,7 @@ struct Points {
 }
 
 /// Contacts of eight block pairs. A lane without one bears nothing and repeats the covers of the first lane.
+#[doc(alias = "SIMD")]
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
 pub struct WideContact {

@@ -15,6 +15,8 @@ const MOVES: f64 = 0.3;
 
 /// Up to eight block pairs; lanes beyond them repeat the first one without taking part. Numbers begin at lines of the
 /// cache.
+#[doc(alias = "SIMD")]
+#[doc(alias = "graph colouring")]
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct WidePairs {
