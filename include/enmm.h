@@ -5,12 +5,12 @@
  * counter-clockwise, stresses positive in tension.
  *
  * Status. Every function that can fail returns enmm_status, 0 for done; when it is not 0 nothing has changed, and
- * enmm_last_error() tells why. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with a model. No
- * exception and no panic leaves the library.
+ * enmm_last_error() returns the reason. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with
+ * a model. No exception and no panic leaves the library.
  *
- * Handles of models and states are numbers in a table of the process, and never followed: one that is NULL or dead is
- * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
- * function says.
+ * Handles of models and states are numbers in a table of the process, and never dereferenced: a NULL or dead handle is
+ * an error. Every other pointer must point to the data that the function describes. NULL is an error, except where a
+ * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
@@ -19,8 +19,8 @@
  * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
- * that, so that structures can grow and programs built with an older header go on. Members that the library does not
- * know stay as they are.
+ * that, so that structures can grow and programs built with an older header still work. Members that the library does
+ * not know keep their values.
  *
  * Texts are UTF-8 and end with a zero byte.
  */
@@ -62,8 +62,8 @@
 #define ENMM_NO_JOINT UINT32_MAX
 
 /**
- * What came of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() tells what was
- * wrong, the limit and the remedy.
+ * Result of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() returns the fault, the
+ * limit and the remedy.
  */
 enum enmm_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -75,7 +75,7 @@ enum enmm_status
    */
   ENMM_OK = 0,
   /**
-   * A pointer or handle is NULL that must not be.
+   * A pointer or handle is NULL but must not be.
    */
   ENMM_NULL_ARGUMENT = 1,
   /**
@@ -87,11 +87,11 @@ enum enmm_status
    */
   ENMM_BUSY = 3,
   /**
-   * A value is not finite or out of range, names something that does not exist, or a text is not UTF-8.
+   * A value is not finite or out of range, names something that does not exist, or is a text that is not UTF-8.
    */
   ENMM_INVALID_ARGUMENT = 4,
   /**
-   * The case cannot be used; the message tells file, line and key.
+   * The case cannot be used; the message has file, line and key.
    */
   ENMM_INVALID_CASE = 5,
   /**
@@ -103,15 +103,15 @@ enum enmm_status
    */
   ENMM_WRONG_TIME = 7,
   /**
-   * The step failed numerically; the model stands where it stood before the call.
+   * The step failed numerically; the model is as it was before the call.
    */
   ENMM_NUMERICAL_FAILURE = 8,
   /**
-   * The buffer is too small: nothing was written to it, and `*written` tells what is needed.
+   * The buffer is too small: nothing was written to it, and `*written` is the capacity that is needed.
    */
   ENMM_BUFFER_TOO_SMALL = 9,
   /**
-   * There is no such port, or no rock at this place.
+   * There is no such port, or no rock at this position.
    */
   ENMM_NOT_FOUND = 10,
   /**
@@ -276,7 +276,7 @@ typedef int32_t enmm_interpolation;
 #endif // __cplusplus
 
 /**
- * A model. The handle is a number that is never followed: one that is NULL or dead is an error and never a crash.
+ * A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
  */
 typedef struct enmm_model enmm_model;
 
@@ -706,27 +706,27 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * Version of the library, such as "0.1.0". The text is there for ever.
+ * Version of the library, such as "0.1.0". The text is never freed.
  */
 const char *enmm_version(void);
 
 /**
- * Version of the binary interface of the library; a program works with it when this equals ENMM_ABI_VERSION of the
- * header it was compiled with.
+ * Version of the binary interface of the library; a program can use the library when this equals ENMM_ABI_VERSION of
+ * the header it was compiled with.
  */
 uint32_t enmm_abi_version(void);
 
 /**
- * Message of the last call that failed on the calling thread: what, the value, the limit, the remedy. It is empty when
- * none has failed, and valid until the next one fails on this thread or the thread ends.
+ * Message of the last call that failed on the calling thread: fault, value, limit and remedy. It is empty when none
+ * has failed, and valid until the next one fails on this thread or the thread ends.
  */
 const char *enmm_last_error(void);
 
 /**
  * Builds the model of a case file. Nothing moves yet.
  *
- * `case_path` is a path in UTF-8; files that the case names are sought beside it. `*out` gets the handle, to be given
- * to enmm_destroy in the end, or NULL on failure.
+ * `case_path` is a path in UTF-8; files that the case names are relative to its directory. `*out` gets the handle,
+ * which enmm_destroy frees, or NULL on failure.
  *
  * Errors: ENMM_FILE_ERROR, ENMM_INVALID_CASE with file, line and key, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
  */
@@ -735,26 +735,27 @@ enmm_status enmm_create_from_file(const char *case_path, struct enmm_model **out
 /**
  * Builds the model of a case that is given as text in TOML.
  *
- * `base_dir` is the directory where files that the case names are sought; NULL stands for the current one. `*out` gets
- * the handle, to be given to enmm_destroy in the end, or NULL on failure.
+ * `base_dir` is the directory of the files that the case names; NULL stands for the current one. `*out` gets the
+ * handle, which enmm_destroy frees, or NULL on failure.
  *
  * Errors: as enmm_create_from_file; the text is called "case" in messages.
  */
 enmm_status enmm_create_from_string(const char *toml, const char *base_dir, struct enmm_model **out);
 
 /**
- * Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
- * model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+ * Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
+ * model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
  *
- * It never waits. The log callback begins no further message once this has returned on the thread that the callback is
- * called on; when another thread is in a call with the model, the callback may be at work there, or just begin, and
- * its `user` must not be freed until that call has returned.
+ * It never waits. After it returns, the log callback gets no further message on the calling thread. When another
+ * thread is in a call with the model, the callback may still run or start there, and its `user` must not be freed
+ * until that call has returned.
  */
 void enmm_destroy(struct enmm_model *model);
 
 /**
- * Seeks the initial equilibrium now, under the inputs that have been set: runs the static stages before the first
- * dynamic one. Otherwise the first enmm_do_step does. Does nothing when it has been done. Time 0 is its end.
+ * Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
+ * one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
+ * equilibrium.
  *
  * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
  */
@@ -763,40 +764,40 @@ enmm_status enmm_start(struct enmm_model *model);
 /**
  * Advances the model from `t` to exactly `t + h` (s), or not at all.
  *
- * `t` must be the time of the model. The interval is covered by internal steps not longer than the critical one; how a
- * time is split into communication steps does not change results when they are multiples of the internal step. Inputs
- * that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After the last stage
- * of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
+ * `t` must be the time of the model. Internal steps, not longer than the critical one, cover the interval. The
+ * division of a time into communication steps does not change results when they are multiples of the internal step.
+ * Inputs that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After its end
+ * the last stage of the case continues. `info` may be NULL; otherwise its `struct_size` must be set.
  *
  * Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
- * with block, place and cause. The model then is what it was before, to the bit. Without enmm_start the first step
- * also seeks the initial equilibrium, and takes it back when it fails.
+ * with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
+ * also computes the initial equilibrium, and discards it when the step fails.
  */
 enmm_status enmm_do_step(struct enmm_model *model, double t, double h, struct enmm_step_info *info);
 
 /**
- * Tells the time of the model (s): 0 at the start of the first dynamic stage.
+ * Returns the time of the model (s): 0 at the start of the first dynamic stage.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_time(struct enmm_model *model, double *time);
 
 /**
- * Tells the internal step (s), an integer fraction of a tenth of the communication step.
+ * Returns the internal step (s), an integer fraction of a tenth of the communication step.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_internal_step(struct enmm_model *model, double *step);
 
 /**
- * Tells the communication step (s) that the case suggests; hosts may take any other.
+ * Returns the communication step (s) that the case suggests; hosts may use any other.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_communication_step(struct enmm_model *model, double *step);
 
 /**
- * Tells the time (s) at which the stages of the case end; hosts may go on.
+ * Returns the time (s) at which the stages of the case end; hosts may continue.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
@@ -805,21 +806,21 @@ enmm_status enmm_get_stop_time(struct enmm_model *model, double *time);
 /**
  * Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
  * depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
- * of the threads: a model that it uses starts as many anew at its next step.
+ * of the threads: a model that it uses starts the same number again at its next step.
  *
  * Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
- * and enmm_start can give it as well.
+ * and enmm_start can return it as well.
  */
 enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
 
 /**
- * Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
- * warnings of the case at once; later messages come at the end of the calls that they are about.
+ * Sets the callback for messages of this model; NULL (as at creation) discards them. The first callback gets the
+ * warnings of the case at once; later messages are delivered at the end of the calls that they belong to.
  *
- * `user` is handed to the callback as it is. It is no longer used when this function has replaced the callback, but by
- * a message that is just being delivered: that is so when a callback replaces itself, never when another thread
- * delivers, for then this answers ENMM_BUSY. Messages that have not gone out yet go to the new callback. For the end
- * of the model see enmm_destroy.
+ * `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer used,
+ * except by a message that is just being delivered. That happens only when a callback replaces itself: while another
+ * thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new callback.
+ * For the end of the model see enmm_destroy.
  *
  * Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
  */
@@ -829,7 +830,8 @@ enmm_status enmm_set_log_callback(struct enmm_model *model, enmm_log_callback ca
  * Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised
  * state.
  *
- * `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+ * `*written` gets the number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only
+ * that number.
  *
  * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
  */
@@ -839,18 +841,18 @@ enmm_status enmm_case_hash(struct enmm_model *model, char *out, size_t capacity,
  * Sets gravity (m/s2, x to the right, y upwards; on Earth 0 and -9.81).
  *
  * Acts from the start of the next step on, or is reached at its end (enmm_set_interpolation), and holds until it is
- * set anew; so do all inputs. In the initial equilibrium it grows from 0.
+ * set again; so do all inputs. In the initial equilibrium it grows from 0.
  *
- * Errors: ENMM_INVALID_ARGUMENT for a value that is not finite or beyond 1e4 m/s2; the old one then holds.
+ * Errors: ENMM_INVALID_ARGUMENT for a value that is not finite or beyond 1e4 m/s2; the old value then stays in force.
  */
 enmm_status enmm_set_gravity(struct enmm_model *model, double gx, double gy);
 
 /**
  * Sets force (N per metre of thickness, x to the right, y upwards) through the mass centroid of a block, and moment
- * about it (N*m per metre, counter-clockwise). They take the place of those that were set before, or that a port of
- * the case has at the start; loads of the case stay.
+ * about it (N*m per metre, counter-clockwise). They replace those that were set before, or that a port of the case has
+ * at the start; loads of the case stay.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a block that does not exist, or a value that is not finite or beyond 1e15.
  */
@@ -859,8 +861,8 @@ enmm_status enmm_set_block_force(struct enmm_model *model, uint32_t block, doubl
 /**
  * Sets force and moment of `n` blocks at once: all, or none when one value is refused.
  *
- * `ids`, `fx`, `fy` and `m` hold `n` values each, with the units of enmm_set_block_force. Where a block is named twice
- * the last one counts. Blocks that are not named keep their force.
+ * `ids`, `fx`, `fy` and `m` hold `n` values each, with the units of enmm_set_block_force. If a block is named twice,
+ * its last values count. Blocks that are not named keep their force.
  *
  * Errors: as enmm_set_block_force, for the first block that is refused; ENMM_NULL_ARGUMENT when `n` is not 0.
  */
@@ -873,9 +875,9 @@ enmm_status enmm_set_block_forces(struct enmm_model *model,
 
 /**
  * Sets the acceleration of the base (m/s2, x to the right, y upwards). Displacements and velocities are relative to
- * the base; all rock feels the opposite acceleration. It is no part of the initial equilibrium and begins at time 0.
+ * the base; all rock feels the opposite acceleration. It does not act on the initial equilibrium and begins at time 0.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a value that is not finite or beyond 1e4 m/s2.
  */
@@ -884,7 +886,7 @@ enmm_status enmm_set_base_acceleration(struct enmm_model *model, double ax, doub
 /**
  * Sets the height y of the water surface (m, upwards, in the coordinates of the case). The case must have `[water]`.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a case without water, or a value that is not finite or beyond 1e9 m.
  */
@@ -894,9 +896,9 @@ enmm_status enmm_set_water_level(struct enmm_model *model, double y);
  * Sets traction (Pa, global axes, per length before deformation) on a boundary port; positive pushes to the right and
  * upwards.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
- * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is no boundary, or a value that is not finite or
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is not a boundary, or a value that is not finite or
  * beyond 1e15 Pa.
  */
 enmm_status enmm_set_boundary_traction(struct enmm_model *model, uint32_t port, double tx, double ty);
@@ -904,7 +906,7 @@ enmm_status enmm_set_boundary_traction(struct enmm_model *model, uint32_t port, 
 /**
  * Sets fluid pressure (Pa) on a boundary port; positive pushes into the rock, normal to its current surface.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
  * Errors: as enmm_set_boundary_traction.
  */
@@ -913,10 +915,10 @@ enmm_status enmm_set_boundary_pressure(struct enmm_model *model, uint32_t port, 
 /**
  * Sets fluid pressure (Pa) in the joints of a joint port; positive pushes both faces into their rock, apart.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
- * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is none of joints, or a value that is not finite or
- * beyond 1e15 Pa.
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is not one of joints, or a value that is not finite
+ * or beyond 1e15 Pa.
  */
 enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, double p);
 
@@ -924,14 +926,14 @@ enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, dou
  * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied; 1 is the
  * strength of the case.
  *
- * Acts as enmm_set_gravity tells.
+ * Acts at the same times as enmm_set_gravity.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a value that is not at least 0 and at most 1e6.
  */
 enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
 
 /**
- * Sets how inputs go through a communication step: a value of enmm_interpolation. Holds from the next step on, and is
+ * Sets how inputs vary within a communication step: a value of enmm_interpolation. Acts from the next step on, and is
  * part of saved states.
  *
  * Errors: ENMM_INVALID_ARGUMENT for another number.
@@ -939,14 +941,14 @@ enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
 enmm_status enmm_set_interpolation(struct enmm_model *model, int32_t mode);
 
 /**
- * Tells how inputs go through a communication step: a value of enmm_interpolation.
+ * Returns how inputs vary within a communication step: a value of enmm_interpolation.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
 
 /**
- * Tells the number of blocks, excavated ones included. It never changes.
+ * Returns the number of blocks, excavated ones included. It never changes.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
@@ -956,7 +958,7 @@ enmm_status enmm_block_count(struct enmm_model *model, size_t *count);
  * Writes the state of every block, by id.
  *
  * `out` holds `capacity` structures; `out[0].struct_size` must be set and is the distance from one to the next.
- * `*written` gets their number. `out` NULL and `capacity` 0 ask for it alone.
+ * `*written` gets their number. With `out` NULL and `capacity` 0 the call returns only that number.
  *
  * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
  */
@@ -987,8 +989,8 @@ enmm_status enmm_get_totals(struct enmm_model *model, struct enmm_totals *out);
 enmm_status enmm_get_contacts(struct enmm_model *model, struct enmm_contact *out, size_t capacity, size_t *written);
 
 /**
- * Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
- * goes back to its events. An event does not change between reads, its time included.
+ * Writes the events from index `first` on (0: all since the start), in the order of time. A return to a saved state
+ * restores its events. An event does not change between reads, its time included.
  *
  * Buffer and errors as enmm_get_block_states.
  */
@@ -1001,9 +1003,9 @@ enmm_status enmm_get_events(struct enmm_model *model,
 /**
  * Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).
  *
- * `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. `xy` NULL and
- * `capacity` 0 ask for it alone. Cracks that end in the block are part of its outline. For holes see
- * enmm_get_block_hole.
+ * `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. With `xy` NULL
+ * and `capacity` 0 the call returns only that number. Cracks that end in the block are part of its outline. For holes
+ * see enmm_get_block_hole.
  *
  * Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a block that does not exist; ENMM_NOT_FOUND for one that
  * has been excavated; ENMM_NULL_ARGUMENT.
@@ -1015,7 +1017,7 @@ enmm_status enmm_get_block_polygon(struct enmm_model *model,
                                    size_t *written);
 
 /**
- * Tells the number of holes of a block.
+ * Returns the number of holes of a block.
  *
  * Errors: as enmm_get_block_polygon.
  */
@@ -1034,21 +1036,22 @@ enmm_status enmm_get_block_hole(struct enmm_model *model,
                                 size_t *written);
 
 /**
- * Tells which block is at a place (m) now; the lowest id where blocks meet.
+ * Returns the block at a position (m) now; the lowest id where blocks meet.
  *
- * Errors: ENMM_NOT_FOUND where no rock is; ENMM_INVALID_ARGUMENT for values that are not finite; ENMM_NULL_ARGUMENT.
+ * Errors: ENMM_NOT_FOUND where there is no rock; ENMM_INVALID_ARGUMENT for values that are not finite;
+ * ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_find_block_at(struct enmm_model *model, double x, double y, uint32_t *block);
 
 /**
- * Tells the number of ports that the case names by `[[port]]`.
+ * Returns the number of ports that the case names by `[[port]]`.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_port_count(struct enmm_model *model, size_t *count);
 
 /**
- * Tells the port that has a name.
+ * Returns the port with a name.
  *
  * Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
  */
@@ -1057,21 +1060,22 @@ enmm_status enmm_find_port(struct enmm_model *model, const char *name, uint32_t 
 /**
  * Writes the name of a port in UTF-8.
  *
- * `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+ * `*written` gets the number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only
+ * that number.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_port_name(struct enmm_model *model, uint32_t port, char *out, size_t capacity, size_t *written);
 
 /**
- * Tells the kind of a port.
+ * Returns the kind of a port.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_port_kind(struct enmm_model *model, uint32_t port, enmm_port_type *kind);
 
 /**
- * Tells the block of a port: its own, or that of the first edge of a boundary or joint.
+ * Returns the block of a port: its own, or that of the first edge of a boundary or joint.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
  */
@@ -1086,9 +1090,10 @@ enmm_status enmm_port_block(struct enmm_model *model, uint32_t port, uint32_t *b
 enmm_status enmm_get_port_state(struct enmm_model *model, uint32_t port, struct enmm_port_state *out);
 
 /**
- * Saves all that the model needs to go on from here with the same bits: motion, contacts, stage, time, events, inputs.
+ * Saves all data that the model needs to continue from here with the same bits: motion, contacts, stage, time, events,
+ * inputs.
  *
- * `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure. The state may outlive the
+ * `*out` gets the handle, which enmm_state_free frees, or NULL on failure. The state may outlive the
  * model.
  *
  * Errors: ENMM_NULL_ARGUMENT.
@@ -1096,24 +1101,24 @@ enmm_status enmm_get_port_state(struct enmm_model *model, uint32_t port, struct 
 enmm_status enmm_state_save(struct enmm_model *model, struct enmm_state **out);
 
 /**
- * Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
+ * Returns the model to a saved state of its own or of another model of the same case. The state can be used again.
  *
  * Errors: ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE; the model then stays as it is.
  */
 enmm_status enmm_state_restore(struct enmm_model *model, struct enmm_state *state);
 
 /**
- * Gives a state free. NULL does nothing.
+ * Frees a state. NULL does nothing.
  *
  * Errors: ENMM_DEAD_HANDLE.
  */
 enmm_status enmm_state_free(struct enmm_state *state);
 
 /**
- * Writes a state as bytes for a file or another process; they tell version and case, and have a checksum.
+ * Writes a state as bytes for a file or another process; they contain version, hash of the case and checksum.
  *
- * `model` is one of the case that the state is of. `*written` gets the number of bytes. `buffer` NULL and `capacity` 0
- * ask for it alone.
+ * `model` is a model of the same case as the state. `*written` gets the number of bytes. With `buffer` NULL and
+ * `capacity` 0 the call returns only that number.
  *
  * Errors: ENMM_BUFFER_TOO_SMALL, ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE, ENMM_NULL_ARGUMENT.
  */
@@ -1124,13 +1129,12 @@ enmm_status enmm_state_serialize(struct enmm_model *model,
                                  size_t *written);
 
 /**
- * Makes a state of bytes that enmm_state_serialize wrote, in this process or another.
+ * Makes a state from bytes that enmm_state_serialize wrote, in this process or another.
  *
- * `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure.
+ * `*out` gets the handle, which enmm_state_free frees, or NULL on failure.
  *
- * Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or hold what no state of the model
- * can (a number that is not finite or beyond all bounds, an index or a length), which the message names;
- * ENMM_NULL_ARGUMENT.
+ * Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or with an invalid value (a number
+ * that is not finite or out of range, an index or a length), which the message names; ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_state_deserialize(struct enmm_model *model,
                                    const uint8_t *bytes,

@@ -17,39 +17,39 @@ pub const ENMM_BLOCK_REMOVED: u32 = 8;
 /// Subject of a slip event of a contact that lies on no joint trace of the case.
 pub const ENMM_NO_JOINT: u32 = u32::MAX;
 
-/// A model. The handle is a number that is never followed: one that is NULL or dead is an error and never a crash.
+/// A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
 pub struct enmm_model(());
 
 /// A saved state of a model; it may outlive the model. The handle is as safe as that of a model.
 pub struct enmm_state(());
 
-/// What came of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() tells what was
-/// wrong, the limit and the remedy.
+/// Result of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() returns the fault, the
+/// limit and the remedy.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[must_use]
 pub enum enmm_status {
     /// Done.
     ENMM_OK = 0,
-    /// A pointer or handle is NULL that must not be.
+    /// A pointer or handle is NULL but must not be.
     ENMM_NULL_ARGUMENT = 1,
     /// The handle was destroyed, or never was one of this kind.
     ENMM_DEAD_HANDLE = 2,
     /// Another thread is using the model.
     ENMM_BUSY = 3,
-    /// A value is not finite or out of range, names something that does not exist, or a text is not UTF-8.
+    /// A value is not finite or out of range, names something that does not exist, or is a text that is not UTF-8.
     ENMM_INVALID_ARGUMENT = 4,
-    /// The case cannot be used; the message tells file, line and key.
+    /// The case cannot be used; the message has file, line and key.
     ENMM_INVALID_CASE = 5,
     /// A file cannot be read.
     ENMM_FILE_ERROR = 6,
     /// A communication step does not begin at the time of the model.
     ENMM_WRONG_TIME = 7,
-    /// The step failed numerically; the model stands where it stood before the call.
+    /// The step failed numerically; the model is as it was before the call.
     ENMM_NUMERICAL_FAILURE = 8,
-    /// The buffer is too small: nothing was written to it, and `*written` tells what is needed.
+    /// The buffer is too small: nothing was written to it, and `*written` is the capacity that is needed.
     ENMM_BUFFER_TOO_SMALL = 9,
-    /// There is no such port, or no rock at this place.
+    /// There is no such port, or no rock at this position.
     ENMM_NOT_FOUND = 10,
     /// The state is of another case or version, or its bytes are damaged.
     ENMM_WRONG_STATE = 11,

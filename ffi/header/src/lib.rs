@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language};
 
-/// Place of the header in the repository.
+/// Path of the header in the repository.
 pub const HEADER: &str = "include/enmm.h";
 
-/// What the reader of the header is told first.
+/// Introduction of the header.
 const INTRODUCTION: &str = "\
 /*
  * enmm: explicit numerical manifold method for jointed rock. Made by `cargo xtask header`: do not edit.
@@ -16,12 +16,12 @@ const INTRODUCTION: &str = "\
  * counter-clockwise, stresses positive in tension.
  *
  * Status. Every function that can fail returns enmm_status, 0 for done; when it is not 0 nothing has changed, and
- * enmm_last_error() tells why. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with a model. No
- * exception and no panic leaves the library.
+ * enmm_last_error() returns the reason. ENMM_DEAD_HANDLE, ENMM_BUSY and ENMM_PANIC can come from every function with
+ * a model. No exception and no panic leaves the library.
  *
- * Handles of models and states are numbers in a table of the process, and never followed: one that is NULL or dead is
- * an error. Every other pointer must be NULL, which is an error where no exception is told, or point to what the
- * function says.
+ * Handles of models and states are numbers in a table of the process, and never dereferenced: a NULL or dead handle is
+ * an error. Every other pointer must point to the data that the function describes. NULL is an error, except where a
+ * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
@@ -30,8 +30,8 @@ const INTRODUCTION: &str = "\
  * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
- * that, so that structures can grow and programs built with an older header go on. Members that the library does not
- * know stay as they are.
+ * that, so that structures can grow and programs built with an older header still work. Members that the library does
+ * not know keep their values.
  *
  * Texts are UTF-8 and end with a zero byte.
  */";

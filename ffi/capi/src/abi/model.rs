@@ -12,8 +12,8 @@ use crate::types::{enmm_log_callback, enmm_log_level, enmm_model, enmm_status, e
 
 /// Builds the model of a case file. Nothing moves yet.
 ///
-/// `case_path` is a path in UTF-8; files that the case names are sought beside it. `*out` gets the handle, to be given
-/// to enmm_destroy in the end, or NULL on failure.
+/// `case_path` is a path in UTF-8; files that the case names are relative to its directory. `*out` gets the handle,
+/// which enmm_destroy frees, or NULL on failure.
 ///
 /// Errors: ENMM_FILE_ERROR, ENMM_INVALID_CASE with file, line and key, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -30,8 +30,8 @@ pub unsafe extern "C" fn enmm_create_from_file(case_path: *const c_char, out: *m
 
 /// Builds the model of a case that is given as text in TOML.
 ///
-/// `base_dir` is the directory where files that the case names are sought; NULL stands for the current one. `*out` gets
-/// the handle, to be given to enmm_destroy in the end, or NULL on failure.
+/// `base_dir` is the directory of the files that the case names; NULL stands for the current one. `*out` gets the
+/// handle, which enmm_destroy frees, or NULL on failure.
 ///
 /// Errors: as enmm_create_from_file; the text is called "case" in messages.
 #[unsafe(no_mangle)]
@@ -51,12 +51,12 @@ pub unsafe extern "C" fn enmm_create_from_string(
     })
 }
 
-/// Ends a model and gives its memory free. NULL and dead handles do nothing. When another thread is in a call with the
-/// model, that call ends as if nothing had happened; later ones get ENMM_DEAD_HANDLE.
+/// Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
+/// model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
 ///
-/// It never waits. The log callback begins no further message once this has returned on the thread that the callback is
-/// called on; when another thread is in a call with the model, the callback may be at work there, or just begin, and
-/// its `user` must not be freed until that call has returned.
+/// It never waits. After it returns, the log callback gets no further message on the calling thread. When another
+/// thread is in a call with the model, the callback may still run or start there, and its `user` must not be freed
+/// until that call has returned.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
     // A handle that is NULL or dead is no reason to forget the message of the last failure.
@@ -66,8 +66,9 @@ pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
     });
 }
 
-/// Seeks the initial equilibrium now, under the inputs that have been set: runs the static stages before the first
-/// dynamic one. Otherwise the first enmm_do_step does. Does nothing when it has been done. Time 0 is its end.
+/// Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
+/// one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
+/// equilibrium.
 ///
 /// Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
 #[unsafe(no_mangle)]
@@ -77,14 +78,14 @@ pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
 
 /// Advances the model from `t` to exactly `t + h` (s), or not at all.
 ///
-/// `t` must be the time of the model. The interval is covered by internal steps not longer than the critical one; how a
-/// time is split into communication steps does not change results when they are multiples of the internal step. Inputs
-/// that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After the last stage
-/// of the case the model goes on in it. `info` may be NULL; otherwise its `struct_size` must be set.
+/// `t` must be the time of the model. Internal steps, not longer than the critical one, cover the interval. The
+/// division of a time into communication steps does not change results when they are multiples of the internal step.
+/// Inputs that were set before act from `t` on, or are reached at `t + h` (see enmm_set_interpolation). After its end
+/// the last stage of the case continues. `info` may be NULL; otherwise its `struct_size` must be set.
 ///
 /// Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
-/// with block, place and cause. The model then is what it was before, to the bit. Without enmm_start the first step
-/// also seeks the initial equilibrium, and takes it back when it fails.
+/// with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
+/// also computes the initial equilibrium, and discards it when the step fails.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_do_step(
     model: *mut enmm_model,
@@ -104,7 +105,7 @@ pub unsafe extern "C" fn enmm_do_step(
     })
 }
 
-/// Tells the time of the model (s): 0 at the start of the first dynamic stage.
+/// Returns the time of the model (s): 0 at the start of the first dynamic stage.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -113,7 +114,7 @@ pub unsafe extern "C" fn enmm_get_time(model: *mut enmm_model, time: *mut f64) -
     with_model(model.addr(), |model| unsafe { pointers::write("time", time, model.inner.time()) })
 }
 
-/// Tells the internal step (s), an integer fraction of a tenth of the communication step.
+/// Returns the internal step (s), an integer fraction of a tenth of the communication step.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -122,7 +123,7 @@ pub unsafe extern "C" fn enmm_get_internal_step(model: *mut enmm_model, step: *m
     with_model(model.addr(), |model| unsafe { pointers::write("step", step, model.inner.internal_step()) })
 }
 
-/// Tells the communication step (s) that the case suggests; hosts may take any other.
+/// Returns the communication step (s) that the case suggests; hosts may use any other.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -131,7 +132,7 @@ pub unsafe extern "C" fn enmm_get_communication_step(model: *mut enmm_model, ste
     with_model(model.addr(), |model| unsafe { pointers::write("step", step, model.inner.communication_step()) })
 }
 
-/// Tells the time (s) at which the stages of the case end; hosts may go on.
+/// Returns the time (s) at which the stages of the case end; hosts may continue.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -142,22 +143,22 @@ pub unsafe extern "C" fn enmm_get_stop_time(model: *mut enmm_model, time: *mut f
 
 /// Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
 /// depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
-/// of the threads: a model that it uses starts as many anew at its next step.
+/// of the threads: a model that it uses starts the same number again at its next step.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
-/// and enmm_start can give it as well.
+/// and enmm_start can return it as well.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> enmm_status {
     with_model(model.addr(), |model| Ok(model.inner.set_threads(threads)?))
 }
 
-/// Sets where messages of this model go, or nowhere with NULL (as at the creation). The first callback gets the
-/// warnings of the case at once; later messages come at the end of the calls that they are about.
+/// Sets the callback for messages of this model; NULL (as at creation) discards them. The first callback gets the
+/// warnings of the case at once; later messages are delivered at the end of the calls that they belong to.
 ///
-/// `user` is handed to the callback as it is. It is no longer used when this function has replaced the callback, but by
-/// a message that is just being delivered: that is so when a callback replaces itself, never when another thread
-/// delivers, for then this answers ENMM_BUSY. Messages that have not gone out yet go to the new callback. For the end
-/// of the model see enmm_destroy.
+/// `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer used,
+/// except by a message that is just being delivered. That happens only when a callback replaces itself: while another
+/// thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new callback.
+/// For the end of the model see enmm_destroy.
 ///
 /// Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
 #[unsafe(no_mangle)]
@@ -196,7 +197,8 @@ fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_cha
 /// Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised
 /// state.
 ///
-/// `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+/// `*written` gets the number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only
+/// that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]

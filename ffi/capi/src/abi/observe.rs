@@ -8,7 +8,7 @@ use crate::safe::enter::with_model;
 use crate::safe::failure::Failure;
 use crate::types::*;
 
-/// Tells the number of blocks, excavated ones included. It never changes.
+/// Returns the number of blocks, excavated ones included. It never changes.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -23,7 +23,7 @@ pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut us
 /// Writes the state of every block, by id.
 ///
 /// `out` holds `capacity` structures; `out[0].struct_size` must be set and is the distance from one to the next.
-/// `*written` gets their number. `out` NULL and `capacity` 0 ask for it alone.
+/// `*written` gets their number. With `out` NULL and `capacity` 0 the call returns only that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -69,8 +69,8 @@ pub unsafe extern "C" fn enmm_get_contacts(
     with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.contacts(), out, capacity, written) })
 }
 
-/// Writes the events from index `first` on (0: all since the start), in the order of time. Going back to a saved state
-/// goes back to its events. An event does not change between reads, its time included.
+/// Writes the events from index `first` on (0: all since the start), in the order of time. A return to a saved state
+/// restores its events. An event does not change between reads, its time included.
 ///
 /// Buffer and errors as enmm_get_block_states.
 #[unsafe(no_mangle)]
@@ -87,9 +87,9 @@ pub unsafe extern "C" fn enmm_get_events(
 
 /// Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).
 ///
-/// `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. `xy` NULL and
-/// `capacity` 0 ask for it alone. Cracks that end in the block are part of its outline. For holes see
-/// enmm_get_block_hole.
+/// `xy` holds `capacity` points, that is twice as many numbers; `*written` gets the number of points. With `xy` NULL
+/// and `capacity` 0 the call returns only that number. Cracks that end in the block are part of its outline. For holes
+/// see enmm_get_block_hole.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a block that does not exist; ENMM_NOT_FOUND for one that
 /// has been excavated; ENMM_NULL_ARGUMENT.
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn enmm_get_block_polygon(
     with_model(model.addr(), |model| unsafe { outline(&model.block_loops(block)?, 0, xy, capacity, written) })
 }
 
-/// Tells the number of holes of a block.
+/// Returns the number of holes of a block.
 ///
 /// Errors: as enmm_get_block_polygon.
 #[unsafe(no_mangle)]
@@ -153,9 +153,10 @@ unsafe fn outline(
     unsafe { pointers::fill(&points, xy.cast(), capacity, written) }
 }
 
-/// Tells which block is at a place (m) now; the lowest id where blocks meet.
+/// Returns the block at a position (m) now; the lowest id where blocks meet.
 ///
-/// Errors: ENMM_NOT_FOUND where no rock is; ENMM_INVALID_ARGUMENT for values that are not finite; ENMM_NULL_ARGUMENT.
+/// Errors: ENMM_NOT_FOUND where there is no rock; ENMM_INVALID_ARGUMENT for values that are not finite;
+/// ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_find_block_at(model: *mut enmm_model, x: f64, y: f64, block: *mut u32) -> enmm_status {
     with_model(model.addr(), |model| {
@@ -165,7 +166,7 @@ pub unsafe extern "C" fn enmm_find_block_at(model: *mut enmm_model, x: f64, y: f
     })
 }
 
-/// Tells the number of ports that the case names by `[[port]]`.
+/// Returns the number of ports that the case names by `[[port]]`.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -174,7 +175,7 @@ pub unsafe extern "C" fn enmm_port_count(model: *mut enmm_model, count: *mut usi
     with_model(model.addr(), |model| unsafe { pointers::write("count", count, model.inner.ports().len()) })
 }
 
-/// Tells the port that has a name.
+/// Returns the port with a name.
 ///
 /// Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -188,7 +189,8 @@ pub unsafe extern "C" fn enmm_find_port(model: *mut enmm_model, name: *const c_c
 
 /// Writes the name of a port in UTF-8.
 ///
-/// `*written` gets the number of bytes with the closing zero. `out` NULL and `capacity` 0 ask for it alone.
+/// `*written` gets the number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only
+/// that number.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -203,7 +205,7 @@ pub unsafe extern "C" fn enmm_port_name(
     with_model(model.addr(), |model| unsafe { pointers::fill_text(model.port_name(port)?, out, capacity, written) })
 }
 
-/// Tells the kind of a port.
+/// Returns the kind of a port.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -212,7 +214,7 @@ pub unsafe extern "C" fn enmm_port_kind(model: *mut enmm_model, port: u32, kind:
     with_model(model.addr(), |model| unsafe { pointers::write("kind", kind, model.port_kind(port)?) })
 }
 
-/// Tells the block of a port: its own, or that of the first edge of a boundary or joint.
+/// Returns the block of a port: its own, or that of the first edge of a boundary or joint.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]

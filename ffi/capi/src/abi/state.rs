@@ -5,9 +5,10 @@ use crate::safe::enter::{guard, with_model};
 use crate::safe::state::STATES;
 use crate::types::{enmm_model, enmm_state, enmm_status};
 
-/// Saves all that the model needs to go on from here with the same bits: motion, contacts, stage, time, events, inputs.
+/// Saves all data that the model needs to continue from here with the same bits: motion, contacts, stage, time, events,
+/// inputs.
 ///
-/// `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure. The state may outlive the
+/// `*out` gets the handle, which enmm_state_free frees, or NULL on failure. The state may outlive the
 /// model.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
@@ -24,7 +25,7 @@ pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut 
     })
 }
 
-/// Goes back to a saved state of this model, or of another model of the same case. The state can be used again.
+/// Returns the model to a saved state of its own or of another model of the same case. The state can be used again.
 ///
 /// Errors: ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE; the model then stays as it is.
 #[unsafe(no_mangle)]
@@ -32,7 +33,7 @@ pub extern "C" fn enmm_state_restore(model: *mut enmm_model, state: *mut enmm_st
     with_model(model.addr(), |model| model.restore(state.addr()))
 }
 
-/// Gives a state free. NULL does nothing.
+/// Frees a state. NULL does nothing.
 ///
 /// Errors: ENMM_DEAD_HANDLE.
 #[unsafe(no_mangle)]
@@ -40,10 +41,10 @@ pub extern "C" fn enmm_state_free(state: *mut enmm_state) -> enmm_status {
     guard(|| if state.is_null() { Ok(()) } else { STATES.remove(state.addr()) })
 }
 
-/// Writes a state as bytes for a file or another process; they tell version and case, and have a checksum.
+/// Writes a state as bytes for a file or another process; they contain version, hash of the case and checksum.
 ///
-/// `model` is one of the case that the state is of. `*written` gets the number of bytes. `buffer` NULL and `capacity` 0
-/// ask for it alone.
+/// `model` is a model of the same case as the state. `*written` gets the number of bytes. With `buffer` NULL and
+/// `capacity` 0 the call returns only that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE, ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -61,13 +62,12 @@ pub unsafe extern "C" fn enmm_state_serialize(
     })
 }
 
-/// Makes a state of bytes that enmm_state_serialize wrote, in this process or another.
+/// Makes a state from bytes that enmm_state_serialize wrote, in this process or another.
 ///
-/// `*out` gets the handle, to be given to enmm_state_free in the end, or NULL on failure.
+/// `*out` gets the handle, which enmm_state_free frees, or NULL on failure.
 ///
-/// Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or hold what no state of the model
-/// can (a number that is not finite or beyond all bounds, an index or a length), which the message names;
-/// ENMM_NULL_ARGUMENT.
+/// Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or with an invalid value (a number
+/// that is not finite or out of range, an index or a length), which the message names; ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_deserialize(
     model: *mut enmm_model,
