@@ -1,8 +1,8 @@
-//! Velocities of a block's covers, eight side by side: the sums that its rigid motion follows from, and the writing of
-//! the kick (Eqs. 3, 5, 10–12).
+//! Loops over the covers of a block, eight at once: sums for its rigid motion, kick, and end of the step (Eqs. 3, 5,
+//! 10–12).
 //!
-//! Positions count from one cover of the block and velocities from that cover's, so that one pass gives all sums
-//! without loss of digits wherever the block is and however fast it flies.
+//! Positions and velocities are relative to one cover of the block. So one pass gives all sums without loss of digits,
+//! far from the origin and at high speed too.
 
 use std::ops::{AddAssign, Range};
 
@@ -25,7 +25,7 @@ fn totals<L: Lanes, const N: usize>(lanes: L, sums: &[L::F; N]) -> [f64; N] {
     totals
 }
 
-/// What sums count from.
+/// Origin of positions and velocities in sums.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Reference {
     /// Position (m).
@@ -34,7 +34,7 @@ pub struct Reference {
     pub velocity: Vector,
 }
 
-/// Sums over covers of a block: position q and velocity w count from a reference.
+/// Sums over covers of a block: position q and velocity w are relative to a reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockSums {
     /// Σμq (kg).
@@ -139,12 +139,12 @@ impl Span<'_> {
         Chunk::new(lanes, from, [star, u, v], [lanes.load_some(mass, 1.0), lanes.load_some(inertial, 0.0)])
     }
 
-    /// What sums of this block count from, when this span begins it.
+    /// Reference of the sums of a block that begins with this span.
     pub fn reference(&self) -> Reference {
         Reference { position: self.star[0] + self.displacement[0], velocity: self.velocity[0] }
     }
 
-    /// Sums over the span, with those of `force` (N/m) where they are asked for.
+    /// Sums over the span, with those of `force` (N/m) if given.
     #[inline(always)]
     pub fn sums<L: Lanes>(&self, lanes: L, from: &Reference, force: Option<&[Vector]>) -> BlockSums {
         let mut tally = Tally::new(lanes);
@@ -219,7 +219,7 @@ impl<F: Arithmetic> Tally<F> {
     }
 }
 
-/// A velocity that all covers of a block share but for position and mass: a + (μ/m)·b + spin·J90·q.
+/// Common velocity of all covers of a block, which depends only on their position and mass: a + (μ/m)·b + spin·J90·q.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Common {
     /// a (m/s).
@@ -257,7 +257,7 @@ struct Shared<F> {
 }
 
 impl<F: Arithmetic> Shared<F> {
-    /// What covers have of it.
+    /// Its value at some covers.
     #[inline(always)]
     fn at(&self, chunk: &Chunk<F>) -> [F; 2] {
         let [mut x, mut y] = self.velocity;
@@ -269,27 +269,27 @@ impl<F: Arithmetic> Shared<F> {
     }
 }
 
-/// What is common to a large block, for covers of a part of it: those that contacts, supports or bolts may ask for get
-/// it before these do, the others with what else ends the step.
+/// Common velocity of a large block for the covers of one of its chunks. Covers that contacts, supports or bolts may
+/// read get it before the sweep, the others at the end of the step.
 #[derive(Clone, Copy)]
 pub struct Spread<'a> {
-    /// What is common to the block.
+    /// Common velocity of the block.
     pub common: &'a Common,
     /// 1/m along x and y unless all covers can move.
     pub inverse: Option<&'a [Vector]>,
-    /// Whether contacts, supports or bolts may ask for each cover.
+    /// Whether contacts, supports or bolts may read each cover.
     pub exposed: &'a [bool],
 }
 
 impl Spread<'_> {
-    /// Whether any of some covers may be asked for.
+    /// Whether any of some covers may be read.
     #[inline(always)]
     fn is_exposed(&self, range: Range<usize>) -> bool {
         let exposed = &self.exposed[range];
         exposed.first_chunk::<LANES>().map_or_else(|| exposed.contains(&true), |eight| *eight != [false; LANES])
     }
 
-    /// What some covers get of `add` (m/s): nothing where they cannot move.
+    /// The part of `add` (m/s) for some covers: 0 where they cannot move.
     #[inline(always)]
     fn given<L: Lanes>(&self, lanes: L, range: Range<usize>, add: [L::F; 2]) -> [L::F; 2] {
         let Some(inverse) = self.inverse else { return add };
@@ -298,30 +298,30 @@ impl Spread<'_> {
     }
 }
 
-/// What turns velocities into predicted ones beside what is common to the block.
+/// Terms of the predicted velocity that each cover has by itself, beside the common velocity of its block.
 #[derive(Clone, Copy)]
 pub struct Own<'a> {
     /// Factor on the velocity.
     pub factor: f64,
     /// Time (s) for which forces act.
     pub kick: f64,
-    /// Body loads (m/s²) on a held block.
+    /// Body loads (m/s²) on a fixed block.
     pub acceleration: Vector,
-    /// Row-sum masses and 1/m along x and y of a held block's covers, the latter unless all can move; none for a free
-    /// block.
+    /// Row-sum masses and 1/m along x and y of the covers of a fixed block, the latter unless all can move; `None` for
+    /// a free block.
     pub held: Option<(&'a [f64], Option<&'a [Vector]>)>,
-    /// Whether damping sets held axes to rest.
+    /// Whether damping sets fixed axes to rest.
     pub masked: bool,
 }
 
-/// 1 where a cover can move along the axis, 0 where it is held: the lesser of 1 and many times 1/m.
+/// 1 where a cover can move along the axis, 0 where it is fixed: the lesser of 1 and many times 1/m.
 #[inline(always)]
 fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
     -lanes.max(inverse * lanes.splat(-f64::MAX), lanes.splat(-1.0))
 }
 
 impl Own<'_> {
-    /// Velocities v (m/s) of some covers after damping, with `add` (m/s) and what forces f (N/m) give.
+    /// Velocities v (m/s) of some covers after damping, with `add` (m/s) and the kick of the forces f (N/m).
     #[inline(always)]
     fn kicked<L: Lanes>(
         &self,
@@ -354,8 +354,8 @@ impl Own<'_> {
 }
 
 impl Span<'_> {
-    /// Writes the velocities that damping and forces (N/m) leave, with what is common to the block; returns the
-    /// square of the largest speed before.
+    /// Writes the velocities after damping and forces (N/m), with the common velocity of the block; returns the square
+    /// of the largest speed before.
     #[inline(always)]
     pub fn kick<L: Lanes>(
         &self,
@@ -382,8 +382,8 @@ impl Span<'_> {
         lanes.greatest(speed)
     }
 
-    /// The sums, those with forces for a free block, and the kick without what is common to the block, which follows
-    /// from them.
+    /// The sums, those with forces for a free block, and the kick without the common velocity of the block, which
+    /// follows from them.
     #[inline(always)]
     pub fn sum_and_kick<L: Lanes>(
         &self,
@@ -410,7 +410,7 @@ impl Span<'_> {
         (tally.total(lanes), lanes.greatest(speed))
     }
 
-    /// Adds what is common to the block to the velocities of covers that may be asked for.
+    /// Adds the common velocity of the block to covers that may be read before the end of the step.
     #[inline(always)]
     pub fn spread<L: Lanes>(&self, lanes: L, from: &Reference, spread: &Spread, predicted: &mut [Vector]) {
         let common = spread.common.shared(lanes);
@@ -478,11 +478,11 @@ pub struct End<'a> {
     pub increment: &'a [Vector],
     /// Displacements (m): before, after the step afterwards.
     pub displacement: &'a mut [Vector],
-    /// What covers that nothing asks for have still to get in common.
+    /// Common velocity for the covers that have not got it yet.
     pub spread: Option<Spread<'a>>,
 }
 
-/// What is wanted of the end of a step.
+/// Which parts of the end of a step are needed.
 #[derive(Debug, Clone, Copy)]
 pub struct Wants {
     /// Time (s) for which covers move.
@@ -491,15 +491,15 @@ pub struct Wants {
     pub is_pushed: bool,
     /// Whether any increment is not zero.
     pub is_touched: bool,
-    /// Whether the work of damping is asked for.
+    /// Whether the work of damping is needed.
     pub is_damped: bool,
-    /// Whether the work of body loads is asked for.
+    /// Whether the work of body loads is needed.
     pub is_loaded: bool,
 }
 
 impl End<'_> {
-    /// Adds what contacts give, moves the covers; returns sums for the works, the largest and the sum of all squares
-    /// of speeds (m²/s²), and the largest square of a displacement (m²).
+    /// Adds the impulses of contacts, moves the covers; returns sums for the works, the largest and the sum of all
+    /// squares of speeds (m²/s²), and the largest square of a displacement (m²).
     #[inline(always)]
     pub fn finish<L: Lanes>(
         &mut self,

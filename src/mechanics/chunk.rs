@@ -1,11 +1,12 @@
-//! Patches: runs of whole small blocks, or parts of a large one, whose covers fit into the fastest cache, with their
-//! elements in groups of eight of one gradient set and one rock.
+//! Chunks of the model for the loops over elements and covers. A chunk is a run of whole small blocks, or a part of a
+//! large block, whose covers fit into the fastest cache. Its elements are in groups of eight with one gradient set and
+//! one rock.
 //!
-//! In parts of a large block, which are tiles of the lattice, most elements stand in rows: the covers at the bases of
-//! eight in a row and those at their tips are runs of slots. Such a group needs no gather and no scatter.
+//! The parts of a large block are tiles of the lattice. Most of their elements are in rows of eight: the covers at the
+//! bases have consecutive slots, and so have those at the tips. Such a group needs no gather and no scatter.
 //!
-//! Elements that touch covers of two parts of a block belong to both, so that every part finds the whole force on its
-//! own covers and no two threads write to the same position.
+//! An element with covers in two parts of a block belongs to both parts. So every part computes the whole force on its
+//! own covers, and no two threads write to the same cover.
 
 use std::ops::Range;
 
@@ -16,13 +17,13 @@ use crate::geometry::Vector;
 
 use super::PreStress;
 
-/// Covers after which a chunk of whole blocks takes no further one.
+/// Number of covers from which a chunk of whole blocks is full.
 const PATCH: usize = 512;
-/// Most covers of a chunk; a larger block is cut into parts.
+/// Greatest number of covers of a chunk; a larger block is cut into parts.
 const PART: usize = Covers::TILE;
-/// Fewest elements of a row of eight: fewer are quicker by gather and scatter.
+/// Least number of elements of a row of eight; gather and scatter is faster for fewer.
 const ROW_MIN: usize = 4;
-/// Element of a lane that stands for none.
+/// Index of the element in an empty lane.
 const NO_ELEMENT: u32 = u32::MAX;
 
 /// Whole blocks, or a part of one.
@@ -34,7 +35,7 @@ pub struct Chunk {
     pub blocks: Range<usize>,
     /// The large block of which this is a part.
     pub part_of: Option<u32>,
-    /// Covers whose forces are found here.
+    /// Covers whose forces this chunk computes.
     pub covers: Range<usize>,
     halo: Range<usize>,
     batches: Range<usize>,
@@ -51,7 +52,7 @@ pub struct Batch {
     groups: Range<usize>,
 }
 
-/// Eight elements anywhere; missing ones have no area.
+/// Eight elements anywhere in a chunk; empty lanes have no area.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Group {
     /// Slots of the first, second and third covers.
@@ -63,10 +64,11 @@ pub struct Group {
 /// Corners of an up and of a down triangle as a row has them: left and right end of the base, tip.
 const ROW_CORNERS: [[usize; 3]; 2] = [[0, 1, 2], [1, 0, 2]];
 
-/// Eight elements in a row of the lattice; missing ones have no area, and slots of whatever covers.
+/// Eight elements in a row of the lattice; empty lanes have no area and slots of any covers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Row {
-    /// Slots of the first lane's covers at the left end of its base and at its tip; that at the right end is beside.
+    /// Slots of the covers of the first lane at the left end of its base and at its tip; the right end has the next
+    /// slot.
     pub first: [Slot; 2],
     /// Cut areas (m²).
     pub area: [f64; LANES],
@@ -75,7 +77,7 @@ pub struct Row {
 /// In-situ stress xx, yy, xy (Pa) of eight elements.
 pub type PreStresses = [[f64; LANES]; 3];
 
-/// Eights of elements of one kind, with what few of them or few models need beside.
+/// Groups of eight elements of one kind, with the data that only some groups or models need.
 #[derive(Debug, Clone, PartialEq)]
 struct Eights<E> {
     list: Vec<E>,
@@ -188,7 +190,7 @@ impl Chunks {
         &self.batches[chunk.batches.clone()]
     }
 
-    /// Eights of elements of a chunk.
+    /// Number of groups of eight elements in a chunk.
     pub fn eights(&self, chunk: &Chunk) -> usize {
         self.batches(chunk).iter().map(|batch| batch.rows.len() + batch.groups.len()).sum()
     }
@@ -220,7 +222,7 @@ impl Chunks {
         self.rows.elements(&batch.rows, in_row).chain(self.groups.elements(&batch.groups, anywhere))
     }
 
-    /// Patches that are parts of one block, from `first` on.
+    /// Chunks that are parts of one block, from `first` on.
     pub fn parts(&self, first: usize) -> Range<usize> {
         let block = self.list[first].part_of;
         let count = self.list[first..].iter().take_while(|p| block.is_some() && p.part_of == block).count();
@@ -233,7 +235,7 @@ impl Chunks {
     }
 }
 
-/// Patches in the making.
+/// Builder of the chunks.
 struct Cutter<'a> {
     covers: &'a Covers,
     element_rock: &'a [u16],
@@ -250,8 +252,8 @@ impl Cutter<'_> {
         self.push(Chunk { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
     }
 
-    /// Runs of whole tiles, in the order of the covers, where a tile with more covers than fit is cut; equal parts of a
-    /// block without tiles.
+    /// Cuts a block into runs of whole tiles, in the order of the covers; a tile with too many covers is cut as well. A
+    /// block without tiles is cut into equal parts.
     fn parts_of(&self, block: usize) -> Vec<Range<usize>> {
         let own = self.covers.covers_of(block);
         if !self.covers.is_tiled(block) {

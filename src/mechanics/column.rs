@@ -1,4 +1,5 @@
-//! Free-field columns: rock beside the model that moves in one dimension.
+//! Free-field columns: rock beside the model that moves in one dimension and drives the free-field boundaries (Eqs. 49,
+//! 50).
 
 use crate::geometry::Vector;
 
@@ -33,7 +34,7 @@ impl ColumnState {
     }
 }
 
-/// What moves the foot of a column.
+/// Cause of the motion of the foot of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Foot {
     /// The base, with which it is rigid.
@@ -55,7 +56,7 @@ pub struct Column {
     pub rocks: Vec<Elasticity>,
     /// Block of the model beside each node; those of one block are damped together.
     pub blocks: Vec<u32>,
-    /// What moves the foot.
+    /// Cause of the motion of the foot.
     pub foot: Foot,
 }
 
@@ -66,12 +67,12 @@ pub struct ColumnPosition {
     share: f64,
 }
 
-/// What acts on a column in a step.
+/// Loads on a column in a step.
 #[derive(Debug, Clone, Copy)]
 pub struct ColumnDrive {
     /// Acceleration of its rock (m/s²) beside that by its own stress: that of the base, with the opposite sign.
     pub acceleration: Vector,
-    /// Particle velocity (m/s) of the wave that a quiet foot lets in.
+    /// Particle velocity (m/s) of the incident wave at a quiet foot.
     pub wave: Vector,
     /// Time over which forces act (s).
     pub kick: f64,

@@ -1,4 +1,4 @@
-//! Consistent mass and corotated stiffness of one element, for the implicit integrator.
+//! Consistent mass and corotated stiffness of one element, for the implicit integrator (Eqs. 68, 69).
 
 use crate::geometry::{Vector, polygon};
 

@@ -1,4 +1,5 @@
-//! Symmetric positive definite sparse matrix over the covers, two rows each, and its Cholesky factor.
+//! Sparse symmetric matrix over the covers, two rows each, and its Cholesky factor: the system of the implicit
+//! integrator.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ pub const UNCOUPLED: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotPositive;
 
-/// Lower triangle by columns, in blocks of two by two; the symbolic factorisation holds while the pattern does.
+/// Lower triangle by columns, in blocks of two by two; the symbolic factorisation is valid as long as the pattern.
 #[doc(alias = "stiffness matrix")]
 #[doc(alias = "Cholesky")]
 #[derive(Debug, Clone, Default)]
@@ -163,7 +164,7 @@ impl CoverMatrix {
         done.map(|_| ()).map_err(|_| NotPositive)
     }
 
-    /// Solves with the last factor; `x` holds the right-hand side first and the solution after.
+    /// Solves with the last factor; `x` is the right-hand side before and the solution after the call.
     pub fn solve(&mut self, x: &mut [f64]) {
         let Some(symbolic) = &self.symbolic else { return };
         let n = x.len();

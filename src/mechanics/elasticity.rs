@@ -1,4 +1,4 @@
-//! Linear elastic constants in the plane and the time step that they allow.
+//! Linear elastic constants in the plane, wave speeds, and the critical time step (Eq. 9).
 
 /// Elastic constants and density of one rock in the plane.
 #[doc(alias = "Hooke")]

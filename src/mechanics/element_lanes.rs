@@ -1,4 +1,4 @@
-//! Corotated forces of elements, eight side by side (Eqs. 6, 7).
+//! Corotated forces of eight elements at once (Eqs. 6, 7): the inner loop of a step in a continuum.
 
 use enmm_lanes::{LANES, Lanes, Table};
 
@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use super::Elasticity;
 use super::chunk::{Group, PreStresses, Row};
 
-/// Eight elements: where their displacements come from and their forces go to.
+/// Eight elements: how their displacements are read and their forces are added.
 pub trait Elements: Sized {
     /// Cut areas (m²).
     fn area(&self) -> &[f64; LANES];
@@ -15,11 +15,11 @@ pub trait Elements: Sized {
     /// Displacements (m) of the second and of the third covers less those of the first.
     fn gather<L: Lanes>(&self, lanes: L, displacement: &Table) -> [[L::F; 2]; 2];
 
-    /// Adds forces x, y on the second and x, y on the third covers (N/m); the first bear what holds them in balance.
-    /// Returns what waits for [`Elements::settle`].
+    /// Adds forces x, y on the second and x, y on the third covers (N/m); the first covers get the forces that balance
+    /// them. Returns the part that [`Elements::settle`] adds later.
     fn add<L: Lanes>(&self, lanes: L, forces: [L::F; 4], force: &mut Table) -> Vector;
 
-    /// Adds what some have left to wait.
+    /// Adds the forces that were left for later.
     fn settle(some: &[Self], waiting: &[Vector; TOGETHER], force: &mut Table);
 }
 
@@ -73,7 +73,7 @@ impl Elements for Row {
     }
 }
 
-/// What the elements of a batch share.
+/// Constants that the elements of a batch share.
 #[derive(Clone, Copy)]
 struct Constants<F> {
     one: F,
@@ -99,17 +99,17 @@ impl<F: Copy> Constants<F> {
     }
 }
 
-/// Eights whose forces are added before what they have left to wait.
+/// Number of groups whose forces are added before those that were left for later.
 pub const TOGETHER: usize = 8;
-/// Eights by which stresses come after deformations, and the adding of forces after stresses: the stages of one eight
-/// wait for each other and ask different parts of the processor, those of several side by side do neither.
+/// Delays of the pipeline, in groups: stresses are computed after deformations, and forces are added after stresses.
+/// The stages of one group depend on each other; those of different groups overlap in the processor.
 const BEHIND: [usize; 2] = [4, 3];
-/// Deformations and forces kept, more than the stages are behind each other.
+/// Deformations and forces that are kept: more than the delays.
 const KEPT: [usize; 2] = [8, 4];
 const _: () = assert!(BEHIND[0] < KEPT[0] && BEHIND[1] < KEPT[1]);
 
 /// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m);
-/// `pre_stress` holds that of each eight or nothing. `meanwhile` is called after every few.
+/// `pre_stress` is that of each group, or empty. `meanwhile` is called after every few groups.
 #[inline(always)]
 pub fn push_forces<L: Lanes, E: Elements>(
     lanes: L,
@@ -162,7 +162,7 @@ fn deformation<L: Lanes, E: Elements>(
     ]
 }
 
-/// Forces x, y on the second and x, y on the third cover; the first bears what holds them in balance.
+/// Forces x, y on the second and x, y on the third cover; the first cover gets the force that balances them.
 #[inline(always)]
 fn corner_forces<L: Lanes>(
     lanes: L,

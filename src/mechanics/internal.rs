@@ -1,4 +1,5 @@
-//! Corotated linear elasticity of one element from total displacements.
+//! Corotated linear elasticity of one element: deformation, stress, forces and energy from its total displacements
+//! (Eqs. 6–8).
 
 use crate::geometry::{Point, Vector};
 
@@ -65,7 +66,7 @@ impl Deformation {
         [two_mu * d[0] + volume * c, two_mu * d[1] - volume * s, two_mu * d[2] + volume * s, two_mu * d[3] + volume * c]
     }
 
-    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that goes with the rock (Eq. 26).
+    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that rotates with the rock (Eq. 26).
     fn carried(&self, pre: &PreStress) -> [f64; 4] {
         let [f11, f12, f21, f22] = self.f;
         let [xx, yy, xy] = *pre;
@@ -101,14 +102,14 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
-    /// Strain RᵀF − I as xx, yy, xy in the axes that turn with the element (Eq. 54).
+    /// Strain RᵀF − I as xx, yy, xy in the axes that rotate with the element (Eq. 54).
     pub fn strain(&self) -> [f64; 3] {
         let d = self.stretch();
         let (c, s) = (self.cos, self.sin);
         [c * d[0] + s * d[2], c * d[3] - s * d[1], 0.5 * (c * (d[1] + d[2]) + s * (d[3] - d[0]))]
     }
 
-    /// The stress (Pa) that a pre-stress makes in the axes that turn with the element: RᵀFσ₀FᵀR/det F.
+    /// Stress (Pa) by a pre-stress in the axes that rotate with the element: RᵀFσ₀FᵀR/det F.
     pub fn carried_in_turned_axes(&self, pre: &PreStress) -> PreStress {
         if *pre == [0.0; 3] {
             return *pre;
@@ -135,7 +136,7 @@ impl Deformation {
         [c * t[0] - s * t[2], c * t[1] - s * t[3], s * t[0] + c * t[2], s * t[1] + c * t[3]]
     }
 
-    /// R·t·Rᵀ of a symmetric tensor xx, yy, xy: from the axes that turn with the element to global ones.
+    /// R·t·Rᵀ of a symmetric tensor xx, yy, xy: from the axes that rotate with the element to global ones.
     pub fn turn(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
         let (c, s) = (self.cos, self.sin);
         let p = self.turn_rows([xx, xy, xy, yy]);

@@ -1,4 +1,4 @@
-//! External loads and how they vary in time.
+//! External loads and their time tables: forces on covers from points, faces, blocks and all rock.
 
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
@@ -56,7 +56,7 @@ pub enum LoadAction {
 /// A load with its time table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// What acts.
+    /// Forces, pressures or accelerations.
     pub action: LoadAction,
     /// Factor over time.
     pub table: TimeTable,

@@ -1,14 +1,14 @@
-//! Equal-thirds lumped mass and the rigid-exact correction of free blocks (Eqs. 2–4).
+//! Mass matrix: equal-thirds lumped mass of the covers with the rigid-exact correction of free blocks (Eqs. 2–4).
 
 use crate::cover::Covers;
 use crate::geometry::{Point, Vector};
 
 use super::Elasticity;
 
-/// Masses of covers and blocks: what turns forces into accelerations.
+/// Masses of covers and blocks, which turn forces into accelerations.
 ///
-/// A free block has the rigid-exact metric; a block that is held anywhere has the plain lumped one, in which the
-/// block terms vanish (`inverse_total` = `spin` = 0).
+/// A free block has the rigid-exact metric; a block with any fixed cover or support has the plain lumped one, in which
+/// the block terms vanish (`inverse_total` = `spin` = 0).
 #[doc(alias = "lumped mass")]
 #[doc(alias = "consistent mass")]
 #[doc(alias = "rigid-exact metric")]
@@ -16,26 +16,26 @@ use super::Elasticity;
 pub struct MassMatrix {
     /// Lumped mass m of each cover (kg/m).
     pub mass: Vec<f64>,
-    /// Row-sum mass ∫ρw of each cover (kg/m): the weight that gravity acts on.
+    /// Row-sum mass ∫ρw of each cover (kg/m): the mass that gravity acts on.
     pub row_sum: Vec<f64>,
-    /// Mass by which a cover counts in the centroid of its block: row-sum when free, lumped when held.
+    /// Mass of a cover for the centroid of its block: row-sum in a free block, lumped in a fixed one.
     pub inertial: Vec<f64>,
-    /// 1/m along x and y, 0 where held.
+    /// 1/m along x and y, 0 where fixed.
     pub inverse: Vec<Vector>,
     /// Mass of each block (kg/m).
     pub total: Vec<f64>,
-    /// 1/M of a free block, 0 of a held one.
+    /// 1/M of a free block, 0 of a fixed one.
     pub inverse_total: Vec<f64>,
     /// S = Σμ²/m of a free block, and (s − 1)·M more of one that is s times lighter.
     pub square: Vec<f64>,
-    /// Polar inertia about the centroid in the metric (kg·m²/m): exact when free, lumped when held.
+    /// Polar inertia about the centroid in the metric (kg·m²/m): exact in a free block, lumped in a fixed one.
     pub polar: Vec<f64>,
     /// Polar inertia of the lumped masses about their own centroid (kg·m²/m).
     pub polar_lumped: Vec<f64>,
-    /// The C of Eq. 3 (1/(kg·m)), no angular velocity; 0 of a held block. As built it is 1/J − 1/J_D; every step
+    /// The C of Eq. 3 (1/(kg·m)), not an angular velocity; 0 of a fixed block. As built it is 1/J − 1/J_D; every step
     /// writes that of the current positions, [`BlockMotion::spin`](super::BlockMotion::spin).
     pub spin: Vec<f64>,
-    /// How many times lighter free blocks are as rigid bodies than their rock; their weights are not.
+    /// Mass scaling: free blocks are lighter by this factor as rigid bodies; their weights are not.
     pub lightness: f64,
     /// Whether no cover of the block can move.
     pub fixed: Vec<bool>,
@@ -89,7 +89,7 @@ impl MassMatrix {
         self.fixed.push(false);
     }
 
-    /// Gives a block the plain lumped metric, as every block that is held anywhere needs.
+    /// Gives a block the plain lumped metric, which every block with a fixed cover or support needs.
     pub fn hold_block(&mut self, covers: &Covers, block: usize) {
         if !self.is_free(block) {
             return;
@@ -103,7 +103,7 @@ impl MassMatrix {
         self.polar[block] = self.polar_lumped[block];
     }
 
-    /// Holds a cover along the axes whose flag is set.
+    /// Fixes a cover along the axes whose flag is set.
     pub fn hold_cover(&mut self, cover: usize, axes: [bool; 2]) {
         for (axis, held) in axes.into_iter().enumerate() {
             if held {
@@ -112,8 +112,8 @@ impl MassMatrix {
         }
     }
 
-    /// Makes free blocks so many times lighter as rigid bodies (Eqs. 73–75); what deforms keeps its mass, which limits
-    /// the step.
+    /// Makes free blocks lighter as rigid bodies by a factor (Eqs. 73–75); the masses of covers, which limit the step,
+    /// stay.
     pub fn lighten(&mut self, lightness: f64) {
         self.lightness = lightness;
         for block in (0..self.total.len()).filter(|&b| self.inverse_total[b] > 0.0) {
@@ -122,7 +122,7 @@ impl MassMatrix {
         }
     }
 
-    /// Mass (kg/m) with which a block answers a force through its centroid.
+    /// Mass (kg/m) of a block under a force through its centroid.
     pub fn rigid_mass(&self, block: usize) -> f64 {
         if self.is_free(block) { self.total[block] / self.lightness } else { self.total[block] }
     }

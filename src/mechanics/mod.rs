@@ -1,5 +1,5 @@
-//! Mass, strain, stress, elastic law, body and boundary forces, energies: pure functions over slices.
-//! Knows nothing of contact or files.
+//! Mechanics of the rock: masses, strain, stress, constitutive laws, loads, damping and energies, as pure functions
+//! over slices. The room `step` calls them; they know nothing of contact or files.
 
 pub mod block_lanes;
 pub mod chunk;

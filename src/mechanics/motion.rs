@@ -1,4 +1,4 @@
-//! Velocities of one block: what forces and damping do to it as a whole, energy and momentum in the block's metric.
+//! Motion of one block: rigid velocity, damping, kinetic energy and momentum by its mass matrix.
 
 use crate::geometry::{Point, Vector};
 
@@ -20,13 +20,13 @@ pub enum Damping {
     Mass(f64),
 }
 
-/// Where a block is.
+/// Current centroid of a block and its inertia correction.
 #[doc(alias = "rigid body")]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockMotion {
     /// Centroid (m).
     pub centre: Point,
-    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current positions; 0 of a held one.
+    /// C = (J_D/J − 1)/J_D' of a free block, J_D' being J_D at the current positions; 0 of a fixed one.
     pub spin: f64,
 }
 
@@ -39,7 +39,7 @@ struct Sums {
     polar: f64,
 }
 
-/// One block's slices of the cover arrays, and the block's position in the metric.
+/// One block's slices of the cover arrays and its index in the mass matrix.
 pub struct BlockCovers<'a> {
     /// Masses of all covers and blocks.
     pub mass_matrix: &'a MassMatrix,
@@ -66,7 +66,7 @@ impl BlockCovers<'_> {
         first / self.mass_matrix.total[self.block]
     }
 
-    /// Rigid velocity of a field and the sums of what is left (Eq. 5).
+    /// Rigid velocity of a field and the sums over the rest (Eq. 5).
     fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let mass_matrix = self.mass_matrix;
         let total = mass_matrix.total[self.block];
@@ -124,7 +124,7 @@ pub fn rigid_velocity(covers: &BlockCovers, velocity: Vector, spin: f64, out: &m
     }
 }
 
-/// Writes the velocities (m/s) that damping leaves (Eqs. 11, 12).
+/// Writes the velocities (m/s) after damping (Eqs. 11, 12).
 pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
     let own = &covers.velocity[covers.range.clone()];
     match damping {
@@ -147,10 +147,10 @@ pub fn damp(covers: &BlockCovers, damping: Damping, damped: &mut [Vector]) {
     }
 }
 
-/// How a block moves at the start of a step, in its metric; positions and velocities count from the reference.
+/// Rigid motion of a block at the start of a step; positions and velocities are relative to a reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockStart {
-    /// What the rest counts from.
+    /// Reference of the other fields.
     pub from: Reference,
     /// Centroid (m).
     centre: Vector,
@@ -180,7 +180,8 @@ impl BlockStart {
         }
     }
 
-    /// What contacts see of the block: C·J_D' is constant, so that J·L/J_D keeps to round-off in every kick and drift.
+    /// Centroid and inertia correction for contacts: C·J_D' is constant, so that J·L/J_D is kept to round-off in every
+    /// kick and drift.
     pub fn motion(&self, mass_matrix: &MassMatrix, block: usize) -> BlockMotion {
         let centre = self.from.position + self.centre;
         if !mass_matrix.is_free(block) {
@@ -189,7 +190,7 @@ impl BlockStart {
         BlockMotion { centre, spin: (mass_matrix.polar_lumped[block] / mass_matrix.polar[block] - 1.0) / self.polar }
     }
 
-    /// What damping and the forces on a block give to all its covers in common (Eqs. 3, 11).
+    /// Common velocity that damping and the forces on a block give to all its covers (Eqs. 3, 11).
     pub fn common(&self, mass_matrix: &MassMatrix, block: usize, sums: &BlockSums, step: &KickStep) -> Common {
         let mut common = Common::default();
         if let Damping::Deformation(factor) = step.damping
@@ -232,7 +233,7 @@ impl BlockStart {
     }
 }
 
-/// What every block shares in a step.
+/// Values of a kick that are the same for every block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KickStep {
     /// Gravity and body loads (m/s²).

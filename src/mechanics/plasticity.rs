@@ -1,14 +1,15 @@
-//! Mohr–Coulomb rock: elastic, perfectly plastic, return mapping in principal stresses (Eqs. 54–59).
+//! Rock that yields: elastic, perfectly plastic Mohr–Coulomb with tension cut-off, by return mapping in principal
+//! stresses (Eqs. 54–59).
 
 use crate::geometry::Vector;
 
 use super::{Deformation, Elasticity};
 
-/// Plastic strain xx, yy, xy, zz of an element in the axes that turn with it.
+/// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
 pub type PlasticStrain = [f64; 4];
 
 /// Stress beyond the surface, relative to the largest stress and the cohesion, that still counts as on it: far above
-/// rounding, so that a second return changes nothing, and far below what anybody measures.
+/// rounding, so that a second return changes nothing, and far below any measurable stress.
 const ON_SURFACE: f64 = 1e-10;
 /// Planes of the surface in the order in which they are tried: shear between sorted principal stresses (first, last),
 /// then the three tension planes and, for plane stress, the shear planes of the opposite order.
@@ -49,7 +50,7 @@ pub struct MohrCoulomb {
     pub cohesion: f64,
     /// Tangent of the dilation angle.
     pub dilation: f64,
-    /// Tensile strength (Pa); none for the apex of the shear planes.
+    /// Tensile strength (Pa); `None` for the apex of the shear planes.
     pub tension: Option<f64>,
 }
 
@@ -75,10 +76,10 @@ impl MohrCoulomb {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
 
-    /// What plastic strain adds to the forces (N/m) on the three covers of an element of cut area `area` (m²).
+    /// Contribution of plastic strain to the forces (N/m) on the three covers of an element of cut area `area` (m²).
     ///
-    /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that
-    /// they turn no element (Eq. 58).
+    /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
+    /// rotate no element (Eq. 58).
     pub fn forces(&self, at: &Deformation, g: &[Vector; 3], area: f64, plastic: &PlasticStrain) -> [Vector; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
         let skew = at.skew([xx, yy, xy]);
@@ -86,13 +87,13 @@ impl MohrCoulomb {
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
     }
 
-    /// What plastic strain adds to the stress xx, yy, xy (Pa) in global axes.
+    /// Contribution of plastic strain to the stress xx, yy, xy (Pa) in global axes.
     pub fn stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
         at.turn([-xx, -yy, -xy])
     }
 
-    /// What plastic strain adds to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. 58).
+    /// Contribution of plastic strain to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. 58).
     pub fn energy(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
@@ -130,13 +131,13 @@ pub struct YieldSurface {
     sin_dilation: f64,
     /// 2c·cos φ (Pa).
     shear: f64,
-    /// Tensile strength (Pa); infinite for a rock without friction that names none.
+    /// Tensile strength (Pa); infinite for a rock without friction and without a given value.
     tension: f64,
     cohesion: f64,
 }
 
 impl YieldSurface {
-    /// What plastic strain grows by at a deformation (Eq. 57); none where the rock is elastic.
+    /// Increment of plastic strain at a deformation (Eq. 57); `None` where the rock is elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
     pub fn growth(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
@@ -154,7 +155,7 @@ impl YieldSurface {
         double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + after[k]) + pre[k]), growth)
     }
 
-    /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that turn with the element (Eq. 55).
+    /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
     fn own_stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 4] {
         let [xx, yy, xy] = at.strain();
         let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
@@ -167,7 +168,7 @@ impl YieldSurface {
         PLANES[..ORDERED].iter().map(|&p| self.beyond(p, &principal.sorted)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; none inside (Eq. 57).
+    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eq. 57).
     pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
         let principal = Principal::of(trial, self.plane_stress);
         let sorted = principal.sorted;
@@ -262,8 +263,8 @@ impl Return<'_> {
         [0, 1, 2].map(|k| if bears(k) { 2.0 * mu * strain[k] + volume } else { 0.0 })
     }
 
-    /// Plastic strain when exactly these planes yield; none when one of them would have to yield backwards, or another
-    /// plane is violated.
+    /// Plastic strain when exactly these planes yield; `None` when one of them would have to yield backwards, or
+    /// another plane is violated.
     fn on<const N: usize>(&self, planes: &[Plane; N]) -> Option<[f64; 3]> {
         let surface = self.surface;
         if planes.iter().any(|&p| surface.beyond(p, &[0.0; 3]) == f64::NEG_INFINITY) {
@@ -286,7 +287,7 @@ impl Return<'_> {
         PLANES.iter().all(holds).then_some(strain)
     }
 
-    /// Plastic strain that leaves the apex, or no stress at all where there is none or it has no place in the plane.
+    /// Plastic strain that leaves the apex, or zero stress where there is no apex or it is impossible in plane stress.
     fn apex(&self) -> [f64; 3] {
         let Elasticity { lambda, mu, .. } = self.surface.elasticity;
         let free = self.principal.free;
@@ -304,7 +305,7 @@ fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j)))
 }
 
-/// Solution of a small linear system by elimination; none when it is singular beside `scale`.
+/// Solution of a small linear system by elimination; `None` when it is singular relative to `scale`.
 fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], scale: f64) -> Option<[f64; N]> {
     for k in 0..N {
         let pivot = (k..N).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;

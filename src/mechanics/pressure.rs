@@ -1,4 +1,5 @@
-//! Pressure on an edge of the boundary, with rock on the left of the way from its first end to its second.
+//! Fluid pressure on boundary edges, as exact forces at both ends. Rock is on the left of the way from the first end to
+//! the second.
 
 use crate::geometry::{Point, Vector};
 
@@ -8,7 +9,7 @@ pub fn uniform(a: Point, b: Point, pressure: f64) -> [Vector; 2] {
 }
 
 /// Forces (N/m) at both ends of the edge from `a` to `b` under still water of unit weight `weight` (N/m³) with its
-/// surface at height `level` (m): the pressure is weight·(level − y) below the level and none above (Eq. 30).
+/// surface at height `level` (m): the pressure is weight·(level − y) below the level and 0 above (Eq. 30).
 pub fn hydrostatic(a: Point, b: Point, level: f64, weight: f64) -> [Vector; 2] {
     let depth = [level - a.y, level - b.y];
     let inward = inward(a, b) * weight;
@@ -74,7 +75,7 @@ fn wet_part(normal: Vector, [from, to]: [f64; 2], depth: [f64; 2]) -> [Vector; 2
 }
 
 /// Forces (N/m) at both ends of an edge, given its inward normal as long as itself, under a pressure (Pa) on the part
-/// between two shares of its length that goes linearly from `ends[0]` to `ends[1]` (Eq. 39).
+/// between two shares of its length that varies linearly from `ends[0]` to `ends[1]` (Eq. 39).
 pub fn part(normal: Vector, [from, to]: [f64; 2], ends: [f64; 2]) -> [Vector; 2] {
     let resultant = 0.5 * (to - from) * (ends[0] + ends[1]);
     let moment = (to - from) * (from * (2.0 * ends[0] + ends[1]) + to * (ends[0] + 2.0 * ends[1])) / 6.0;

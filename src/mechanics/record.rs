@@ -1,4 +1,4 @@
-//! Records of ground motion: piecewise linear in time, and their exact means over a kick.
+//! Records of ground motion (accelerograms): piecewise linear in time, with exact means over a kick (Eq. 45).
 
 /// Rows of time (s) and value, linear between and zero outside; a jump is the end of the rows.
 #[doc(alias = "accelerogram")]
