@@ -1,4 +1,4 @@
-//! Rock bolts: elastic–plastic bars between two material points, judged in the open–close iteration (Eqs. 40–44).
+//! Rock bolts: elastic–plastic bars between two material points, solved in the open–close iteration (Eqs. 40–44).
 
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
@@ -34,14 +34,14 @@ pub struct BoltSegment {
     pub active: bool,
 }
 
-/// What a bar segment remembers from step to step.
+/// State of a bar segment between two steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct BoltState {
     /// Whether it is installed.
     pub active: bool,
     /// Whether it has broken.
     pub broken: bool,
-    /// Length (m) at which it bears no force: grows when the bar yields.
+    /// Length (m) without force: grows when the bar yields.
     pub rest: f64,
     /// The same when it was installed (m).
     pub natural: f64,
@@ -60,7 +60,7 @@ pub struct BoltRow {
     pub direction: Vector,
     /// Length at the step's start (m).
     pub length: f64,
-    /// Length at which it bears no force (m).
+    /// Length without force (m).
     pub rest: f64,
     /// Stiffness (N/m per metre).
     pub stiffness: f64,
@@ -86,7 +86,7 @@ impl BoltSegment {
         self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| position(i) * w).sum()
     }
 
-    /// The state of a segment that is installed at its present length (m): it bears its pretension (Eq. 40).
+    /// The state of a segment that is installed at its current length (m), with its pretension (Eq. 40).
     pub fn install(&self, length: f64) -> BoltState {
         let rest = length - self.pretension / self.stiffness;
         BoltState { active: true, broken: false, rest, natural: rest, force: self.pretension }
@@ -130,7 +130,7 @@ impl BoltSegment {
     }
 }
 
-/// What a segment reads to take part in a step.
+/// Inputs of a segment in a step.
 pub struct BoltView<'a> {
     /// Star positions (m).
     pub star: &'a [Point],
@@ -145,10 +145,10 @@ pub struct BoltView<'a> {
 }
 
 impl BoltRow {
-    /// Tension (N/m) that the bar answers with, from the rate of its length (m/s) under all impulses so far, its own
-    /// `force` included: the contacts' implicit spring, between slack and yield (Eq. 41). A bar is no penalty: θ grows
-    /// from 0 for one that the step resolves to the contacts' for one that is stiff in it, κ = k·W·dt² being large, so
-    /// that a soft bar loses no energy to the scheme.
+    /// Tension (N/m) from the rate of the length (m/s) under all impulses so far, its own `force` included: the
+    /// implicit spring of contacts, between slack and yield (Eq. 41). The stiffness of a bar is physical: θ grows from
+    /// 0 for a bar that the step resolves to that of contacts for a stiff one (large κ = k·W·dt²), so that a soft bar
+    /// loses no energy to the scheme.
     pub fn answer(&self, rate: f64, dt: f64, kick: f64, theta: f64) -> f64 {
         let wa = self.compliance * kick;
         let kappa = self.stiffness * wa * dt;

@@ -1,9 +1,10 @@
-//! Boundary of the blocks as contact sees it: points with weights, edges between them, nodes and sides.
+//! Boundary of the blocks for contact: points with weights, edges between them, nodes and sides. It is built once with
+//! the model; broad and narrow phase read it.
 
 use crate::cover::{self, BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector};
 
-/// What the end of a side is.
+/// Kind of the end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Corner {
     /// Rock within less than half a turn.
@@ -76,7 +77,7 @@ pub struct Boundary {
     pub side_next: Vec<u32>,
     /// Both ends of each side, start and finish.
     pub side_ends: Vec<[SideEnd; 2]>,
-    /// Twice the area of each block over its perimeter (m): how thick it is.
+    /// Thickness of each block: twice its area over its perimeter (m).
     pub block_thickness: Vec<f64>,
 }
 
@@ -89,7 +90,7 @@ pub struct SideEnd {
     pub round: u32,
     /// Boundary point that is the end.
     pub point: u32,
-    /// What the end is.
+    /// Kind of the end.
     pub corner: Corner,
 }
 

@@ -1,5 +1,5 @@
-//! Which nodes are near which edges: stretches of the boundary are laid into a grid, and nodes look round in it, anew
-//! when nodes have moved far enough.
+//! Broad phase: finds the edges near every node. The boundary is divided into stretches of up to eight edges in a grid.
+//! The list of near pairs is valid until a node has moved too far (a Verlet list with skin); the narrow phase reads it.
 
 mod find;
 mod grid;
@@ -30,7 +30,7 @@ pub struct NearPair {
     pub edge: u32,
 }
 
-/// What the last search found, and where the nodes were then.
+/// Near pairs of the last search, and the positions of the nodes at that time.
 #[doc(alias = "Verlet list")]
 #[doc(alias = "broad phase")]
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -51,7 +51,7 @@ impl NeighbourList {
                 .any(|(&p, old)| (position[p as usize] - old).norm_squared() > slack * slack)
     }
 
-    /// Where the nodes were at the last search (m); empty when the next step has to search anew.
+    /// Positions of the nodes at the last search (m); empty when the next step has to search again.
     pub fn found_at(&self) -> &[Point] {
         &self.found_at
     }
@@ -68,12 +68,12 @@ impl NeighbourList {
         self.found_at.clone_from(found_at);
     }
 
-    /// Makes the next step search anew.
+    /// Makes the next step search again.
     pub fn forget(&mut self) {
         self.found_at.clear();
     }
 
-    /// Takes what was found in runs, and notes where the nodes are.
+    /// Collects the near pairs of all runs, and records the positions of the nodes.
     fn take(&mut self, runs: &mut [Run], view: &SearchView) {
         if let [run] = runs {
             std::mem::swap(&mut self.pairs, &mut run.near_pairs);
@@ -86,7 +86,7 @@ impl NeighbourList {
     }
 }
 
-/// What a search reads.
+/// Inputs of a search.
 pub struct SearchView<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
@@ -94,9 +94,9 @@ pub struct SearchView<'a> {
     pub position: &'a [Point],
     /// Distance (m) within which a pair is near.
     pub cutoff: f64,
-    /// Blocks that do not count.
+    /// Blocks to leave out: they have been excavated.
     pub removed: &'a [bool],
-    /// Blocks of which no two can meet.
+    /// Blocks that cannot move: two of them never meet.
     pub fixed: &'a [bool],
     /// Whether to keep to the calling thread.
     pub serial: bool,

@@ -1,5 +1,6 @@
-//! Search, vertex–edge contacts, entrance edge, joint laws, supports and the open–close iteration.
-//! Knows nothing of files or FMI.
+//! Contact between blocks, in the order of a step: boundary, broad phase (near pairs), narrow phase (contacts by the
+//! vertex rule), joint laws and springs, supports and bolts, and the solver (open–close iteration). Knows nothing of
+//! files or FMI.
 
 mod bolt;
 mod boundary;

@@ -1,4 +1,4 @@
-//! Two material points that act on each other: a node and an edge, or the ends of a bolt.
+//! Two material points that act on each other: a node and an edge, or the ends of a bolt. Contacts and bolts share it.
 
 use crate::cover::{self, Weights};
 use crate::geometry::Vector;

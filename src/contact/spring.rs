@@ -1,10 +1,11 @@
-//! The spring of a contact along one axis, as an explicit step meets it (Eq. 14).
+//! Springs of a contact in an explicit step: a normal or shear spring, and its linear response to a velocity (Eq. 14).
 
 /// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
 const CENTRED: f64 = 0.25;
 
-/// What a spring asks for: `rest` − `rate`·v + `kept`·(its force so far), v being the velocity by all impulses so far.
-/// Of a linear spring it is the force times 1 + `kept`, of a curved one the closure (m) that the force follows from.
+/// Implicit response of a spring: `rest` − `rate`·v + `kept`·(its force so far), where v is the velocity by all
+/// impulses so far. For a linear spring this is the force times 1 + `kept`; for a curved one it is the closure (m) that
+/// determines the force.
 #[doc(alias = "soft constraint")]
 #[doc(alias = "penalty")]
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,7 +18,7 @@ pub struct SoftSpring<T = f64> {
     pub kept: T,
 }
 
-/// A spring normal or shear, and what acts on it in a step.
+/// A normal or shear spring with its velocity and time constants in a step.
 #[doc(alias = "penalty")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
@@ -27,9 +28,9 @@ pub struct Spring {
     pub compliance: f64,
     /// Predicted relative velocity without contact forces (m/s).
     pub approach: f64,
-    /// Share of the step's motion that it feels ahead: θ, or that of a joint's own spring.
+    /// Forward weight of the motion in the step: θ, or that of a joint's own spring.
     pub forward: f64,
-    /// Motion (m) that is added to what it feels: minus a share of that of the last step.
+    /// Motion (m) that is added: minus a share of that of the last step.
     pub lag: f64,
     /// Time (s) for which positions move.
     pub dt: f64,
@@ -42,7 +43,7 @@ impl Spring {
     ///
     /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
     /// stiffer one gets a dashpot that grows towards that of θ. The motion in the last step was `last` (m), and
-    /// `damping` is 2ξ·√M of the two blocks against each other (kg½/m½): what the spring takes of their bouncing.
+    /// `damping` is 2ξ·√M of the two blocks against each other (kg½/m½): it damps their bouncing.
     #[must_use]
     pub fn centred(self, last: f64, damping: f64) -> Self {
         let stiff = self.stiffness * self.compliance * self.dt * self.kick;
@@ -51,7 +52,7 @@ impl Spring {
         Self { forward, lag: -CENTRED * last, ..self }
     }
 
-    /// The answer of a linear spring that bears `stored` (N/m) at the step's start.
+    /// Response of a linear spring with the force `stored` (N/m) at the start of the step.
     #[inline(always)]
     pub fn linear(&self, stored: f64) -> SoftSpring {
         let a = self.stiffness * self.forward * self.dt;
@@ -59,7 +60,7 @@ impl Spring {
         SoftSpring { rest: stored - self.stiffness * self.lag - a * self.approach, rate: a, kept: aw }
     }
 
-    /// The answer of a curved spring that is closed by `closure` (m) at the step's start.
+    /// Response of a curved spring with the closure `closure` (m) at the start of the step.
     #[inline(always)]
     pub fn curved(&self, closure: f64) -> SoftSpring {
         let reach = self.forward * self.dt;

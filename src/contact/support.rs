@@ -1,11 +1,11 @@
-//! Supports: bilateral springs that hold a material point along one direction, and dashpots of quiet boundaries, judged
-//! in the same iteration.
+//! Supports: springs that fix a material point along one direction, and dashpots of quiet boundaries. The open–close
+//! iteration solves them together with the contacts (Eqs. 23, 47).
 
 use crate::cover::{self, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
-/// What a support answers to.
+/// Whether a support resists displacement or velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Resistance {
     /// Displacement.
@@ -28,13 +28,13 @@ pub struct Support {
     pub covers: [u32; 3],
     /// Their weights at the point.
     pub weights: Weights,
-    /// Unit direction that is held.
+    /// Unit direction of the support.
     pub direction: Vector,
-    /// What it answers to.
+    /// Spring or dashpot.
     pub resistance: Resistance,
     /// Stiffness of a spring (N/m per metre), viscosity of a dashpot (N·s/m per metre).
     pub stiffness: f64,
-    /// Force (N/m) that it bears at no displacement, from in-situ stress.
+    /// Force (N/m) at zero displacement, from in-situ stress.
     pub preload: f64,
 }
 
@@ -43,9 +43,9 @@ pub struct Support {
 pub struct SupportRow {
     /// Index of the support.
     pub support: u32,
-    /// Displacement along the held direction (m).
+    /// Displacement along the direction (m).
     pub displacement: f64,
-    /// Force (N/m) at no velocity at the end of the step.
+    /// Force (N/m) if the velocity at the end of the step is zero.
     pub target: f64,
     /// Loss of force per velocity at the end of the step (N·s/m per metre).
     pub viscosity: f64,

@@ -1,10 +1,11 @@
-//! One contact between a boundary node and the edge that it may enter.
+//! One contact between a boundary node and an edge: its data in a step (`VertexEdge`) and between steps
+//! (`ContactHistory`). The narrow phase makes it, the solver finds its forces.
 
 use crate::geometry::Vector;
 
 use super::{Closure, Limits, Pair, SoftSpring};
 
-/// What a contact does at the end of a step.
+/// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
 #[doc(alias = "locked")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -18,7 +19,7 @@ pub enum ContactState {
     Lock,
 }
 
-/// What a contact remembers from step to step; identified by node and side.
+/// Data of a contact that pass from step to step, identified by node and side.
 #[doc(alias = "warm start")]
 #[doc(alias = "contact memory")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -33,17 +34,17 @@ pub struct ContactHistory {
     pub normal_force: f64,
     /// Shear force at the end of the last step (N/m), on the node along the edge.
     pub shear_force: f64,
-    /// How both forces have changed in the last step (N/m).
+    /// Change of both forces in the last step (N/m).
     pub trend: [f64; 2],
-    /// Elastic shear of the spring (m): what it has stored, whatever length the contact will have.
+    /// Elastic shear of the spring (m), independent of the length of the contact.
     pub sheared: f64,
-    /// Penetration at first sight that carries no force (m); it fades.
+    /// Initial penetration without force (m); it fades.
     pub offset: f64,
-    /// Closure that is at rest: from pre-stress and dilation (m).
+    /// Closure without force: from pre-stress and dilation (m).
     pub rest: f64,
     /// Accumulated slip (m).
     pub slip: f64,
-    /// Share of its strength that the overlap at the ends of the side gave it in the last step.
+    /// Share of the strength in the last step, by the overlap at the ends of the side.
     pub share: f64,
     /// Open, slip or lock.
     pub state: ContactState,
@@ -51,7 +52,7 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// A contact during one step: geometry, how it answers, and forces. What the sweeps read comes first.
+/// A contact during one step: geometry, springs and forces. The fields that the sweeps read come first.
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
@@ -62,7 +63,7 @@ pub struct VertexEdge {
     pub pair: Pair,
     /// Outward unit normal of the edge.
     pub normal: Vector,
-    /// How the springs normal and shear answer in an explicit step.
+    /// Implicit responses of the normal and shear spring in an explicit step.
     pub answers: [SoftSpring; 2],
     /// Forces (N/m), normal and shear, that an explicit step starts from.
     pub expected: [f64; 2],
@@ -70,19 +71,19 @@ pub struct VertexEdge {
     pub limits: Limits,
     /// Greatest closure of the normal spring (m); infinite for a linear one.
     pub closure_max: f64,
-    /// What it remembers; forces are updated by the sweeps.
+    /// Data that pass to the next step; the sweeps update the forces.
     pub history: ContactHistory,
     /// Springs normal (initial stiffness) and shear (N/m per metre).
     pub stiffness: [f64; 2],
-    /// Gap along the normal that the springs see (m); negative in penetration.
+    /// Gap of the springs along the normal (m); negative in penetration.
     pub gap: f64,
     /// Tributary length (m).
     pub length: f64,
     /// Law of the joint.
     pub law: u32,
-    /// Whether the normal force asked for more tension than the joint has.
+    /// Whether the contact failed in tension in this step.
     pub torn: bool,
-    /// Whether the contact is seen for the first time.
+    /// Whether the contact is new in this step.
     pub fresh: bool,
 }
 
@@ -97,7 +98,7 @@ impl VertexEdge {
     }
 }
 
-/// Share of their last change by which forces are expected to change again: from 0.7 on resting contacts swing.
+/// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
 const EXPECTED: f64 = 0.5;
 
 impl VertexEdge {
@@ -136,13 +137,13 @@ impl VertexEdge {
         self.stiffness[1] * self.history.sheared
     }
 
-    /// Penetration of the node (m), with no allowance.
+    /// Penetration of the node (m): that of the springs plus the initial offset.
     #[inline(always)]
     pub fn penetration(&self) -> f64 {
         self.loaded_penetration() + self.history.offset
     }
 
-    /// Penetration (m) that the springs resist: without what was there at first sight.
+    /// Penetration (m) that the springs resist: without the initial offset.
     #[inline(always)]
     pub fn loaded_penetration(&self) -> f64 {
         -self.gap - self.history.rest
@@ -167,7 +168,8 @@ impl VertexEdge {
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
 
-    /// Expects forces: a contact that stays closed goes on half as it has changed, within its limit.
+    /// Warm start: a contact that stays closed begins with its last force plus half of its last change, within its
+    /// limit.
     #[inline(always)]
     pub fn expect(&mut self) {
         let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
@@ -179,7 +181,7 @@ impl VertexEdge {
         }
     }
 
-    /// Takes the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and notes how they have changed.
+    /// Stores the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and their change.
     #[inline(always)]
     pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool) {
         let ContactHistory { normal_force, shear_force, .. } = self.history;
@@ -187,8 +189,8 @@ impl VertexEdge {
         self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
     }
 
-    /// Takes forces (N/m) that the joint carries, none unless it `bears`; `torn` when it was asked for more tension
-    /// than it has. No branch depends on what they are: that is hard to foresee.
+    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`; `torn` after a failure in tension. No
+    /// branch depends on their values, which are hard to predict.
     #[inline(always)]
     pub fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool) {
         let slips = shear.abs() >= self.shear_limit(normal);
@@ -199,7 +201,7 @@ impl VertexEdge {
         self.torn = torn;
     }
 
-    /// Clamps the forces that the springs ask for to what the joint can carry.
+    /// Clamps the forces of the springs to the limits of the joint.
     #[inline(always)]
     pub fn decide(&mut self, normal: f64, shear: f64) {
         let torn = normal < -self.limits.tension();

@@ -1,4 +1,4 @@
-//! Near edges of nodes.
+//! Finds the near edges of nodes in the grid.
 
 use std::ops::Range;
 
@@ -10,19 +10,19 @@ use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
 use super::{NearPair, SearchView};
 
-/// Most nodes in a row that look round together.
+/// Greatest number of consecutive nodes that search together.
 const FEW: usize = 8;
 /// Stretches up to which a list is sorted by ranks.
 const SHORT: usize = 32;
 
-/// What is found for some nodes, and buffers for it.
+/// Near pairs of some nodes, and buffers.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
     pub near_pairs: Vec<NearPair>,
     /// Stretches round a few nodes, and their boxes.
     around: Vec<u32>,
     boxes: Vec<Boxes>,
-    /// Those near one node.
+    /// Stretches near one node.
     near: Vec<u32>,
 }
 
@@ -34,7 +34,7 @@ impl Run {
     }
 }
 
-/// Near edges of some nodes are found: compiled for every kind of lanes.
+/// Finds the near edges of some nodes: compiled for every kind of lanes.
 pub struct Find<'a> {
     pub grid: &'a Grid,
     pub view: &'a SearchView<'a>,
@@ -62,7 +62,7 @@ impl Kernel for Find<'_> {
 }
 
 impl Find<'_> {
-    /// Takes the next few nodes of one block: which, block and box.
+    /// The next few nodes of one block: indices, block and bounding box.
     #[inline(always)]
     fn next_few(&mut self) -> (Range<usize>, u32, Span) {
         let (boundary, position) = (self.view.boundary, self.view.position);
@@ -136,7 +136,7 @@ impl Find<'_> {
     }
 }
 
-/// Sorts different numbers, a few of them by counting how many are less than each.
+/// Sorts distinct numbers; a few of them by counting how many are smaller than each.
 #[inline(always)]
 fn sort(list: &mut [u32]) {
     if list.len() > SHORT {
@@ -152,7 +152,7 @@ fn sort(list: &mut [u32]) {
     }
 }
 
-/// Which of the eight edges from one on a node of their own block can touch at all.
+/// Which of eight consecutive edges a node of their own block can touch.
 fn may_meet(boundary: &Boundary, node: usize, first: u32) -> u8 {
     let sides = [boundary.side[boundary.node_point[node] as usize], boundary.side_of_node_before(node)];
     let edges = (first as usize..boundary.len()).take(LANES).enumerate();

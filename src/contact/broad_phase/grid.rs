@@ -1,4 +1,4 @@
-//! Stretches of the boundary, sorted into the cells of a grid by their middles.
+//! Grid of the broad phase: stretches of the boundary, sorted into square cells by their middles.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ const LONGEST: f64 = 8.0;
 /// Most cells per stretch; where blocks have flown apart cells are larger.
 const CELLS_PER_STRETCH: f64 = 4.0;
 
-/// Up to eight edges in a row of one loop.
+/// Up to eight consecutive edges of one loop.
 #[derive(Debug, Clone, Copy)]
 pub struct Stretch {
     pub span: Span,
@@ -40,26 +40,26 @@ struct Cells {
     rows: usize,
 }
 
-/// Cells go row by row, so that neighbours in a row are one run of stretches.
+/// Cells are stored row by row, so that the stretches of neighbouring cells in a row are consecutive.
 #[derive(Debug, Clone, Default)]
 pub struct Grid {
     cells: Cells,
-    /// Farthest that the middle of a stretch may be from a box near it, along either axis (m).
+    /// Greatest distance of the middle of a stretch from a box near it, along either axis (m).
     reach: f64,
     /// Points of all loops (m), with the first of a loop again after its last.
     x: Vec<f64>,
     y: Vec<f64>,
     pub stretches: Vec<Stretch>,
-    /// First position of every cell; a row starts with a new eight.
+    /// First position of every cell; a row starts with a new group of eight.
     cell_start: Vec<u32>,
     /// Stretches by position: by cell and, within one, by index.
     pub stretch_at: Vec<u32>,
-    /// Their boxes, eight by eight.
+    /// Their boxes, in groups of eight.
     pub boxes: Vec<Boxes>,
 }
 
 impl Stretch {
-    /// As many of some edges in a row as are not too long together; the first of them starts at a point of the grid.
+    /// As many of some consecutive edges as are not too long together; the first of them starts at a point of the grid.
     fn of(view: &SearchView, edges: Range<usize>, point: usize) -> Self {
         let (boundary, edge) = (view.boundary, edges.start);
         let (mut span, mut count, mut partial) = (Span::at(view.position[edge]), 0, false);
@@ -73,7 +73,7 @@ impl Stretch {
         Self { span, edge: edge as u32, point: point as u32, block: boundary.block[edge], count, partial }
     }
 
-    /// Bits of the edges that it has.
+    /// Bit mask of its edges.
     #[inline(always)]
     fn edges(&self) -> u8 {
         ((1u32 << self.count) - 1) as u8
@@ -103,14 +103,14 @@ impl Grid {
         points + cells + size_of_val(self.stretches.as_slice()) + size_of_val(self.boxes.as_slice())
     }
 
-    /// Lays all edges that count into the grid.
+    /// Fills the grid with the edges of all blocks that are present.
     pub fn lay(&mut self, view: &SearchView) {
         self.divide(view);
         self.measure(view.cutoff);
         self.sort();
     }
 
-    /// Divides the boundary of the blocks that count into stretches.
+    /// Divides the boundary of the blocks that are present into stretches.
     fn divide(&mut self, view: &SearchView) {
         let boundary = view.boundary;
         self.x.clear();
@@ -127,7 +127,7 @@ impl Grid {
         self.push_points(&[Point::zeros(); LANES]);
     }
 
-    /// Divides a loop, evenly but for stretches that would become long.
+    /// Divides a loop evenly, except where stretches would become long.
     fn divide_loop(&mut self, view: &SearchView, edges: Range<usize>) {
         let most = edges.len().div_ceil(edges.len().div_ceil(LANES));
         let first_point = self.x.len();
@@ -146,7 +146,7 @@ impl Grid {
         self.y.extend(points.iter().map(|p| p.y));
     }
 
-    /// Lays the grid over the middles of all stretches.
+    /// Sizes the grid for the middles of all stretches.
     fn measure(&mut self, cutoff: f64) {
         let (mut low, mut high, mut longest) = (Point::new(f64::MAX, f64::MAX), Point::new(f64::MIN, f64::MIN), 0.0f64);
         for Stretch { span, .. } in &self.stretches {
@@ -193,7 +193,7 @@ impl Grid {
         }
     }
 
-    /// To which edges of a stretch a point is near.
+    /// Bit mask of the edges of a stretch that are near a point.
     #[inline(always)]
     pub fn near_edges<L: Lanes>(&self, within: &Within<L>, p: Point, stretch: &Stretch) -> u8 {
         let from = stretch.point as usize;
@@ -203,7 +203,7 @@ impl Grid {
         }
     }
 
-    /// Eights, by index, of the cells round a box, row by row.
+    /// Groups of eight, by index, in the cells round a box, row by row.
     #[inline(always)]
     pub fn round(&self, span: Span) -> impl Iterator<Item = Range<usize>> {
         let reach = Vector::new(self.reach, self.reach);

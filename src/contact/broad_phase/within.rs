@@ -1,4 +1,4 @@
-//! What lies within the cutoff, eight boxes or edges at once.
+//! Tests whether boxes or edges are within the cutoff, eight at once.
 
 use enmm_lanes::{LANES, Lanes};
 
@@ -11,7 +11,7 @@ pub struct Span {
     pub high: Point,
 }
 
-/// Eight boxes side by side: low x, low y, high x, high y.
+/// Eight boxes, one in each lane: low x, low y, high x, high y.
 pub type Boxes = [[f64; LANES]; 4];
 /// Boxes that are near nothing.
 pub const NOWHERE: Boxes = [[f64::INFINITY; LANES]; 4];
@@ -67,7 +67,7 @@ impl<L: Lanes> Within<L> {
             & lanes.at_most(lanes.splat(low.y) - top, cutoff)
     }
 
-    /// To which of eight edges in a row, between nine points, a point is nearer than the cutoff: with the bits of
+    /// Which of eight consecutive edges, between nine points, are nearer to a point than the cutoff: with the bits of
     /// [`segment::distance`](crate::geometry::segment::distance).
     #[inline(always)]
     pub fn edges(&self, p: Point, x: &[f64; LANES + 1], y: &[f64; LANES + 1]) -> u8 {
@@ -80,7 +80,7 @@ impl<L: Lanes> Within<L> {
         lanes.at_most(x * x + y * y, self.square)
     }
 
-    /// Way along one axis from the starts of eight edges to a point, and to their ends.
+    /// Distance along one axis from the starts of eight edges to a point, and to their ends.
     #[inline(always)]
     fn along_axis(&self, p: f64, points: &[f64; LANES + 1]) -> [L::F; 2] {
         let (start, end) = (self.lanes.load_some(&points[..LANES], p), self.lanes.load_some(&points[1..], p));
@@ -100,7 +100,8 @@ fn greatest_square(root: f64) -> f64 {
     square
 }
 
-/// Marks on the lanes of up to eight eights, seen all at once: then their number is all that a processor has to guess.
+/// Marked lanes of up to eight groups of eight, visited together, so that the processor has to predict only their
+/// number.
 #[derive(Default)]
 pub struct Marks {
     eights: [u32; LANES],
@@ -109,7 +110,7 @@ pub struct Marks {
 }
 
 impl Marks {
-    /// Adds an eight with its marks, when need be after those so far have been seen.
+    /// Adds a group with its marks; visits the earlier ones first if the buffer is full.
     #[inline(always)]
     pub fn push(&mut self, eight: u32, marks: u8, see: &mut impl FnMut(u32, usize)) {
         if self.count == LANES {
@@ -120,7 +121,7 @@ impl Marks {
         self.count += 1;
     }
 
-    /// Shows every marked lane with its eight, in order, and forgets them.
+    /// Visits every marked lane with its group, in order, and clears the marks.
     #[inline(always)]
     pub fn see(&mut self, see: &mut impl FnMut(u32, usize)) {
         while self.bits != 0 {

@@ -1,4 +1,4 @@
-//! Joint laws: stiffness and strength of a joint.
+//! Joint laws: stiffness and strength of a joint, as pure functions of force, length and slip (theory §7).
 
 mod barton_bandis;
 

@@ -1,31 +1,31 @@
-//! The constants of the vertex rule and of the lengths and springs that follow from it.
+//! Constants of the vertex rule, and of lengths and springs of contacts. No case sets them.
 
-/// Constants of contact. Lengths are relative to the mesh size unless told otherwise.
+/// Constants of contact. Lengths are relative to the mesh size unless stated otherwise.
 ///
-/// They are no setting of a case: tests halve and double each of them, and answers stay (theory §5).
+/// They are not settings of a case: tests halve and double each of them, and results stay (theory §5).
 #[doc(alias = "tolerance")]
 #[doc(alias = "slop")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EntranceRule {
-    /// Height of a ledge up to which it catches nothing; one of twice that catches in full.
+    /// Height of a ledge up to which it holds nothing; a ledge of twice the height holds in full.
     pub ledge: f64,
-    /// Penetration that contacts stay below: what is farther apart does not touch with springs unloaded.
+    /// Upper bound of the penetration of contacts: corners that are deeper do not touch by springs alone.
     pub closure_most: f64,
-    /// Sine of the angle up to which two faces that look at each other lie on each other, and by which a neighbour of a
-    /// node may lie inside the edge that the node enters: 10°.
+    /// Sine of the angle up to which two facing sides count as parallel, and by which a neighbour of a node may lie
+    /// inside the edge that the node enters: 10°.
     pub flush_sine: f64,
-    /// Cosine from which two sides of a block look apart, with rock between them: 60°.
+    /// Cosine from which two sides of a block face away from each other, with rock between them: 60°.
     pub opposed_cosine: f64,
     /// Distance beyond a corner up to which a contact that carries force is kept.
     pub held_beyond: f64,
-    /// Depth from which a contact at first sight starts without force,
+    /// Depth from which a new contact starts without force,
     pub deep: f64,
     /// and the same relative to the thickness of the thinner block, where that is less.
     pub deep_share: f64,
     /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
     pub wedge_ratio: f64,
     /// Least length of the solver's own stiffness of a contact in full strength, relative to the mean of the node
-    /// segments: rock that meets in a point is no softer than where it meets in a face.
+    /// segments: a contact at a point is not softer than one of two faces.
     pub stiffness_floor: f64,
     /// Penetration at which the solver's own stiffness has doubled.
     pub hardens: f64,

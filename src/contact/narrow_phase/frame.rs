@@ -1,4 +1,4 @@
-//! Edges and nodes at their current positions, once a step for all that judge them.
+//! Current positions and directions of edges and nodes, computed once a step for the narrow phase.
 
 use rayon::prelude::*;
 
@@ -32,11 +32,11 @@ pub(super) struct NodeFrame {
     pub to: [Vector; 2],
     /// How far those are (m).
     pub distance: [f64; 2],
-    /// Whether its rock is a corner of less than half a turn.
+    /// Whether it is a convex corner.
     pub is_convex: bool,
 }
 
-/// Where a point is over an edge.
+/// Position of a point relative to an edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Over {
     /// Distance along the edge from its start (m).
@@ -102,8 +102,8 @@ impl Frames {
         size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
     }
 
-    /// Frames of all edges and nodes, where `position` are the current positions of the boundary points; corners turn
-    /// by more than an angle given by its sine.
+    /// Updates all edges and nodes from the current positions of the boundary points; at a corner the boundary turns by
+    /// more than an angle given by its sine.
     pub fn update(&mut self, boundary: &Boundary, position: &[Point], flush_sine: f64, serial: bool) {
         let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, position[*next as usize]);
         let at = |node: u32| position[boundary.node_point[node as usize] as usize];

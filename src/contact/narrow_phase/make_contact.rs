@@ -1,4 +1,4 @@
-//! Geometry, law, stiffness and history of an accepted contact.
+//! Makes a contact from an accepted candidate: geometry, law, stiffness and history.
 
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::geometry::{Point, Vector};
 use super::tributary_length::Tributary;
 use super::{Approach, CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase, right_of};
 
-/// Contacts are made of what was accepted: compiled for every kind of lanes.
+/// Makes contacts from accepted candidates: compiled for every kind of lanes.
 struct Make<'a> {
     narrow: &'a NarrowPhase<'a>,
     candidates: &'a [ContactCandidate],
@@ -29,7 +29,7 @@ impl Kernel for Make<'_> {
 }
 
 impl NarrowPhase<'_> {
-    /// Makes the contacts of some candidates in place, from the contact `made` on; returns where they end.
+    /// Makes the contacts of some candidates in place, from index `made` on; returns their end.
     pub(super) fn make(&self, candidates: &[ContactCandidate], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
         let end = made + candidates.len();
         contacts.resize(contacts.len().max(end), VertexEdge::default());
@@ -90,16 +90,16 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// How many times stiffer the solver's own stiffness is at the penetration that a step would reach from a gap (m)
-    /// that opens at some rate (m/s).
+    /// Factor on the default stiffness at the penetration that a step would reach from a gap (m) that opens at some
+    /// rate (m/s).
     #[inline(always)]
     fn hardening(&self, gap: f64, rate: f64) -> f64 {
         let reached = gap + rate * self.approach.as_ref().map_or(0.0, |approach| approach.dt);
         1.0 + (reached.min(0.0) / (self.rule.hardens * self.size)).powi(2)
     }
 
-    /// How a contact with these inverse effective masses (m/kg) answers in an explicit step. A joint's own springs are
-    /// centred in a dynamic stage.
+    /// Spring responses of a contact with these inverse effective masses (m/kg) in an explicit step. A joint's own
+    /// springs are centred in a dynamic stage.
     #[inline(always)]
     fn answer(&self, contact: &mut VertexEdge, compliance: [f64; 2], approach: &Approach) {
         let Approach { predicted, dt, kick, damping } = *approach;
@@ -129,8 +129,8 @@ impl NarrowPhase<'_> {
         contact.expect();
     }
 
-    /// Covers that carry the position on an edge under a node: at a point of the boundary those of the point, since
-    /// there round-off decides which of two edges is the nearer.
+    /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off
+    /// decides there which of two edges is nearer.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
         let (boundary, edge, band) = (self.boundary, candidate.edge as usize, CORNER_TOLERANCE * self.size);

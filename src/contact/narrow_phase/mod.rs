@@ -1,4 +1,5 @@
-//! Narrow phase: which edge a node may enter, by the vertex rule of theory §6, and the contact's geometry.
+//! Narrow phase: turns the near pairs of the broad phase into the contacts of a step. The vertex rule (theory §5)
+//! decides which edge a node may enter; then geometry, length, springs and history of the contact follow.
 
 mod constants;
 mod frame;
@@ -20,11 +21,11 @@ pub use constants::EntranceRule;
 pub use frame::Frames;
 pub use penetrating::PenetratingContacts;
 
-/// Near pairs that are tested as one run, and shared between threads as one: fixed, since the order is the model's.
+/// Near pairs in a run, which one thread tests: fixed, so that the order does not depend on threads.
 const RUN: usize = 4096;
 /// Runs that are tested before their contacts are made.
 const RUNS: usize = 64;
-/// Contacts whose geometry a thread makes at least.
+/// Least number of contacts that a thread makes.
 const GRAIN: usize = 256;
 
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
@@ -32,7 +33,7 @@ const CORNER_TOLERANCE: f64 = 1e-9;
 /// Difference of two depths, relative to the mesh size, below which they count as equal.
 const TIE_TOLERANCE: f64 = 1e-6;
 
-/// What the narrow phase reads.
+/// Inputs of the narrow phase.
 #[doc(alias = "entrance")]
 #[doc(alias = "vertex rule")]
 pub struct NarrowPhase<'a> {
@@ -64,19 +65,19 @@ pub struct NarrowPhase<'a> {
     pub dt_last: f64,
     /// Contacts of the last step, ordered by node and side.
     pub history: &'a [ContactHistory],
-    /// Where those of each node are.
+    /// Index of these contacts by node.
     pub cache: &'a ContactCache,
-    /// Those in penetration, by node and by the node segment that they lie on.
+    /// Those in penetration, by node and by node segment.
     pub penetrating: &'a PenetratingContacts,
-    /// How contacts come on in an explicit step; none in an implicit one.
+    /// Velocities and step of an explicit step; `None` in an implicit one.
     pub approach: Option<Approach<'a>>,
     /// Mesh size (m).
     pub size: f64,
     /// Constants.
     pub rule: EntranceRule,
-    /// Cosine of the angle up to which faces lie on each other.
+    /// Cosine of the angle up to which two faces count as parallel.
     pub flush_cosine: f64,
-    /// Gap (m) below which a contact takes part in the iteration.
+    /// Gap (m) below which a pair becomes a contact of this step.
     pub reach: f64,
     /// θ of the contact springs.
     pub theta: f64,
@@ -88,7 +89,7 @@ pub struct NarrowPhase<'a> {
     pub serial: bool,
 }
 
-/// How contacts come on in an explicit step.
+/// Velocities and step for the springs of an explicit step.
 pub struct Approach<'a> {
     /// Velocities (m/s) of the covers without contact forces.
     pub predicted: &'a [Vector],
@@ -100,7 +101,7 @@ pub struct Approach<'a> {
     pub damping: Option<f64>,
 }
 
-/// Where the contacts of the last step are in the list that is ordered by node and side.
+/// Index of the contacts of the last step by node; their list is ordered by node and side.
 #[doc(alias = "persistent manifold")]
 #[derive(Debug, Clone, Default)]
 pub struct ContactCache {
@@ -130,7 +131,7 @@ impl ContactCache {
     }
 }
 
-/// A node over an edge of one side.
+/// A pair under test: a node over an edge of one side.
 #[derive(Debug, Clone, Copy, Default)]
 struct ContactCandidate {
     node: u32,
@@ -145,23 +146,23 @@ struct ContactCandidate {
     held: Option<u32>,
     /// Whether the contact carried force in the last step.
     is_held: bool,
-    /// How far (m) along the side it overlaps before its start and its finish, with springs unloaded.
+    /// Overlap (m) along the side before its start and its finish, with springs unloaded.
     overlap: [f64; 2],
     accepted: bool,
 }
 
-/// What the vertex rule accepts in one step: buffers of [`entrance_edges`].
+/// Candidates that the vertex rule accepts in one step: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
 pub struct AcceptedPairs {
     runs: Vec<Run>,
     candidates: Vec<ContactCandidate>,
 }
 
-/// What it accepts of a run of near pairs.
+/// Candidates that it accepts of a run of near pairs.
 #[derive(Debug, Clone, Default)]
 struct Run {
     accepted: Vec<ContactCandidate>,
-    /// Sides of the node in hand.
+    /// Sides of the current node.
     sides: Vec<ContactCandidate>,
 }
 
@@ -173,7 +174,7 @@ impl AcceptedPairs {
     }
 }
 
-/// Judges every near pair and fills the contacts that take part in this step, ordered by node and side.
+/// Tests every near pair and fills the contacts of this step, ordered by node and side.
 pub fn entrance_edges(
     narrow: &NarrowPhase,
     near_pairs: &[NearPair],
@@ -192,7 +193,7 @@ pub fn entrance_edges(
     contacts.truncate(made);
 }
 
-/// Where run `k` begins: at a multiple of its length, moved on to the next node.
+/// Start of run `k`: a multiple of its length, moved to the next node.
 fn first_of_run(near_pairs: &[NearPair], k: usize) -> usize {
     let start = (k * RUN).min(near_pairs.len());
     match start.checked_sub(1).map(|last| near_pairs[last].node) {
@@ -202,7 +203,7 @@ fn first_of_run(near_pairs: &[NearPair], k: usize) -> usize {
 }
 
 impl NarrowPhase<'_> {
-    /// Judges some near pairs and makes their contacts, from the contact `made` on; returns where they end.
+    /// Tests some near pairs and makes their contacts, from index `made` on; returns their end.
     fn enter(
         &self,
         near_pairs: &[NearPair],
@@ -248,8 +249,8 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// The nearest edge of each side that the node is over, and whether it is near and looked at by the node; there is
-    /// place for as many as there are near pairs.
+    /// The nearest edge of each side that the node is over, and whether it is near and faces the node; the buffers hold
+    /// as many as there are near pairs.
     fn nearest_edges<'p>(
         &self,
         node: usize,
@@ -306,8 +307,8 @@ impl NarrowPhase<'_> {
         edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 
-    /// Whether it is a first sight that cannot be a contact: deep and not of the nearest side of the rock that the node
-    /// is in, or from outside the rock past a side that does not meet this one, or deep within one block.
+    /// Whether a new candidate cannot be a contact: it is deep and not of the nearest side of the rock around the node,
+    /// or the node is outside the rock and beyond a side that does not meet this one, or it is deep within one block.
     fn is_false_sight(&self, node: usize, candidate: &ContactCandidate) -> bool {
         let tie = TIE_TOLERANCE * self.size;
         if candidate.held.is_some() || candidate.gap >= -tie {
@@ -326,7 +327,7 @@ impl NarrowPhase<'_> {
         depth <= tie && !meets
     }
 
-    /// How deep (m) a node is in the rock that the loop of an edge bounds, 0 outside, and the nearest side of the loop.
+    /// Depth (m) of a node in the rock within the loop of an edge, 0 outside, and the nearest side of the loop.
     #[cold]
     fn depth_in_rock(&self, node: usize, edge: u32) -> (f64, u32) {
         let p = self.node_position(node);
@@ -352,7 +353,7 @@ impl NarrowPhase<'_> {
         (if is_inside { nearest.0 } else { 0.0 }, self.boundary.side[nearest.1 as usize])
     }
 
-    /// Whether a gap (m) of a candidate is too deep for what has come in within a step.
+    /// Whether the gap (m) of a candidate is deeper than a node moves in one step.
     fn is_deep(&self, node: usize, candidate: &ContactCandidate, gap: f64) -> bool {
         let Boundary { block, block_thickness, node_point, .. } = self.boundary;
         let blocks = [node_point[node], candidate.edge].map(|point| block[point as usize] as usize);
@@ -371,7 +372,7 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// Moves those that are accepted to the front, in their order; returns how many they are.
+/// Moves the accepted candidates to the front, in their order; returns their number.
 fn keep_accepted(candidates: &mut [ContactCandidate]) -> usize {
     let mut kept = 0;
     for k in 0..candidates.len() {
@@ -395,8 +396,8 @@ fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2], sine: f64) -> bo
     cross > 0.0 && (dot > 0.0 || cross > sine * distance[0] * distance[1])
 }
 
-/// Whether a flat piece of boundary, given by its chord with rock on the left, looks towards an edge up to an angle
-/// given by its sine.
+/// Whether a flat piece of boundary, given by its chord with rock on the left, faces an edge up to an angle given by
+/// its sine.
 fn faces(chord: Vector, normal: Vector, sine: f64) -> bool {
     chord.perp(&normal) > -sine * chord.norm()
 }

@@ -1,35 +1,35 @@
-//! What bears a node: how deep its contacts with other blocks have let it in.
+//! Contacts of the last step in penetration. The vertex rule subtracts the compression of their springs from depths.
 
 use crate::contact::{Boundary, ContactHistory};
 use crate::geometry::Vector;
 
 use super::{Frames, NarrowPhase};
 
-/// A contact of the last step that is in penetration at the present slots.
+/// A contact of the last step that is in penetration at the current positions.
 #[derive(Debug, Clone, Copy)]
 struct PenetratingContact {
     /// Side that the node is in.
     side: u32,
     /// Sides before and after the node.
     own: [u32; 2],
-    /// How deep (m) the node is, as far as the contact bears.
+    /// Compression (m) of the spring: the depth of the node, as far as the contact carries force.
     closure: f64,
     /// Direction out of the side.
     outward: Vector,
 }
 
-/// The contacts of the last step that are in penetration, by their nodes and by the node segments that they lie on.
+/// The contacts of the last step that are in penetration, by node and by node segment.
 #[doc(alias = "overlap")]
 #[doc(alias = "bearing")]
 #[derive(Debug, Clone, Default)]
 pub struct PenetratingContacts {
-    /// First of each node, and their number.
+    /// Index of the first contact of each node, and the number of contacts.
     first: Vec<u32>,
-    /// Bearings, ordered by node and side.
+    /// Contacts, ordered by node and side.
     penetrating: Vec<PenetratingContact>,
-    /// First slot of those on the segment after each node, and their number.
+    /// Index of the first contact on the segment after each node, and the number of contacts.
     first_after: Vec<u32>,
-    /// Bearings by segment.
+    /// Contacts by segment.
     after: Vec<u32>,
     /// Segment of each.
     segment: Vec<u32>,
@@ -81,13 +81,13 @@ impl PenetratingContacts {
         first.resize(boundary.node_count() + 1, penetrating.len() as u32);
     }
 
-    /// Those of a node.
+    /// Contacts of a node.
     #[inline(always)]
     fn of_node(&self, node: usize) -> &[PenetratingContact] {
         &self.penetrating[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
-    /// Those on the segment after a node.
+    /// Contacts on the segment after a node.
     #[inline(always)]
     fn after(&self, node: usize) -> impl Iterator<Item = &PenetratingContact> {
         let slots = self.first_after[node] as usize..self.first_after[node + 1] as usize;
@@ -102,7 +102,7 @@ impl NarrowPhase<'_> {
         &self.history[self.cache.of_node(node)]
     }
 
-    /// How deep (m) a contact of a node with a side is, as far as it bears; 0 where it was none in the last step.
+    /// Compression (m) of the contact of a node with a side; 0 if there was none in the last step.
     #[inline(always)]
     pub(super) fn closure_with(&self, node: usize, side: u32) -> f64 {
         self.penetrating
@@ -112,8 +112,8 @@ impl NarrowPhase<'_> {
             .map_or(0.0, |contact| contact.closure)
     }
 
-    /// How deep (m), along a direction, the contacts of a node and of the faces next to it have let it in, but for
-    /// those with the sides `others`: how far it would move that way with their springs unloaded.
+    /// Compression (m), along a direction, of the contacts of a node and of the faces next to it, except those with the
+    /// sides `others`: the node would move so far if their springs were unloaded.
     #[inline(always)]
     pub(super) fn let_in(&self, node: usize, direction: Vector, others: [u32; 2]) -> f64 {
         let mut depth = 0.0f64;

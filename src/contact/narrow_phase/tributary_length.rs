@@ -1,11 +1,11 @@
-//! Tributary lengths of nodes over edges (Eq. 13).
+//! Tributary length of a contact: the share of the joint length that belongs to it (Eq. 13).
 
 use crate::contact::Corner;
 
 use super::vertex_rule::End;
 use super::{ContactCandidate, NarrowPhase};
 
-/// Least tributary length, relative to the mean of the neighbouring node segments: no division by nothing.
+/// Least tributary length, relative to the mean of the neighbouring node segments: avoids a division by zero.
 const LENGTH_FLOOR: f64 = 1e-9;
 
 /// Lengths over which a node acts on an edge.
@@ -13,13 +13,13 @@ const LENGTH_FLOOR: f64 = 1e-9;
 pub(super) struct Tributary {
     /// Tributary length (m).
     pub length: f64,
-    /// Length of the solver's own stiffness (m).
+    /// Length for the default stiffness (m).
     pub penalty: f64,
     /// Share of its strength that the contact has.
     pub share: f64,
 }
 
-/// What counts of the node segments that face a side (m).
+/// Lengths of the node segments that face a side (m), as far as they count.
 #[derive(Debug, Clone, Copy, Default)]
 struct Facing {
     /// Segments that lie along the side.
@@ -29,8 +29,8 @@ struct Facing {
 }
 
 impl NarrowPhase<'_> {
-    /// Lengths over which a node acts on an edge (Eq. 13). Where corners meet they are those of the overlap that is
-    /// there with springs unloaded: a face pushes with as much of itself as lies against the other.
+    /// Lengths over which a node acts on an edge (Eq. 13). Where corners meet they are those of the overlap with
+    /// springs unloaded: only the part of a face that lies against the other one carries force.
     #[inline(always)]
     pub(super) fn tributary(&self, node: usize, candidate: &ContactCandidate) -> Tributary {
         let [start, finish] = candidate.overlap;
@@ -85,8 +85,8 @@ impl NarrowPhase<'_> {
         facing
     }
 
-    /// What a convex corner keeps of the node segments beyond the ends of the one under it, for its distances (m) from
-    /// those ends: all at an inner node of the other side and nothing beyond the band in which that node takes over.
+    /// Share that a convex corner keeps of the node segments beyond the ends of the one under it, by its distances (m)
+    /// from those ends: 1 at an inner node of the other side, 0 beyond the band in which that node takes over.
     #[inline(always)]
     fn tie_shares(&self, node: usize, candidate: &ContactCandidate, before: usize, distances: [f64; 2]) -> [f64; 2] {
         let (boundary, band) = (self.boundary, self.rule.held_beyond * self.size);
@@ -114,8 +114,9 @@ impl NarrowPhase<'_> {
         if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 
-    /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and nothing for
-    /// an inner node, whose segments that corner has. One that is kept by the overlap of the corners fades with it.
+    /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and 0 for an
+    /// inner node, whose segments belong to that corner. The share of a contact that the overlap of the corners keeps
+    /// fades with that overlap.
     #[inline(always)]
     fn share_at_corner(&self, node: usize, candidate: &ContactCandidate) -> f64 {
         let band = self.rule.held_beyond * self.size;

@@ -1,4 +1,5 @@
-//! The vertex rule of theory §6: which of the sides near a node it may enter.
+//! The vertex rule (theory §5): which of the sides near a node it may enter. A wrong choice locks blocks that should
+//! slide.
 
 use crate::contact::{ContactState, Corner, SideEnd};
 use crate::geometry::{Point, Vector};
@@ -13,8 +14,9 @@ pub(super) enum End {
 }
 
 impl NarrowPhase<'_> {
-    /// Rule (ii): how far (m) along the side a node overlaps with the block before the start and the finish of it, with
-    /// springs unloaded, infinite at ends that are far or no corners; none where it is no contact of this side.
+    /// Rule 2: overlap (m) along the side of a node with the block before the start and the finish of the side, with
+    /// springs unloaded. It is infinite at ends that are far or not corners, and `None` where there is no contact with
+    /// this side.
     pub(super) fn overlap_at_ends(&self, node: usize, candidate: &ContactCandidate) -> Option<[f64; 2]> {
         let p = self.node_position(node);
         let tolerance = self.corner_tolerance(candidate);
@@ -40,14 +42,14 @@ impl NarrowPhase<'_> {
         Some(overlap)
     }
 
-    /// How far (m) along a side a node overlaps with the block before a convex `end` of it, with springs unloaded; none
-    /// where it does not, or where the facet there is the shorter way out.
+    /// Overlap (m) along a side of a node with the block before a convex `end` of the side, with springs unloaded;
+    /// `None` without overlap, or where the facet there is less deep.
     ///
-    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's
-    /// corner and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces
-    /// that as well, or else (q, the side of p that turns towards it). The shallower facet is the way out: how deep
-    /// springs have let the corners in, of this facet itself or of others beside them, is no depth. Faces that lie on
-    /// each other do not exclude each other; a sharp one may be pierced: the node is then past the facet round its tip.
+    /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
+    /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as
+    /// well, or else (q, the side of p that turns towards it). The corner leaves through the less deep facet. The
+    /// compression of springs, of this facet or of others beside it, does not count as depth. Parallel faces do not
+    /// exclude each other; a sharp block may be pierced: the node is then beyond the facet round its tip.
     fn overlap_round(&self, node: usize, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
         let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side as usize][end as usize];
@@ -85,20 +87,20 @@ impl NarrowPhase<'_> {
         (-candidate.gap <= beyond + tie || way_out() <= beyond + tie).then_some(beyond / along)
     }
 
-    /// How far (m) a node and a corner of another block part along a direction, out of that block, when the springs of
-    /// their other contacts are unloaded.
+    /// Distance (m) by which a node and a corner of another block separate along a direction, out of that block, when
+    /// the springs of their other contacts are unloaded.
     fn let_in_by_others(&self, node: usize, corner: usize, out: Vector) -> f64 {
         let [own, others] = [node, corner].map(|node| self.boundary.sides_of_node(node));
         self.let_in(node, out, others).max(self.let_in(corner, -out, own))
     }
 
-    /// Whether a contact that carries force outlasts an end of its side.
+    /// Whether a contact that carries force is kept beyond an end of its side.
     fn is_kept(&self, node: usize, candidate: &ContactCandidate, end: End) -> bool {
         candidate.is_held && self.overlap_at(node, candidate, end) >= 0.0
     }
 
-    /// How far (m) the node is inside the facet round an end of the side, or the corner there inside both facets of the
-    /// node, unless that corner is a contact itself; negative where the two have parted.
+    /// Depth (m) of the node inside the facet round an end of the side, or of the corner there inside both facets of
+    /// the node, unless that corner is a contact itself; negative where the two have separated.
     pub(super) fn overlap_at(&self, node: usize, candidate: &ContactCandidate, end: End) -> f64 {
         let at = self.boundary.side_ends[candidate.side as usize][end as usize];
         let frame = &self.frames.nodes[node];
@@ -120,15 +122,15 @@ impl NarrowPhase<'_> {
         self.known(node as usize).iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 
-    /// Rule (i): both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
+    /// Rule 1: both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
     pub(super) fn enters(&self, node: usize, candidate: &ContactCandidate) -> bool {
         let (normal, frame) = (right_of(candidate.tangent), &self.frames.nodes[node]);
         let outside = |k: usize| frame.to[k].dot(&normal) >= -self.rule.flush_sine * frame.distance[k];
         outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal, self.rule.flush_sine))
     }
 
-    /// Rule (iii): of the sides of one block that the node is over it enters one, unless they form a notch: the one
-    /// that carries force, else the shallower. A node outside a near side is not inside a side behind it either.
+    /// Rule 3: of the sides of one block that the node is over, it enters only one, unless they form a notch: the one
+    /// that carries force, or else the less deep one. A node outside a near side is not inside a side behind it either.
     pub(super) fn choose_sides(&self, candidates: &mut [ContactCandidate]) {
         let block = |p: &ContactCandidate| self.boundary.block[p.edge as usize];
         for i in 0..candidates.len() {
@@ -160,7 +162,8 @@ impl NarrowPhase<'_> {
     }
 
     /// Which of two sides with rock between them the node does not enter: true for the first. Sides that do not meet
-    /// have rock between them when they look apart and the node's foot on the deeper one lies behind the other.
+    /// have rock between them when they face away from each other and the foot of the node on the deeper one lies
+    /// behind the other.
     fn loser(&self, a: &ContactCandidate, b: &ContactCandidate) -> Option<bool> {
         let first_is_deeper = a.gap < b.gap;
         let (deep, shallow) = if first_is_deeper { (a, b) } else { (b, a) };
