@@ -27,17 +27,17 @@ pub fn bound(path: &Path, json: bool) -> ExitCode {
 
 fn text(bound: &Bound) -> String {
     let level = if bound.least == bound.level_tops.factor {
-        "no contact by which level tops pass bears more".to_owned()
+        "upper bound for contacts that let level tops pass".to_owned()
     } else {
         format!(
-            "an upper bound of one that is at least {:.4}: choices at crossings were left untried",
+            "an upper bound of a factor of at least {:.4}: some choices at crossings were not tried",
             bound.least.value()
         )
     };
     let rows = [
         ("associated", &bound.associated, "exact where joints dilate by their friction angle".to_owned()),
         ("level tops pass", &bound.level_tops, level),
-        ("every corner catches", &bound.catching, "what blocks bear that no crossing lets pass".to_owned()),
+        ("every corner catches", &bound.catching, "factor if no crossing lets a block pass".to_owned()),
     ];
     let row = |(name, collapse, meaning): (&str, &Collapse, String)| {
         format!("{name:<21} {:<14} {meaning}", collapse.factor.to_string())

@@ -38,7 +38,7 @@ pub enum CosimulationError {
     #[error("{0}; the model has been rolled back: take a smaller load step, or look at the block")]
     Step(#[from] StepError),
     /// The communication step that should go on is over.
-    #[error("the communication step is over, or the model has been taken elsewhere since it began: begin another")]
+    #[error("the communication step is over, or the model was moved to another time since: begin another")]
     Stale,
     /// A saved state cannot be used.
     #[error(transparent)]

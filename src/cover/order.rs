@@ -1,5 +1,5 @@
 //! Order in space: neighbours in the plane are neighbours in memory. Blocks go along a Hilbert curve, and elements and
-//! covers within a block along another, so that any run of them is one compact patch of the plane. Covers of a large
+//! covers within a block along another, so that any run of them is one compact region of the plane. Covers of a large
 //! block go row by row within square tiles of the lattice, and the curve goes from tile to tile: so elements in a row
 //! of the lattice have their covers in a row in memory.
 

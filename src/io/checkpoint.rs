@@ -34,10 +34,10 @@ pub enum CheckpointError {
     #[error("this is no checkpoint of enmm: give a checkpoint.enmm that a run has written")]
     Foreign,
     /// It ends too early.
-    #[error("the checkpoint is truncated after {0} bytes: use an older one, or start the run anew")]
+    #[error("the checkpoint is truncated after {0} bytes: use an older one, or start a new run")]
     Truncated(usize),
     /// Another format or engine wrote it.
-    #[error("the checkpoint is of {found}, this is {own}: continue with that version, or start the run anew")]
+    #[error("the checkpoint is of {found}, this is {own}: continue with that version, or start a new run")]
     Version {
         /// What wrote it.
         found: String,
@@ -53,7 +53,7 @@ pub enum CheckpointError {
         own: String,
     },
     /// Its bytes have changed.
-    #[error("the checkpoint is damaged ({0}): use an older one, or start the run anew")]
+    #[error("the checkpoint is damaged ({0}): use an older one, or start a new run")]
     Damaged(String),
 }
 

@@ -142,10 +142,10 @@ impl Simulation {
         step::prepare(&self.built.model, &self.built.state, &mut self.workspace);
     }
 
-    /// Begins every stage to come without taking a step, and goes back: what does not fit is told before the run.
+    /// Begins every later stage without taking a step, and returns: reports what does not fit before the run.
     ///
     /// # Errors
-    /// A key of a stage that does not fit the model, which is then spoilt.
+    /// A key of a stage that does not fit the model, whose state is then invalid.
     pub fn validate_stages(&mut self) -> Result<(), Invalid> {
         if self.state().stage as usize + 1 < self.case.stages.len() {
             let now = self.state().clone();
@@ -171,7 +171,7 @@ impl Simulation {
     /// Advances one internal step; see [`step::advance`].
     ///
     /// # Errors
-    /// A numerical failure; the state is then spoilt and must be restored.
+    /// A numerical failure; the state is then invalid and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
         self.report.take();
         step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)
