@@ -63,7 +63,7 @@ T sized() noexcept
     return value;
 }
 
-/** A number that `get(handle, &number)` tells. */
+/** A number that `get(handle, &number)` returns. */
 template <class T, class Get>
 T number(enmm_model *model, Get get)
 {

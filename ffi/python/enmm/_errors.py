@@ -28,8 +28,8 @@ class LibraryError(OSError):
 class EnmmError(Exception):
     """A call that failed and changed nothing.
 
-    `status` is that of the C library: a `Status`, or a plain number that this package does not know. The text tells
-    what was wrong, the value, the limit and the remedy.
+    `status` is that of the C library: a `Status`, or a plain number that this package does not know. The text has
+    the fault, the value, the limit and the remedy.
     """
 
     status: int
@@ -62,7 +62,7 @@ class InvalidArgumentError(EnmmError, ValueError):
 
 
 class CaseError(EnmmError, ValueError):
-    """The case cannot be used; the message tells file, line and key."""
+    """The case cannot be used; the message has file, line and key."""
 
 
 class CaseFileError(EnmmError):

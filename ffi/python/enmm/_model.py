@@ -345,7 +345,7 @@ class Model:
     def serialize(self, state: State | None = None) -> bytes:
         """A state, without one that of now, as bytes for a file or another process.
 
-        They tell version and case, and have a checksum. Raises StateError for a state of another case.
+        They contain version, hash of the case and checksum. Raises StateError for a state of another case.
         """
         if state is None:
             with self.save() as now:

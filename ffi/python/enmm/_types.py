@@ -82,7 +82,7 @@ class StepInfo(NamedTuple):
     event_count: int
     """Events of this step."""
     first_event: int
-    """Index of the first of them: `model.events(info.first_event)` tells them."""
+    """Index of the first of them: `model.events(info.first_event)` returns them."""
     halved: int
     """Internal steps that were redone in halves."""
     unsettled: int
