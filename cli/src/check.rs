@@ -1,4 +1,4 @@
-//! `enmm check`: builds a model and tells of it.
+//! `enmm check`: builds a model and reports on it.
 
 use std::path::Path;
 use std::process::ExitCode;

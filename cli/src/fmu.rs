@@ -30,7 +30,7 @@ enum Version {
     Three,
 }
 
-/// Packs a case and tells what was written. Nothing is written unless all of it is.
+/// Packs a case and reports what was written. Nothing is written unless all of it is.
 pub fn fmu(arguments: &Arguments) -> ExitCode {
     let version = match arguments.fmi {
         Version::Two => table::Version::Two,

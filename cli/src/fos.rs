@@ -31,8 +31,8 @@ pub struct Arguments {
     /// Width of the final bracket relative to F.
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
-    /// Pass over mechanisms of less rock (m²), such as single key blocks: they are told, cleared away, and the search
-    /// begins anew.
+    /// Ignore mechanisms of less rock (m²), such as single key blocks: they are reported and removed, and the search
+    /// begins again.
     #[arg(long, value_name = "AREA", default_value_t = 0.0)]
     least_area: f64,
     /// Mechanisms to find, each without the blocks of those before.
@@ -91,7 +91,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     }
 }
 
-/// Tells what may be the cause of a slope that does not come to rest.
+/// Reports possible causes why a slope does not come to rest.
 fn warn(loaded: &LoadedCase) {
     let built = Simulation::new(loaded.case.clone()).map(|simulation| simulation.built().warnings.clone());
     let warnings = loaded.warnings.iter().cloned().chain(built.unwrap_or_default());

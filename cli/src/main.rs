@@ -37,7 +37,7 @@ struct Arguments {
 enum Command {
     /// Builds a case, runs all its stages and writes the results.
     Run(run::Arguments),
-    /// Builds the model of a case and tells its counts, areas, masses and warnings.
+    /// Builds the model of a case and reports its counts, areas, masses and warnings.
     Check {
         /// Case file (TOML).
         case: PathBuf,

@@ -1,4 +1,4 @@
-//! `enmm run`: runs a case and tells where the results are.
+//! `enmm run`: runs a case and reports where the results are.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

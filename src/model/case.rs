@@ -1,5 +1,5 @@
 //! The case: all that a user writes about one model. Plain data with SI units; angles in degrees only under keys that
-//! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `build`.
+//! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `assemble`.
 
 mod bolt;
 mod ground;

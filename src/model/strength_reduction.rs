@@ -1,5 +1,5 @@
 //! Factor of safety by strength reduction: the case at rest, then trials with its strength divided by F until the
-//! greatest F that it bears is known (theory F).
+//! greatest stable F is known (theory, section 16).
 
 mod bracket;
 mod doubt;

@@ -6,7 +6,7 @@ use crate::geometry::Vector;
 
 use super::{Model, PortKind};
 
-/// Values that a host sets; each holds until it is set anew.
+/// Values that a host sets; each holds until it is set again.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Acceleration of gravity (m/s²).

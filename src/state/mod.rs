@@ -1,4 +1,5 @@
-//! The three heaps: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Workspace`] (buffers).
+//! The data of a simulation: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Workspace`]
+//! (buffers).
 
 mod element;
 mod events;
