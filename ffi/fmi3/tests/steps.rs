@@ -30,6 +30,7 @@ fn every_output_has_the_bits_of_the_facade() {
         assert_eq!(instance.get("kinetic_energy"), [totals.ledger.kinetic]);
         assert_eq!(instance.get("energy_residual"), [totals.ledger.residual()]);
         assert_eq!(instance.integer("sliding_contacts"), totals.slipping_contacts as i32);
+        assert_eq!(instance.integer("slipping_contacts"), totals.slipping_contacts as i32);
         assert_eq!(instance.get("internal_dt"), [model.internal_step()]);
         for (k, port) in model.ports().iter().enumerate() {
             let state = model.port_state(k);
