@@ -86,7 +86,7 @@ impl Cosimulation {
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
         fit::between("start", start, 0.0, fit::TIME)?;
-        fit::between("unrest", initial_residual, 0.0, f64::INFINITY)?;
+        fit::between("initial_residual", initial_residual, 0.0, f64::INFINITY)?;
         fit::number("told", told, fit::TIME)?;
         let Some(grid) = grid else { return Ok(()) };
         let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
