@@ -32,7 +32,7 @@ const LIGHT: f64 = 0.02;
 /// Numerical choices of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolverOptions {
-    /// Step (s) over which slots move.
+    /// Step (s) over which positions move.
     pub dt: f64,
     /// Time (s) over which forces act: the mean of this step and the one before it (Eq. 10).
     pub kick: f64,

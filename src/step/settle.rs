@@ -40,7 +40,7 @@ impl Kernel for Settle<'_> {
             let (stored, slipped) = contact.shear_after(after[1] * dt);
             add_works(outcome, contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
             add_depths(outcome, contact);
-            *history = contact_cache(contact, &laws[contact.law as usize], stored, slipped);
+            *history = history_of(contact, &laws[contact.law as usize], stored, slipped);
             history.offset *= fade;
         }
     }
@@ -69,7 +69,7 @@ fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
 
 /// What a contact remembers that stores a shear force (N/m) and has slipped (m).
 #[inline(always)]
-fn contact_cache(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
+fn history_of(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
     let mut history = contact.history;
     history.sheared = stored / contact.stiffness[1];
     history.rest += law.dilate(history.slip, history.slip + slipped);

@@ -122,15 +122,11 @@ impl SolverOrder {
         let mut first = 0;
         for run in near_pairs.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
             let point = boundary.node_point[run[0].node as usize] as usize;
-            let (cover_impulse, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
+            let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
             self.first_near_pair.push(first);
-            self.entries.push(Entry {
-                subdomain: 0,
-                blocks: [cover_impulse.min(other), cover_impulse.max(other)],
-                key,
-            });
+            self.entries.push(Entry { subdomain: 0, blocks: [own.min(other), own.max(other)], key });
             first += run.len() as u32;
         }
         self.first_near_pair.push(first);

@@ -70,7 +70,7 @@ impl Kernel for SubdomainKernel<'_, '_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> SweepOutcome {
-        self.subdomain.cover_impulse(lanes, self.from, self.pass)
+        self.subdomain.between_halves(lanes, self.from, self.pass)
     }
 }
 
@@ -125,7 +125,7 @@ impl Subdomain<'_> {
 
     /// Does the work on the block pairs from `from` on, which belong to no half.
     #[inline(always)]
-    fn cover_impulse<L: Lanes>(&mut self, lanes: L, from: usize, pass: &SubdomainPass) -> SweepOutcome {
+    fn between_halves<L: Lanes>(&mut self, lanes: L, from: usize, pass: &SubdomainPass) -> SweepOutcome {
         let mut outcome = SweepOutcome::default();
         match pass.kind {
             PassKind::Prepare => self.load(lanes, from, pass),
