@@ -1,4 +1,4 @@
-//! One internal step by either integrator ([`explicit`], [`implicit`]), checks, events and reports. Knows nothing of
+//! One internal step by either integrator (`explicit`, `implicit`), checks, events and reports. Knows nothing of
 //! files.
 
 mod applied;
