@@ -18,6 +18,7 @@ mod runner;
 mod selection;
 pub mod text;
 
+pub(crate) use model::wider_open;
 pub use model::{Setup, Trouble, run_all};
 pub use outcome::{Origin, Outcome, Plot, Row, Series, Tolerance};
 pub use problem::{Parameter, Problem, Values};

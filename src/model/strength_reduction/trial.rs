@@ -126,7 +126,7 @@ impl Base {
             acceleration: judge::acceleration(&samples),
             failing: self.failing(&simulation, verdict),
             steps: simulation.state().step - self.simulation.state().step,
-            ledger_residual: last.ledger.residual() / last.ledger.largest().max(f64::MIN_POSITIVE),
+            ledger_residual: last.ledger.residual_relative(),
             wall: clock.elapsed().as_secs_f64(),
         };
         Ok((trial, simulation))

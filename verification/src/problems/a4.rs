@@ -3,7 +3,7 @@
 use enmm::model::Simulation;
 use enmm::step::StepReport;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
 
 pub const PROBLEM: Problem = Problem {
     id: "A4",
@@ -64,7 +64,6 @@ fn collide(simulation: &mut Simulation, steps: u64, curve: &mut Curve) -> Result
     let mass: f64 = simulation.model().mass_matrix.total.iter().sum();
     let scale = mass * 0.5;
     let (mut worst, mut report) = ([0.0f64; 2], StepReport::default());
-    let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
     for k in 0..steps {
         let now = simulation.advance(k % 20 == 19)?;
         let (p, l) = simulation.momentum();
@@ -73,9 +72,7 @@ fn collide(simulation: &mut Simulation, steps: u64, curve: &mut Curve) -> Result
         if now.dt > 0.0 {
             let ledger = &now.ledger;
             curve.push([now.time, ledger.kinetic, ledger.strain + ledger.stored, ledger.friction, ledger.residual()]);
-            if share(&now) >= share(&report) {
-                report = now;
-            }
+            report = wider_open(report, now);
         }
     }
     Ok((worst, report))

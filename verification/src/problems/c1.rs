@@ -1,7 +1,7 @@
 //! C1: a block on an incline.
 
 use super::incline::{G, rock, turn};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
@@ -174,7 +174,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let mut slide = incline.release(setup, &format!("slide_{slope}_{friction:.3}"), 0.0)?;
         slide.advance(t)?;
         outcome.rows.push(way_row(&incline, &slide));
-        worst = keep(worst, slide.report);
+        worst = wider_open(worst, slide.report);
     }
     square(setup, &mut outcome, slider(setup, a, phi, 2.0 * t), t)?;
     rest(setup, &mut outcome)?;
@@ -187,12 +187,6 @@ fn slider(setup: &Setup, slope: f64, friction: f64, seconds: f64) -> Incline {
     let mut incline = Incline { slope, friction, young: setup.get("young"), way: 0.0, seconds };
     incline.way = 0.5 * incline.acceleration() * seconds * seconds;
     incline
-}
-
-/// The report whose ledger is wider open.
-fn keep(a: StepReport, b: StepReport) -> StepReport {
-    let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
-    if share(&b) >= share(&a) { b } else { a }
 }
 
 /// Why slips may differ: Coulomb's limit holds at the end of each step, but the drop of strength sets the block

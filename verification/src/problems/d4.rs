@@ -4,7 +4,7 @@ use enmm::model::Simulation;
 use enmm::step::StepReport;
 
 use super::continuum::list;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
 
 pub const PROBLEM: Problem = Problem {
     id: "D4",
@@ -206,10 +206,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             row.within(Tolerance::Relative(0.01), reason)
         });
         marks.push([b, test.strength()]);
-        let share = |r: &StepReport| (r.ledger.residual() / r.ledger.largest().max(f64::MIN_POSITIVE)).abs();
-        if share(&test.report) >= share(&worst) {
-            worst = test.report;
-        }
+        worst = wider_open(worst, test.report);
         if b == own {
             curve = test.curve;
         }
