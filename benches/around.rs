@@ -8,9 +8,9 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 use enmm::contact::{NeighbourList, SearchGrid, SearchView};
 use enmm::geometry::Vector;
-use enmm::io::bench::Model;
-use enmm::io::checkpoint::encode;
 use enmm::model::Simulation;
+use enmm::state::bytes::encode;
+use enmm_bench::Model;
 
 const MODEL: Model = Model::Slope(500, 16);
 

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
-use enmm::io::bench::Model;
 use enmm::model::Simulation;
 use enmm::state::{Seconds, State};
+use enmm_bench::Model;
 
 /// Models whose stages are timed.
 const MODELS: [Model; 3] = [Model::Continuum(10_000), Model::Slope(500, 4), Model::Slope(500, 16)];

@@ -8,8 +8,7 @@ use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
-use enmm::cosimulation::Cosimulation;
-use enmm::io::load_case;
+use enmm_io::load_case;
 
 fn main() -> ExitCode {
     match run() {
@@ -28,7 +27,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     };
     let (h, steps): (f64, u32) = (h.parse()?, steps.parse()?);
 
-    let mut model = Cosimulation::new(&load_case(Path::new(case))?)?;
+    let mut model = load_case(Path::new(case))?.cosimulation()?;
     model.start()?; // The initial equilibrium; inputs would be set before.
     for k in 0..steps {
         // Here a host sets inputs (`set_block_force`, `set_water_level`, ...) and reads outputs (`port_state`).

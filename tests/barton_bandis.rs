@@ -104,7 +104,7 @@ fn refused(law: &str) -> String {
         1.0\nyoung = \
          1e9\npoisson = 0.2\n[joint_law.j]\n{law}\n[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = 1.0\n"
     );
-    match enmm::io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
+    match enmm_io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
         Ok(loaded) => loaded.case.validate().expect_err("it is refused").to_string(),
         Err(error) => error.to_string(),
     }

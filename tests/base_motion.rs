@@ -90,7 +90,7 @@ fn a_record_comes_from_a_file_beside_the_case() {
     std::fs::write(folder.path().join("quake.csv"), "# station 7\ntime,acceleration,more\n0.0,0.1,5\n0.1,0.1,5\n")
         .unwrap();
     let text = block("[[base_motion]]\nfile = \"quake.csv\"\nscale = 9.81\n", &dynamic("shake", 0.2, 0.0));
-    let loaded = enmm::io::parse_case(&text, "case.toml", folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = enmm_io::parse_case(&text, "case.toml", folder.path()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(loaded.case.base_motions[0].table, Some(vec![[0.0, 0.1], [0.1, 0.1]]));
     assert_eq!(loaded.case.base_motions[0].file, None);
     let mut simulation = Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
@@ -103,7 +103,7 @@ fn assert_refused(motion: &str, files: &[(&str, &str)], message: &str) {
     let folder = tempfile::tempdir().unwrap();
     files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
     let text = block(motion, &dynamic("shake", 0.2, 0.0));
-    let error = enmm::io::parse_case(&text, "case.toml", folder.path()).map(|_| ()).unwrap_err().to_string();
+    let error = enmm_io::parse_case(&text, "case.toml", folder.path()).map(|_| ()).unwrap_err().to_string();
     let error = error.replace(&format!("{}/", folder.path().display()), "");
     assert!(error.starts_with(message), "{error}");
 }
@@ -138,7 +138,7 @@ fn records_that_cannot_be_used_are_named_with_their_line() {
 /// A case that was not loaded through `io` keeps its file, and cannot be built.
 fn simulationless(folder: &Path) -> String {
     let text = block("[[base_motion]]\ntable = [[0.0, 1.0], [1.0, 1.0]]\n", &dynamic("shake", 0.2, 0.0));
-    let mut case = enmm::io::parse_case(&text, "case.toml", folder).unwrap().case;
+    let mut case = enmm_io::parse_case(&text, "case.toml", folder).unwrap().case;
     case.base_motions[0].table = None;
     case.base_motions[0].file = Some("q.csv".into());
     Simulation::new(case).map(|_| ()).unwrap_err().to_string()

@@ -4,8 +4,8 @@
 mod common;
 
 use common::overlap::Audit;
-use enmm::io::bench::{BenchOptions, Model, bench, slope_case};
 use enmm::model::Simulation;
+use enmm_bench::{BenchOptions, Model, bench, slope_case};
 
 /// Dip of base and bedding, and friction (rad).
 const DIP: f64 = std::f64::consts::FRAC_PI_6;

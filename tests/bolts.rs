@@ -148,7 +148,7 @@ fn a_saved_state_goes_on_with_the_same_bits() {
 
 fn refused(bolts: &str, stages: &str) -> String {
     let text = roof(bolts, stages);
-    match enmm::io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
+    match enmm_io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
         Err(error) => error.to_string(),
         Ok(loaded) => {
             let case: Case = loaded.case;

@@ -3,7 +3,7 @@
 mod case_support;
 
 use case_support::{CASE, assert_refused, edited, error_of};
-use enmm::io::{load_case, parse_case};
+use enmm_io::{load_case, parse_case};
 use std::path::Path;
 
 #[test]

@@ -3,7 +3,7 @@
 mod case_support;
 
 use case_support::{with_geometry, with_geometry_and};
-use enmm::io::LoadedCase;
+use enmm_io::LoadedCase;
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
 
@@ -111,7 +111,7 @@ fn geometry_file_that_cannot_be_read_is_located_in_the_case() {
     let folder = tempfile::tempdir().unwrap();
     let case = "title = \"t\"\n[domain]\ngeometry_file = \"none.json\"\n[mesh]\nsize = 1\n[rock.a]\n\
                 density = 1\nyoung = 1\npoisson = 0\n[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = 1";
-    let error = enmm::io::parse_case(case, "c.toml", folder.path()).unwrap_err().to_string();
+    let error = enmm_io::parse_case(case, "c.toml", folder.path()).unwrap_err().to_string();
     assert!(error.starts_with("c.toml:3: domain.geometry_file: "), "{error}");
     assert!(error.ends_with(
         "none.json\": cannot read the file (No such file or directory (os error 2)); check its path and permissions"

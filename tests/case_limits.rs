@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use case_support::{CASE, with_geometry};
-use enmm::io::{load_case, parse_case, schema};
 use enmm::model::{Case, Simulation};
+use enmm_io::{load_case, parse_case, schema};
 use proptest::prelude::*;
 use serde_json::Value;
 

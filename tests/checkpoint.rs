@@ -4,9 +4,10 @@
 mod common;
 
 use common::simulation;
-use enmm::io::checkpoint::{CheckpointError, decode, encode, load, save};
 use enmm::model::Simulation;
 use enmm::state::State;
+use enmm::state::bytes::{BytesError, decode, encode};
+use enmm_io::checkpoint::{CheckpointError, load, save};
 
 /// A jointed slope whose covers are enough to be shared between threads (more than 2048), falling apart.
 const SLOPE: &str = r#"
@@ -123,20 +124,20 @@ fn what_is_no_whole_checkpoint_of_this_case_is_refused() {
     let refused = |bytes: &[u8], hash: &str| decode::<State>(bytes, hash).expect_err("refused");
     for length in [0, 4, 8, 11, 14, 20, 30, 40, good.len() / 2, good.len() - 1] {
         let error = refused(&good[..length], "0123");
-        assert!(matches!(error, CheckpointError::Truncated(_) | CheckpointError::Foreign), "{length}: {error}");
+        assert!(matches!(error, BytesError::Truncated(_) | BytesError::Foreign), "{length}: {error}");
     }
     let message = refused(&good, "4567").to_string();
     assert!(message.contains("0123") && message.contains("4567"), "{message}");
-    assert!(matches!(refused(b"PK\x03\x04 something else", "0123"), CheckpointError::Foreign));
+    assert!(matches!(refused(b"PK\x03\x04 something else", "0123"), BytesError::Foreign));
     for at in [good.len() - 1, good.len() / 2, 60] {
         let mut bad = good.clone();
         bad[at] ^= 0x10;
-        assert!(matches!(refused(&bad, "0123"), CheckpointError::Damaged(_)), "{at}");
+        assert!(matches!(refused(&bad, "0123"), BytesError::Damaged(_)), "{at}");
     }
     let mut newer = good.clone();
     newer[8] = 99;
-    assert!(matches!(refused(&newer, "0123"), CheckpointError::Version { .. }));
+    assert!(matches!(refused(&newer, "0123"), BytesError::Version { .. }));
     let mut longer = good;
     longer.push(0);
-    assert!(matches!(refused(&longer, "0123"), CheckpointError::Damaged(_)));
+    assert!(matches!(refused(&longer, "0123"), BytesError::Damaged(_)));
 }

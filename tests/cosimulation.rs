@@ -8,16 +8,16 @@ use std::path::Path;
 use common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
-use enmm::io::checkpoint::{decode, encode};
-use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm::model::BlockState;
+use enmm::state::bytes::{decode, encode};
+use enmm_io::{LoadedCase, load_case, parse_case};
 
 fn example(name: &str) -> LoadedCase {
     load_case(Path::new(&format!("examples/cases/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn model(name: &str) -> Cosimulation {
-    Cosimulation::new(&example(name)).unwrap_or_else(|e| panic!("{e}"))
+    example(name).cosimulation().unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Steps of `h` until `end`, with times summed as a careless master does.
@@ -246,7 +246,7 @@ fn parameters_change_what_counts_at_time_zero() {
     assert_eq!(loaded.case, original);
     assert!(apply(&mut loaded.case, friction, f64::NAN).is_err() && apply(&mut loaded.case, friction, -0.1).is_err());
     apply(&mut loaded.case, friction, 10f64.to_radians()).unwrap();
-    let mut model = Cosimulation::new(&LoadedCase::of(loaded.case, "changed").unwrap()).unwrap();
+    let mut model = LoadedCase::of(loaded.case, "changed").unwrap().cosimulation().unwrap();
     model.start().unwrap();
     let start = states(&model)[1].displacement;
     model.do_step(0.0, 1.0).unwrap();
@@ -264,8 +264,8 @@ fn threads_do_not_change_the_bits() {
     let text = std::fs::read_to_string("examples/cases/fractured_slope.toml").unwrap();
     let settle = text.find("[[stage]]").unwrap()..text.find("[[stage]]\nname = \"failure\"").unwrap();
     let loaded = parse_case(&text.replace(&text[settle], ""), "failing.toml", Path::new("")).unwrap();
-    let mut serial = Cosimulation::new(&loaded).unwrap();
-    let mut parallel = Cosimulation::new(&loaded).unwrap();
+    let mut serial = loaded.cosimulation().unwrap();
+    let mut parallel = loaded.cosimulation().unwrap();
     assert!(parallel.set_threads(0).is_err() && parallel.set_threads(100_000).is_err());
     parallel.set_threads(3).unwrap();
     let h = 20.0 * serial.internal_step();
@@ -289,7 +289,7 @@ kind = "dynamic"
 duration = 1.0
 damping = 0.0
 "#;
-    Cosimulation::new(&parse_case(text, "free.toml", Path::new("")).unwrap()).unwrap()
+    parse_case(text, "free.toml", Path::new("")).unwrap().cosimulation().unwrap()
 }
 
 fn push(model: &mut Cosimulation, force: f64) {
@@ -412,7 +412,7 @@ fn stages_of_odd_lengths_change_at_their_own_times() {
     loaded.case.stages.extend([slide, calm, last]);
     let loaded = LoadedCase::of(loaded.case, "stages").unwrap();
     let run = |h: f64| {
-        let mut model = Cosimulation::new(&loaded).unwrap();
+        let mut model = loaded.cosimulation().unwrap();
         run(&mut model, h, 0.1);
         let t = model.time();
         model.do_step(t, 0.12 - t).unwrap();
@@ -451,7 +451,7 @@ fn an_initial_stage_that_does_not_come_to_rest_says_so() {
     assert_eq!(calm.initial_residual(), None);
     let mut loaded = example("coupled_slope");
     loaded.case.stages[0].duration = 0.3;
-    let mut sliding = Cosimulation::new(&LoadedCase::of(loaded.case, "short").unwrap()).unwrap();
+    let mut sliding = LoadedCase::of(loaded.case, "short").unwrap().cosimulation().unwrap();
     sliding.set_strength_factor(0.5).unwrap();
     sliding.start().unwrap();
     assert!(sliding.initial_residual().is_some_and(|ratio| ratio > 1e-3), "{:?}", sliding.initial_residual());

@@ -5,8 +5,8 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{run_all, tell};
-use enmm::model::strength_reduction::{ReductionOptions, factor_of_safety};
 use enmm::model::{Case, Simulation};
+use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
 /// Folder of the example cases.
 fn folder() -> PathBuf {
@@ -20,7 +20,7 @@ fn text(name: &str) -> String {
 }
 
 fn case(name: &str, text: &str) -> Case {
-    enmm::io::parse_case(text, name, &folder()).unwrap_or_else(|e| panic!("{e}")).case
+    enmm_io::parse_case(text, name, &folder()).unwrap_or_else(|e| panic!("{e}")).case
 }
 
 /// The simulation of `examples/cases/NAME.toml`.

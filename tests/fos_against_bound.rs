@@ -9,8 +9,8 @@ use std::path::Path;
 
 use common::claims::rock;
 use enmm::model::Case;
-use enmm::model::limit_analysis::Factor;
-use enmm::model::strength_reduction::{
+use enmm_stability::limit_analysis::Factor;
+use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
 
@@ -148,7 +148,7 @@ impl Slope {
             self.joints,
             rock(young, 2650.0)
         );
-        enmm::io::parse_case(&text, "slope.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}\n{text}")).case
+        enmm_io::parse_case(&text, "slope.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}\n{text}")).case
     }
 }
 

@@ -6,7 +6,7 @@ mod common;
 use std::path::Path;
 
 use common::claims::{rock, turn};
-use enmm::model::strength_reduction::{
+use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
 
@@ -31,7 +31,7 @@ fn case_below(below: &[[f64; 2]], friction: f64, cohesion: f64, more: &str) -> e
         turn(&[[-1.0, -1.0]], -30.0)[0],
         rock(5e9, 2500.0),
     );
-    enmm::io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
 }
 
 fn reduce(case: &enmm::model::Case, threads: usize) -> Reduction {
@@ -116,7 +116,7 @@ fn threads_change_no_bit() {
     let case = case(35.0, 20e3, "");
     let [one, two] = [1, 2].map(|threads| reduce(&case, threads));
     let bits = |r: &Reduction| {
-        let trial = |t: &enmm::model::strength_reduction::Trial| {
+        let trial = |t: &enmm_stability::strength_reduction::Trial| {
             [t.factor, t.displacement, t.speed, t.kinetic, t.released].map(f64::to_bits)
         };
         r.trials.iter().map(trial).collect::<Vec<_>>()

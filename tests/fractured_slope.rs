@@ -12,7 +12,7 @@ use enmm::model::{Case, Simulation};
 /// The case of the README.
 fn fractured_slope() -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
-    enmm::io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case
+    enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::io::parse_case;
+use enmm_io::parse_case;
 
 const G: f64 = 9.81;
 
@@ -64,7 +64,7 @@ damping = 0.1
         turn([2.0, 0.0]),
     );
     let loaded = parse_case(&text, "block.toml", Path::new("")).unwrap_or_else(|e| panic!("{e}"));
-    let mut model = Cosimulation::new(&loaded).unwrap_or_else(|e| panic!("{e}"));
+    let mut model = loaded.cosimulation().unwrap_or_else(|e| panic!("{e}"));
     model.start().unwrap_or_else(|e| panic!("{e}"));
     model
 }

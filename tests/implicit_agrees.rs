@@ -81,7 +81,7 @@ fn what_it_does_not_know_is_refused() {
          [rock.rock]\ndensity = 2650.0\nyoung = 1e9\npoisson = 0.25\ncohesion = 1e6\n{}{IMPLICIT}",
         dynamic("go", 1.0, 0.0)
     );
-    let loaded = enmm::io::parse_case(&text, "test.toml", std::path::Path::new("."));
+    let loaded = enmm_io::parse_case(&text, "test.toml", std::path::Path::new("."));
     let case = loaded.unwrap_or_else(|e| panic!("{e}")).case;
     let message = Simulation::new(case).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("implicit does not know") && message.contains("explicit"), "{message}");

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use allocation_counter::measure;
 use enmm::geometry::Vector;
-use enmm::io::parse_case;
 use enmm::model::Simulation;
+use enmm_io::parse_case;
 
 const CASE: &str = r#"
 title = "two blocks"

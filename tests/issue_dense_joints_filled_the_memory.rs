@@ -6,8 +6,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use enmm::geometry::{Label, Point, Segment, arrange, arrange_within};
-use enmm::io::parse_case;
 use enmm::model::{BuildStage, Simulation};
+use enmm_io::parse_case;
 
 /// A square of 10 m with some joints, and a limit of memory (bytes).
 fn case(joints: &str, memory: u64) -> String {

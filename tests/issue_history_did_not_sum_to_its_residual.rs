@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use enmm::io::{RunOptions, RunStatus, parse_case};
 use enmm::state::{BALANCE, ENERGIES};
+use enmm_io::parse_case;
+use enmm_run::{RunOptions, RunStatus};
 
 /// Weak rock on a quiet base slips on a joint that a bolt holds, under a pressure on its top: every term is there.
 const CASE: &str = r#"
@@ -67,7 +68,7 @@ fn columns_of_the_history_sum_to_its_residual() {
     let directory = tempfile::tempdir().unwrap();
     let loaded = parse_case(CASE, "terms.toml", Path::new(".")).unwrap_or_else(|error| panic!("{error}"));
     let options = RunOptions { directory: directory.path().to_owned(), ..RunOptions::default() };
-    let summary = enmm::io::run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    let summary = enmm_run::run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(summary.status, RunStatus::Finished, "{:?}", summary.failure);
     let rows = rows(&directory.path().join("history.csv"));
     assert!(rows.len() > 9);

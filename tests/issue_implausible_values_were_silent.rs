@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm::model::Simulation;
+use enmm_io::{LoadedCase, load_case, parse_case};
 
 /// A block of 10 m by 6 m on its base, with nothing unusual.
 const CASE: &str = "title = \"t\"\n[domain]\noutline = [[0, 0], [10, 0], [10, 6], [0, 6]]\n[mesh]\nsize = 1.5\n\

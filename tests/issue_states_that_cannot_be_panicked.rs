@@ -9,13 +9,13 @@ use std::path::Path;
 use common::saved::Whole;
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::io::checkpoint::{decode, encode};
-use enmm::io::load_case;
+use enmm::state::bytes::{decode, encode};
+use enmm_io::load_case;
 
 /// A block on a slab, pushed by a host, between two internal steps; and the bytes of its state.
 fn model() -> (Cosimulation, Vec<u8>) {
     let loaded = load_case(Path::new("ffi/capi/tests/cases/small.toml")).expect("a case");
-    let mut model = Cosimulation::new(&loaded).expect("a model");
+    let mut model = loaded.cosimulation().expect("a model");
     model.start().expect("an equilibrium");
     model.set_gravity(Vector::new(20.0, -9.81)).expect("gravity");
     let h = model.internal_step();

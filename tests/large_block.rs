@@ -5,9 +5,9 @@ mod common;
 
 use common::simulation;
 use enmm::geometry::Vector;
-use enmm::io::bench::continuum_case;
 use enmm::state::{Model, State, Workspace};
 use enmm::step::{Regime, advance, prepare};
+use enmm_bench::continuum_case;
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.
 const STILL: f64 = 10.0;

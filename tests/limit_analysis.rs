@@ -6,8 +6,8 @@ mod common;
 use std::path::Path;
 
 use common::{simulation, tell};
-use enmm::io::{load_case, parse_case};
-use enmm::model::limit_analysis::{Bound, BoundError, Factor, bound};
+use enmm_io::{load_case, parse_case};
+use enmm_stability::limit_analysis::{Bound, BoundError, Factor, bound};
 
 fn of_text(text: &str) -> Result<Bound, BoundError> {
     bound(simulation(text).case())

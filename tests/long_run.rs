@@ -6,9 +6,9 @@ mod common;
 use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::geometry::Vector;
-use enmm::io::checkpoint::{decode, encode};
 use enmm::model::Simulation;
 use enmm::state::State;
+use enmm::state::bytes::{decode, encode};
 use enmm::step::energies;
 
 /// One irregular block that swings freely after a uniform stretch.

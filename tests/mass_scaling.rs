@@ -8,8 +8,8 @@ use std::path::Path;
 use common::claims::assert_ledger;
 use common::run_stage;
 use enmm::geometry::Vector;
-use enmm::io::parse_case;
 use enmm::model::Simulation;
+use enmm_io::parse_case;
 
 const WALL: &str = include_str!("../examples/cases/masonry_wall.toml");
 

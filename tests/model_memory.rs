@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 use enmm::geometry::polygon;
-use enmm::io::{Observer, RunOptions, RunProgress, parse_case};
 use enmm::model::{BuildStage, Simulation};
+use enmm_io::parse_case;
+use enmm_run::{Observer, RunOptions, RunProgress};
 
 /// A slope 100 m high, all of it cut by two joint sets of this spacing (m), or by none, that rests for a while (s).
 fn slope(spacing: Option<f64>, mesh: f64, duration: f64) -> String {
@@ -122,7 +123,7 @@ fn run(text: &str) {
     let loaded = parse_case(text, "large.toml", Path::new(".")).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let options = RunOptions { directory: directory.path().to_owned(), ..RunOptions::default() };
-    let summary = enmm::io::run(&loaded, &options, &mut Clock).unwrap();
+    let summary = enmm_run::run(&loaded, &options, &mut Clock).unwrap();
     println!("{:8.2} s  {:?}", seconds(), summary.wall_seconds);
     for entry in directory.path().read_dir().unwrap().chain(directory.path().join("frames").read_dir().unwrap()) {
         let entry = entry.unwrap();

@@ -50,7 +50,7 @@ fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
 #[test]
 fn the_search_finds_what_all_against_all_find() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
-    let case = enmm::io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
+    let case = enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
     let boundary = &simulation.model().boundary;

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use enmm::io::files::write_atomic;
-use enmm::io::history::HistoryWriter;
+use enmm_io::files::write_atomic;
+use enmm_run::history::HistoryWriter;
 
 const COLUMNS: [(&str, &str); 3] = [("time", "s"), ("crest_ux", "m"), ("open_contacts", "")];
 const HEADER: &str = "time [s],crest_ux [m],open_contacts\n";

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use enmm::geometry::{Point, Vector};
-use enmm::io::picture::{ModelAnnotations, Picture, Series, displacement_picture, history_picture, model_picture};
 use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, Polygons};
+use enmm_picture::{ModelAnnotations, Picture, Series, displacement_picture, history_picture, model_picture};
 use output_sample::{profile, sample};
 
 /// Where a person can look at the pictures.

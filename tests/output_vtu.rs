@@ -7,8 +7,8 @@ mod output_sample;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use enmm::io::vtu::{PvdWriter, write_joints_vtu, write_vtu};
 use enmm::model::Snapshot;
+use enmm_run::vtu::{PvdWriter, write_joints_vtu, write_vtu};
 use output_sample::{Sample, sample};
 use resvg::usvg::roxmltree::{Document, Node};
 

@@ -4,9 +4,9 @@ mod common;
 
 use common::claims::{dynamic, stresses};
 use common::{run_stage, simulation};
-use enmm::io::checkpoint::{decode, encode};
 use enmm::model::Simulation;
 use enmm::state::State;
+use enmm::state::bytes::{decode, encode};
 use enmm::step::StepReport;
 
 const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
@@ -117,7 +117,7 @@ fn places_that_cannot_be_quiet_are_named() {
             dynamic("wave", 1.0, 0.0)
         );
         assert!(text.contains(from));
-        let case = enmm::io::parse_case(&text.replacen(from, to, 1), "case.toml", std::path::Path::new("."));
+        let case = enmm_io::parse_case(&text.replacen(from, to, 1), "case.toml", std::path::Path::new("."));
         let error = match case {
             Ok(loaded) => Simulation::new(loaded.case).map(|_| ()).unwrap_err().to_string(),
             Err(error) => error.to_string(),

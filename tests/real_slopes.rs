@@ -20,7 +20,7 @@ fn settles(file: &str, size: f64, held_below: f64, friction: f64, steps: u64) {
     let Some(data) = shared() else {
         return;
     };
-    let loaded = enmm::io::parse_case(&case(file, size, held_below, friction), "real.toml", &data)
+    let loaded = enmm_io::parse_case(&case(file, size, held_below, friction), "real.toml", &data)
         .unwrap_or_else(|e| panic!("{e}"));
     let mut simulation = Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
     let mut last = None;

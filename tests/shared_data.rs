@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use common::shared::shared;
 
-use enmm::io::check::Check;
 use enmm::model::Simulation;
+use enmm_run::check::Check;
 use serde_json::Value;
 
 fn read(path: &Path) -> Value {
@@ -38,9 +38,9 @@ kind = "static"
 duration = 1
 "#
     );
-    let loaded = enmm::io::parse_case(&text, "shared.toml", folder).unwrap_or_else(|e| panic!("{file}: {e}"));
+    let loaded = enmm_io::parse_case(&text, "shared.toml", folder).unwrap_or_else(|e| panic!("{file}: {e}"));
     let simulation = Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{file}: {e}"));
-    enmm::io::check(&simulation, &loaded.warnings)
+    enmm_run::check(&simulation, &loaded.warnings)
 }
 
 fn number(value: &Value) -> f64 {

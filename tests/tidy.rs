@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Rooms of `src/` in rank order; each imports only from those before it.
-const ROOMS: [&str; 9] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "io", "cosimulation"];
+const ROOMS: [&str; 8] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "cosimulation"];
 const COLUMNS_MAX: usize = 120;
+/// Most lines of the engine: what it need not hold goes into a crate of its own.
+const ENGINE_LINES_MAX: usize = 24_000;
 /// Folders of programs that may print.
 const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];
 /// Rooms whose results must not depend on the order of a hash.
@@ -47,6 +49,13 @@ impl File {
 #[test]
 fn rooms_import_only_lower_ranks() {
     hold(each(&[""], &["src/"], room_problems));
+}
+
+#[test]
+fn the_engine_is_small_and_opens_no_files() {
+    hold(each(&[".rs"], &["src/"], file_access_problems));
+    let engine: usize = repository().iter().filter(|file| file.within(&["src/"])).map(|f| f.text.lines().count()).sum();
+    assert!((10_000..=ENGINE_LINES_MAX).contains(&engine), "src/ has {engine} lines");
 }
 
 #[test]
@@ -160,6 +169,11 @@ fn room_problems(file: &File) -> Vec<String> {
         }
     }
     problems
+}
+
+fn file_access_problems(file: &File) -> Vec<String> {
+    let named = names_after(&code_only(&file.text), "std::").into_iter().filter(|(_, other)| other == "fs");
+    named.map(|(line, _)| format!("{}:{line}: opens a file, which is for `io/`", file.path)).collect()
 }
 
 /// Tables and lines with an address are excepted in Markdown, because neither can be broken. Marks of figures, which
@@ -612,6 +626,13 @@ fn rooms_rule_is_seen_failing() {
     assert_eq!(rule("src/solver/mod.rs", ""), 1);
     assert_eq!(rule("src/util.rs", ""), 1);
     assert_eq!(rule("src/lib.rs", "pub use crate::io::X;"), 0);
+}
+
+#[test]
+fn file_access_rule_is_seen_failing() {
+    let rule = |text| count(file_access_problems, "src/a.rs", text);
+    assert_eq!(rule("use std::fs::File; use std::{mem, fs};"), 2);
+    assert_eq!(rule("use std::path::Path; // std::fs"), 0);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm::io::bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
-use enmm::io::files::write_atomic;
+use enmm_bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
+use enmm_io::files::write_atomic;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use enmm::io::{BoundFailure, bound_record};
-use enmm::model::limit_analysis::{Bound, Collapse};
+use enmm_run::{BoundFailure, bound_record};
+use enmm_stability::limit_analysis::{Bound, Collapse};
 
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Finds the bounds of a case and prints them.
 pub fn bound(path: &Path, json: bool) -> ExitCode {
-    let found = enmm::io::load_case(path).map_err(BoundFailure::from).and_then(|loaded| enmm::io::bound(&loaded));
+    let found = enmm_io::load_case(path).map_err(BoundFailure::from).and_then(|loaded| enmm_run::bound(&loaded));
     match found {
         Ok(bound) if json => print_line(&bound_record(&bound).to_string()),
         Ok(bound) => print_line(&text(&bound)),

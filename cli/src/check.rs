@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use enmm::io::check::Check;
-use enmm::io::{CaseError, Observer};
 use enmm::model::Simulation;
+use enmm_io::CaseError;
+use enmm_run::Observer;
+use enmm_run::check::Check;
 
 use crate::progress::Screen;
 use crate::{BAD_INPUT, fail, print_line};
@@ -29,12 +30,12 @@ pub fn check(path: &Path, json: bool) -> ExitCode {
 }
 
 fn look(path: &Path, screen: &mut Screen) -> Result<Check, CaseError> {
-    let loaded = enmm::io::load_case(path)?;
+    let loaded = enmm_io::load_case(path)?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
-    Ok(enmm::io::check(&simulation, &loaded.warnings))
+    Ok(enmm_run::check(&simulation, &loaded.warnings))
 }
 
 /// Memory while the model runs, and what of it is the model, its state (held twice) and the buffers of a step.

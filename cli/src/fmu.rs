@@ -42,7 +42,7 @@ pub fn fmu(arguments: &Arguments) -> ExitCode {
         Err((message, status)) => return fail(&message, status),
     };
     packed.warnings.iter().for_each(|warning| tell_line(&format!("warning: {warning}")));
-    if let Err(error) = enmm::io::files::write_atomic(&output, &packed.bytes) {
+    if let Err(error) = enmm_io::files::write_atomic(&output, &packed.bytes) {
         return fail(&format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
     }
     print_line(&line(&packed, version, &output));
@@ -57,7 +57,7 @@ fn default_output(case: &Path) -> PathBuf {
 }
 
 fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
-    let loaded = enmm::io::load_case(case).map_err(|error| (error.to_string(), BAD_INPUT))?;
+    let loaded = enmm_io::load_case(case).map_err(|error| (error.to_string(), BAD_INPUT))?;
     if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
         return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
     }
@@ -67,7 +67,7 @@ fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed,
     let library = std::fs::read(&path).map_err(unreadable)?;
     let name = case.file_name().unwrap_or_default().to_string_lossy();
     pack(&loaded, &name, version, &library).map_err(|error| {
-        let status = if matches!(error, PackError::Model(_)) { BAD_INPUT } else { FAILED };
+        let status = if matches!(error, PackError::Case(_)) { BAD_INPUT } else { FAILED };
         (error.to_string(), status)
     })
 }

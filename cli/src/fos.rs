@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use enmm::io::fos::{Found, remedy};
-use enmm::io::{FosError, FosOptions, LoadedCase};
 use enmm::model::Simulation;
-use enmm::model::strength_reduction::{
+use enmm_io::LoadedCase;
+use enmm_run::fos::{Found, remedy};
+use enmm_run::{FosError, FosOptions};
+use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
 
@@ -64,7 +65,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(message) = options.check() {
         return refuse(arguments, &message, BAD_INPUT);
     }
-    let loaded = match enmm::io::load_case(&arguments.case) {
+    let loaded = match enmm_io::load_case(&arguments.case) {
         Ok(loaded) => loaded,
         Err(error) => return refuse(arguments, &error, BAD_INPUT),
     };
@@ -79,7 +80,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
             print_line(&row(trial, progress));
         }
     };
-    match enmm::io::fos(&loaded, &options, &mut hear) {
+    match enmm_run::fos(&loaded, &options, &mut hear) {
         Ok(found) => report(arguments, &found, &options.directory),
         Err(error @ FosError::NoRest(_)) => {
             warn(&loaded);

@@ -86,6 +86,6 @@ fn execute(command: Command) -> ExitCode {
 }
 
 fn schema() -> ExitCode {
-    print_line(&format!("{:#}", enmm::io::schema()));
+    print_line(&format!("{:#}", enmm_io::schema()));
     ExitCode::SUCCESS
 }

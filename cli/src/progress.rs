@@ -3,8 +3,8 @@
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use enmm::io::{Observer, RunProgress};
 use enmm::model::BuildStage;
+use enmm_run::{Observer, RunProgress};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between plain lines.

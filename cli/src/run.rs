@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use enmm::io::{RunError, RunOptions, RunStatus, Summary};
+use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
@@ -34,7 +34,7 @@ pub struct Arguments {
 
 /// Runs a case.
 pub fn run(arguments: &Arguments) -> ExitCode {
-    let loaded = match enmm::io::load_case(&arguments.case) {
+    let loaded = match enmm_io::load_case(&arguments.case) {
         Ok(loaded) => loaded,
         Err(error) => return fail(&error, BAD_INPUT),
     };
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         interrupt: Some(&INTERRUPT),
     };
     let mut screen = Screen::new(arguments.quiet);
-    let outcome = enmm::io::run(&loaded, &options, &mut screen);
+    let outcome = enmm_run::run(&loaded, &options, &mut screen);
     screen.close();
     match outcome {
         Ok(summary) => report(&summary, &options.directory, arguments.quiet),

@@ -1,16 +1,12 @@
 //! What a host is told when something cannot be done. The model is then as it was before the call.
 
-use crate::io::CaseError;
-use crate::io::checkpoint::CheckpointError;
 use crate::model::case::Invalid;
+use crate::state::bytes::BytesError;
 use crate::step::StepError;
 
 /// Why a call did nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum CosimulationError {
-    /// The case cannot be used.
-    #[error(transparent)]
-    Case(#[from] CaseError),
     /// A stage of the case cannot begin.
     #[error("{0}")]
     Stage(Invalid),
@@ -42,7 +38,7 @@ pub enum CosimulationError {
     Stale,
     /// A saved state cannot be used.
     #[error(transparent)]
-    State(#[from] CheckpointError),
+    State(#[from] BytesError),
 }
 
 impl CosimulationError {

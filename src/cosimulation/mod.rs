@@ -21,10 +21,10 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Vector;
-use crate::io::{LoadedCase, RestPlan};
 pub use crate::model::case::limits;
-use crate::model::case::{Case, StageKind};
-use crate::model::{BlockState, Simulation, settle};
+use crate::model::case::{Case, Invalid, StageKind};
+use crate::model::settle::{self, Cadence};
+use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
@@ -81,21 +81,13 @@ impl Cosimulation {
     /// Builds the model of a case.
     ///
     /// # Errors
-    /// The first value of the case that does not fit, with file and line.
-    pub fn new(loaded: &LoadedCase) -> Result<Self, CosimulationError> {
-        let mut simulation = Simulation::new(loaded.case.clone())
-            .map_err(|invalid| CosimulationError::Case(loaded.source.locate(&invalid.key, &invalid.message)))?;
+    /// The first value of the case that does not fit, with its key.
+    pub fn new(case: Case) -> Result<Self, Invalid> {
+        let hash = case.fingerprint()?;
+        let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
-        let backup = Saved::of(simulation.state(), &loaded.hash);
-        Ok(Self {
-            simulation,
-            hash: loaded.hash.clone(),
-            grid: None,
-            progress: Progress::default(),
-            backup,
-            serial: 0,
-            pool: None,
-        })
+        let backup = Saved::of(simulation.state(), &hash);
+        Ok(Self { simulation, hash, grid: None, progress: Progress::default(), backup, serial: 0, pool: None })
     }
 
     /// The case.
@@ -209,9 +201,9 @@ impl Cosimulation {
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
         for _ in 0..initial_stages(self.case()) {
-            let plan = RestPlan::of(&self.simulation);
+            let cadence = Cadence::of(&self.simulation);
             let step = |model: &mut Self| {
-                let wanted = plan.report_due(model.simulation.state().stage_step);
+                let wanted = cadence.report_due(model.simulation.state().stage_step);
                 model.step(None, wanted).map(|report| wanted.then_some(report))
             };
             let last = settle::until_over(self, Self::simulation, step)?;

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::io::checkpoint::{self, CheckpointError};
 use crate::model::Simulation;
 use crate::model::fit::{self, Unfit};
 use crate::state::State;
+use crate::state::bytes::{self, BytesError};
 
 use super::{Cosimulation, CosimulationError, Progress};
 
@@ -70,14 +70,14 @@ impl Cosimulation {
     /// The state is of another model, or one of its numbers, indices or lengths cannot be.
     pub fn check(&self, saved: &Saved) -> Result<(), CosimulationError> {
         self.check_case(saved)?;
-        self.check_saved(saved).map_err(|unfit| CheckpointError::Damaged(unfit.to_string()).into())
+        self.check_saved(saved).map_err(|unfit| BytesError::Damaged(unfit.to_string()).into())
     }
 
-    fn check_case(&self, saved: &Saved) -> Result<(), CheckpointError> {
+    fn check_case(&self, saved: &Saved) -> Result<(), BytesError> {
         if saved.hash == self.hash {
             return Ok(());
         }
-        Err(CheckpointError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() })
+        Err(BytesError::OtherCase { found: saved.hash.clone(), own: self.hash.clone() })
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
@@ -112,14 +112,13 @@ impl Cosimulation {
         self.progress = saved.give(&mut self.simulation, &mut self.grid);
     }
 
-    /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`checkpoint`]).
+    /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`bytes`]).
     ///
     /// # Errors
     /// The state is of another model, or cannot be serialised.
     pub fn serialize(&self, saved: &Saved) -> Result<Vec<u8>, CosimulationError> {
         self.check_case(saved)?;
-        checkpoint::encode(saved, &self.hash)
-            .map_err(|error| CosimulationError::State(CheckpointError::Damaged(error.to_string())))
+        Ok(bytes::encode(saved, &self.hash)?)
     }
 
     /// The saved state in bytes that [`Cosimulation::serialize`] made, in this process or another.
@@ -127,7 +126,7 @@ impl Cosimulation {
     /// # Errors
     /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        let saved = checkpoint::decode(bytes, &self.hash)?;
+        let saved = bytes::decode(bytes, &self.hash)?;
         self.check(&saved)?;
         Ok(saved)
     }

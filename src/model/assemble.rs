@@ -87,7 +87,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
 ///
 /// # Errors
 /// As [`build`].
-pub(super) fn outlines(case: &Case) -> Result<Outlines, Invalid> {
+pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
     let geometry::Plane { mesh, arrangement, .. } = geometry::arrange_case(case, &mut |_| ())?;
     Ok(cover::cut(mesh, arrangement).1)
 }

@@ -2,6 +2,7 @@
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `assemble`.
 
 mod bolt;
+mod fingerprint;
 mod ground;
 pub mod key;
 pub mod limits;
@@ -593,7 +594,7 @@ pub struct Stage {
 
 impl Stage {
     /// A stage that changes nothing, to be put after `others`: its name is `name`, with a prime for each that has it.
-    pub(crate) fn plain(others: &[Self], name: &str, kind: StageKind, duration: f64) -> Self {
+    pub fn plain(others: &[Self], name: &str, kind: StageKind, duration: f64) -> Self {
         let mut name = name.to_owned();
         while others.iter().any(|stage| stage.name == name) {
             name.push('\'');

@@ -3,12 +3,10 @@
 pub mod assemble;
 pub mod case;
 pub mod fit;
-pub mod limit_analysis;
 mod observe;
 pub mod settle;
 mod simulation;
 pub mod snapshot;
-pub mod strength_reduction;
 
 pub use assemble::{BuildStage, Built, build};
 pub use case::Case;
@@ -16,3 +14,8 @@ pub use fit::Unfit;
 pub use observe::BlockState;
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;
+
+pub use crate::contact::{BoltSegment, BoltState, ContactState};
+pub use crate::state::bytes::BytesError;
+pub use crate::state::{Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State};
+pub use crate::step::{StepError, StepReport};

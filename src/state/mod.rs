@@ -1,6 +1,7 @@
 //! The data of a simulation: [`Model`] (fixed once built), [`State`] (all that a checkpoint holds), [`Workspace`]
 //! (buffers).
 
+pub mod bytes;
 mod element;
 mod events;
 mod implicit;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use enmm::io::{LoadedCase, load_case, parse_case};
+use enmm_io::{LoadedCase, load_case, parse_case};
 
 /// A valid case with every numeric key; tests change a line of it. Line numbers count from 1.
 pub const CASE: &str = r#"title = "Two blocks on a slope"

@@ -23,7 +23,7 @@ pub fn tell(name: &str, value: f64) {
 
 /// Builds a simulation from the text of a case.
 pub fn simulation(text: &str) -> Simulation {
-    let loaded = enmm::io::parse_case(text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = enmm_io::parse_case(text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
     Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::io::picture::ModelAnnotations;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, JointPoint, Polygons};
+use enmm_picture::ModelAnnotations;
 
 /// Slope profile (m), counter-clockwise.
 pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56.0, 60.0], [32.0, 15.0], [0.0, 15.0]];

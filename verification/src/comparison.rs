@@ -7,10 +7,10 @@ mod report;
 use std::time::Instant;
 
 use enmm::geometry::Vector;
-use enmm::io::bench::Machine;
 use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::state::Counters;
+use enmm_bench::Machine;
 
 use crate::{Plot, Setup, Trouble, Values};
 

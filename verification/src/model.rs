@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
-use enmm::io;
 use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::step::StepReport;
+use enmm_io as io;
 
 use crate::{Problem, Row, Tolerance, Values};
 

@@ -1,6 +1,6 @@
 //! Draws the plots of a problem.
 
-use enmm::io::picture::{Chart, ChartSeries, Picture, chart_picture};
+use enmm_picture::{Chart, ChartSeries, Picture, chart_picture};
 
 use crate::{Plot, Series};
 

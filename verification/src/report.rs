@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use enmm::io::files::{at_path, write_atomic};
+use enmm_io::files::{at_path, write_atomic};
 
 use crate::record::{ParameterRecord, ProblemRecord, Record, RowRecord, ToleranceKind};
 use crate::{Solved, lines, plot, text};

@@ -7,8 +7,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use enmm::io::files::write_atomic;
 use enmm::model::case::Integrator;
+use enmm_io::files::write_atomic;
 
 use crate::{Outcome, Problem, Setup, Trouble, Values};
 

@@ -155,7 +155,7 @@ fn cases_are_written_under_names_of_their_own() {
     let names: Vec<_> = paths.iter().map(|p| p.file_name().expect("a name").to_string_lossy().into_owned()).collect();
     assert_eq!(names, ["a_case.toml", "a_case-2.toml"]);
     for path in paths {
-        let loaded = enmm::io::load_case(&path).unwrap_or_else(|error| panic!("{error}"));
+        let loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(loaded.case.solver.integrator, Integrator::Implicit);
     }
 }

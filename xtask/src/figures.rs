@@ -116,8 +116,8 @@ fn value(repository: &Repository, name: &str) -> Result<Option<f64>, String> {
         return of_report(&read(&repository.root.join(REPORT))?, problem, quantity).map(Some);
     }
     if let Some((constant, file)) = name.split_once(' ') {
-        let text = read(&repository.root.join("src").join(file))?;
-        return of_source(&text, constant).map(Some).map_err(|why| format!("src/{file}: {why}"));
+        let text = read(&source(&repository.root, file))?;
+        return of_source(&text, constant).map(Some).map_err(|why| format!("{file}: {why}"));
     }
     let path = repository.figures().join(name);
     if !path.exists() {
@@ -125,6 +125,15 @@ fn value(repository: &Repository, name: &str) -> Result<Option<f64>, String> {
     }
     let text = read(&path)?;
     text.trim().parse().map(Some).map_err(|error| format!("{}: {text}: {error}", path.display()))
+}
+
+/// The file that a mark names: one of the engine, or of another crate, whose folder then comes first.
+fn source(root: &Path, file: &str) -> PathBuf {
+    let own = root.join("src").join(file);
+    match file.split_once('/') {
+        Some((folder, rest)) if !own.exists() => root.join(folder).join("src").join(rest),
+        _ => own,
+    }
 }
 
 /// Computed value of a quantity in the text of the report.

@@ -5,7 +5,6 @@ mod support;
 use std::fmt::Write;
 use std::process::Command;
 
-use engine::cosimulation::Cosimulation;
 use engine::geometry::Vector;
 use engine::model::BlockState;
 use support::{SMALL, host, root, succeed};
@@ -15,8 +14,8 @@ const STEPS: usize = 40;
 
 #[test]
 fn the_c_abi_gives_the_bits_of_the_facade() {
-    let loaded = engine::io::load_case(&root().join(SMALL)).expect("a case");
-    let mut model = Cosimulation::new(&loaded).expect("a model");
+    let loaded = enmm_io::load_case(&root().join(SMALL)).expect("a case");
+    let mut model = loaded.cosimulation().expect("a model");
     let mut own = String::new();
     for k in 0..STEPS {
         model.set_gravity(Vector::new(0.1 * k as f64, -9.81)).expect("gravity");

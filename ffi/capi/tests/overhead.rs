@@ -5,7 +5,6 @@ mod support;
 use std::process::Command;
 use std::time::Instant;
 
-use engine::cosimulation::Cosimulation;
 use support::{host, root, say, succeed};
 
 const CASE: &str = "examples/cases/block_on_incline.toml";
@@ -15,8 +14,8 @@ const TURNS: u32 = 5;
 
 #[test]
 fn overhead_of_a_step() {
-    let loaded = engine::io::load_case(&root().join(CASE)).expect("a case");
-    let mut facade = Cosimulation::new(&loaded).expect("a model");
+    let loaded = enmm_io::load_case(&root().join(CASE)).expect("a case");
+    let mut facade = loaded.cosimulation().expect("a model");
     facade.start().expect("an equilibrium");
     let (start, dt) = (facade.time(), facade.internal_step());
     let bench = host("ffi/capi/tests/c/bench.c");

@@ -105,7 +105,7 @@ impl Facts {
             title: title.to_owned(),
             identifier: identifier.to_owned(),
             summary: format!("Jointed rock slope of {blocks} blocks, explicit numerical manifold method"),
-            version: format!("{}+{}", enmm::io::checkpoint::engine_version(), model.hash()),
+            version: format!("{}+{}", enmm::engine_version(), model.hash()),
             stop_time: model.stop_time(),
             communication_step: short(model.communication_step()),
             internal_step: short(model.internal_step()),
@@ -136,7 +136,7 @@ fn short(value: f64) -> f64 {
 
 /// Name and version of the tool that made the FMU.
 pub fn tool() -> String {
-    format!("enmm {}", enmm::io::checkpoint::engine_version())
+    format!("enmm {}", enmm::engine_version())
 }
 
 /// Writes the units that the table uses.

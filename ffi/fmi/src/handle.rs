@@ -191,10 +191,10 @@ mod tests {
 
     fn instance(folder: &std::path::Path) -> Instance {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let loaded = enmm::io::load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap();
+        let loaded = enmm_io::load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap();
         std::fs::write(folder.join(crate::resource::FILE), crate::resource::encode(&loaded, "incline").unwrap())
             .unwrap();
-        let model = enmm::cosimulation::Cosimulation::new(&loaded).unwrap();
+        let model = loaded.cosimulation().unwrap();
         let token = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, Version::Three).token;
         let plan = Plan {
             version: Version::Three,

@@ -4,8 +4,8 @@
 use std::io::{self, Cursor, Write};
 use std::path::Path;
 
-use enmm::cosimulation::{Cosimulation, CosimulationError};
-use enmm::io::LoadedCase;
+use enmm::cosimulation::Cosimulation;
+use enmm_io::{CaseError, LoadedCase};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -32,7 +32,7 @@ pub struct Packed {
 pub enum PackError {
     /// The model of the case cannot be built.
     #[error(transparent)]
-    Model(#[from] CosimulationError),
+    Case(#[from] CaseError),
     /// A part cannot be made.
     #[error("cannot make {0} of the FMU ({1})")]
     Part(&'static str, String),
@@ -43,7 +43,7 @@ pub enum PackError {
 /// # Errors
 /// A case whose model cannot be built.
 pub fn pack(loaded: &LoadedCase, name: &str, version: Version, library: &[u8]) -> Result<Packed, PackError> {
-    let model = Cosimulation::new(loaded)?;
+    let model = loaded.cosimulation()?;
     let facts = Facts::of(&model, &identifier(name));
     let table = Table::new(model.case(), facts.blocks, &loaded.hash, version);
     let files = files(loaded, name, &model, &facts, &table, library)?;

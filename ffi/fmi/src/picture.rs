@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::io;
 
 use enmm::geometry::Point;
-use enmm::io::model_annotations;
-use enmm::io::picture::{ModelAnnotations, model_picture};
 use enmm::model::Simulation;
 use enmm::model::snapshot::Boundary;
+use enmm_picture::model_annotations;
+use enmm_picture::{ModelAnnotations, model_picture};
 use resvg::{tiny_skia, usvg};
 
 /// Side of the icon (px).

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use enmm::io::LoadedCase;
 use enmm::model::Case;
+use enmm_io::LoadedCase;
 use serde::{Deserialize, Serialize};
 
 /// Name of the file in the folder of resources.
@@ -46,7 +46,7 @@ struct Resource {
 /// # Errors
 /// When the case cannot be written as JSON.
 pub fn encode(loaded: &LoadedCase, name: &str) -> Result<Vec<u8>, serde_json::Error> {
-    let engine = enmm::io::checkpoint::engine_version().to_owned();
+    let engine = enmm::engine_version().to_owned();
     let resource = Resource {
         format: FORMAT,
         engine,
@@ -68,7 +68,7 @@ pub fn load(folder: &Path) -> Result<LoadedCase, ResourceError> {
     let bytes = std::fs::read(&path)
         .map_err(|error| ResourceError::Unreadable { path: named.clone(), problem: error.to_string() })?;
     let resource: Resource = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
-    if resource.format != FORMAT || resource.engine != enmm::io::checkpoint::engine_version() {
+    if resource.format != FORMAT || resource.engine != enmm::engine_version() {
         return Err(damaged(format!("format {} of enmm {}", resource.format, resource.engine)));
     }
     let loaded = LoadedCase::of(resource.case, &resource.name).map_err(|error| damaged(error.to_string()))?;
@@ -86,7 +86,7 @@ mod tests {
     fn a_case_survives_the_resource_to_the_bit_and_damage_is_refused() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         for name in ["block_on_incline", "fractured_slope"] {
-            let loaded = enmm::io::load_case(&root.join(format!("examples/cases/{name}.toml"))).unwrap();
+            let loaded = enmm_io::load_case(&root.join(format!("examples/cases/{name}.toml"))).unwrap();
             let folder = tempfile::tempdir().unwrap();
             assert!(matches!(load(folder.path()), Err(ResourceError::Unreadable { .. })));
             let mut bytes = encode(&loaded, name).unwrap();

@@ -269,7 +269,7 @@ impl Table {
 
 /// UUID version 5 of the interface and the case behind it.
 fn token(variables: &[Variable], hash: &str, version: Version) -> String {
-    let mut text = format!("enmm {} {version:?} {hash}\n", enmm::io::checkpoint::engine_version());
+    let mut text = format!("enmm {} {version:?} {hash}\n", enmm::engine_version());
     for v in variables {
         text += &format!(
             "{} {} {:?} {:?} {:?} {:?} {}\n",

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm_fmi::pack::{PackError, identifier, pack};
 use enmm_fmi::table::{Axis, Causality, Quantity, Table, Type, Version};
 use enmm_fmi::{library, log, resource};
+use enmm_io::{LoadedCase, load_case, parse_case};
 use quick_xml::Reader;
 use quick_xml::XmlVersion;
 use quick_xml::events::Event;
@@ -300,7 +300,7 @@ fn a_model_that_cannot_be_built_is_an_error_of_the_case() {
     wrong.fixes[0].block = Some([50.0, 50.0]);
     let loaded = LoadedCase::of(wrong, "wrong.toml").unwrap();
     let error = pack(&loaded, "wrong.toml", Version::Three, LIBRARY).unwrap_err();
-    assert!(matches!(error, PackError::Model(_)) && error.to_string().starts_with("wrong.toml:"), "{error}");
+    assert!(matches!(error, PackError::Case(_)) && error.to_string().starts_with("wrong.toml:"), "{error}");
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn the_library_is_found_beside_the_program_and_the_newer_one_wins() {
 #[test]
 fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
     let loaded = case(CASES[0]);
-    let mut model = Cosimulation::new(&loaded).unwrap();
+    let mut model = loaded.cosimulation().unwrap();
     model.start().unwrap();
     for h in [0.01, 0.00337] {
         let time = model.time();
@@ -364,7 +364,7 @@ fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
 fn start_values_are_those_that_the_model_starts_with() {
     for path in CASES {
         let loaded = case(path);
-        let model = Cosimulation::new(&loaded).unwrap();
+        let model = loaded.cosimulation().unwrap();
         let (inputs, blocks) = (model.inputs(), model.block_states().len());
         let of = |axis: Axis, vector: Vector| if axis == Axis::X { vector.x } else { vector.y };
         let block = |port: usize| model.ports()[port].block as usize;
@@ -390,7 +390,7 @@ fn start_values_are_those_that_the_model_starts_with() {
 #[test]
 fn the_range_of_the_strength_factor_is_that_of_the_engine() {
     let loaded = case(CASES[0]);
-    let mut model = Cosimulation::new(&loaded).unwrap();
+    let mut model = loaded.cosimulation().unwrap();
     let table = Table::new(&loaded.case, 2, &loaded.hash, Version::Two);
     let factor = table.variables.iter().find(|v| v.name == "strength_factor").unwrap();
     let (low, high) = factor.limits.unwrap();

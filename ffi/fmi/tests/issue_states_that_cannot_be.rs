@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use enmm::cosimulation::Cosimulation;
-use enmm::io::{checkpoint, load_case};
+use enmm::state::bytes;
 use enmm_fmi::instance::{Instance, Plan};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;
 use enmm_fmi::table::{Causality, Table, Type, Variable, Version};
+use enmm_io::load_case;
 use serde::Serialize;
 use serde::ser::{SerializeTuple, Serializer};
 
@@ -28,7 +28,7 @@ fn instance(version: Version, folder: &Path) -> Instance {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let loaded = load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap();
     std::fs::write(folder.join(resource::FILE), resource::encode(&loaded, "incline").unwrap()).unwrap();
-    let blocks = Cosimulation::new(&loaded).unwrap().block_states().len();
+    let blocks = loaded.cosimulation().unwrap().block_states().len();
     let token = Table::new(&loaded.case, blocks, &loaded.hash, version).token;
     let plan = Plan { version, name: "a", token: &token, resources: folder, logging: false, early_return: false };
     let mut instance = Instance::new(plan).unwrap();
@@ -71,12 +71,12 @@ fn infinite_numbers_in_saved_states_are_refused_or_do_no_harm() {
         let token = instance.table().token.clone();
         let good = instance.save_state(None).unwrap();
         let bytes = instance.serialize_state(good).unwrap().to_vec();
-        let start = checkpoint::encode(&Raw(&[]), &token).unwrap().len();
+        let start = bytes::encode(&Raw(&[]), &token).unwrap().len();
         let (mut refused, mut named) = (0, 0);
         for at in start..bytes.len() - 8 {
             let mut payload = bytes[start..].to_vec();
             payload[at - start..at - start + 8].copy_from_slice(&f64::INFINITY.to_le_bytes());
-            let forged = checkpoint::encode(&Raw(&payload), &token).unwrap();
+            let forged = bytes::encode(&Raw(&payload), &token).unwrap();
             instance.take_messages();
             match instance.deserialize_state(&forged, None) {
                 Err(status) => {

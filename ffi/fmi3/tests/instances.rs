@@ -331,7 +331,7 @@ fn logging_follows_the_categories() {
 #[test]
 fn slips_of_units_are_warnings_of_the_log() {
     let text = include_str!("common/box.toml").replace("density = 2650.0", "density = 26.5");
-    let fmu = Fmu::of(enmm::io::parse_case(&text, "box.toml", std::path::Path::new(".")).unwrap());
+    let fmu = Fmu::of(enmm_io::parse_case(&text, "box.toml", std::path::Path::new(".")).unwrap());
     let instance = fmu.instantiate(&Options { logging: true, ..Options::default() }).unwrap();
     instance.start();
     let told: Vec<_> = instance.lines().into_iter().filter(|line| line.1 == "logStatusWarning").collect();

@@ -115,8 +115,8 @@ fn reset_is_as_new_and_parameters_build_another_model() {
     instance.run(0.01, 0.03);
     let mut case = fmu.loaded.case.clone();
     case.rocks.values_mut().for_each(|rock| rock.density = 2000.0);
-    let loaded = enmm::io::LoadedCase::of(case, "other").unwrap();
-    let mut model = enmm::cosimulation::Cosimulation::new(&loaded).unwrap();
+    let loaded = enmm_io::LoadedCase::of(case, "other").unwrap();
+    let mut model = loaded.cosimulation().unwrap();
     model.set_block_force(model.ports()[0].block, Vector::new(0.0, -1e3), 0.0).unwrap();
     (0..3).for_each(|k| drop(model.do_step(0.01 * f64::from(k), 0.01).unwrap()));
     assert_eq!(instance.snapshot(), model.serialize(&model.save()).unwrap());

@@ -149,7 +149,7 @@ impl Fmu {
         std::fs::create_dir_all(&resources).expect("a folder");
         let case = resource::encode(&model.loaded, "case").expect("a case");
         std::fs::write(resources.join(resource::FILE), case).expect("a file");
-        let facade = Cosimulation::new(&model.loaded).expect("a model");
+        let facade = model.loaded.cosimulation().expect("a model");
         let (blocks, dt) = (facade.block_states().len(), facade.internal_step());
         let table = Table::new(&model.loaded.case, blocks, &model.loaded.hash, version);
         let of = |name: &str| table.variables.iter().find(|v| v.name == name).expect("a variable").reference;

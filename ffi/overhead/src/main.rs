@@ -57,7 +57,7 @@ fn say(line: &str) {
 }
 
 fn started(model: &Model) -> Cosimulation {
-    let mut facade = Cosimulation::new(&model.loaded).expect("a model");
+    let mut facade = model.loaded.cosimulation().expect("a model");
     facade.start().expect("an equilibrium");
     facade
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use engine::io::{LoadedCase, parse_case};
+use enmm_io::{LoadedCase, parse_case};
 
 /// A block on an incline, which slides.
 const INCLINE: &str = include_str!("../../../examples/cases/block_on_incline.toml");

@@ -3,7 +3,7 @@
 use super::block::G;
 use super::incline::{ledger_row, trial_plot};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, Values};
-use enmm::model::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
+use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
 pub const PROBLEM: Problem = Problem {
     id: "C13",

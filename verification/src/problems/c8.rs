@@ -3,7 +3,7 @@
 use super::incline::{ledger_row, reduce, trial_plot};
 use super::toppling::{Columns, Mode};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, Values};
-use enmm::model::strength_reduction::Reduction;
+use enmm_stability::strength_reduction::Reduction;
 
 pub const PROBLEM: Problem = Problem {
     id: "C8",

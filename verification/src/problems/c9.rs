@@ -91,7 +91,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     Ok(outcome)
 }
 
-fn row(name: &str, reduction: &enmm::model::strength_reduction::Reduction, exact: f64) -> Row {
+fn row(name: &str, reduction: &enmm_stability::strength_reduction::Reduction, exact: f64) -> Row {
     let reason = "bracket of 0.2 % (0.5 % when quick); the wedge is elastic and its toe a corner of 15°";
     factor_row(&format!("factor of safety, {name}"), reduction, exact, reason)
 }

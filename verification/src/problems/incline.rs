@@ -1,6 +1,6 @@
 //! What problems on inclined planes share: turned corners, text of cases, factors of safety.
 
-use enmm::model::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
+use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
 use super::block;
 pub use super::block::G;

@@ -1,6 +1,6 @@
 //! What problems of limit analysis share: text of cases with several blocks and laws, rows of factors.
 
-use enmm::model::limit_analysis::{Bound, bound};
+use enmm_stability::limit_analysis::{Bound, bound};
 
 use super::block::G;
 use super::incline::turn;

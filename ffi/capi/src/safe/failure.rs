@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ffi::CString;
 
 use engine::cosimulation::CosimulationError;
-use engine::io::CaseError;
+use enmm_io::CaseError;
 
 use crate::types::enmm_status;
 
@@ -58,7 +58,6 @@ impl From<CaseError> for Failure {
 impl From<CosimulationError> for Failure {
     fn from(error: CosimulationError) -> Self {
         let status = match error {
-            CosimulationError::Case(case) => return case.into(),
             CosimulationError::Stage(_) => enmm_status::ENMM_INVALID_CASE,
             CosimulationError::Value { .. } => enmm_status::ENMM_INVALID_ARGUMENT,
             CosimulationError::Time { .. } | CosimulationError::Stale => enmm_status::ENMM_WRONG_TIME,

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
-use engine::io::{LoadedCase, load_case, parse_case};
+use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
@@ -130,7 +130,7 @@ pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> 
 }
 
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
-    let inner = Cosimulation::new(loaded)?;
+    let inner = loaded.cosimulation()?;
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
     let model = Model { inner, log: Log::default(), warnings };
     MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })

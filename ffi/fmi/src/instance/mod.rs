@@ -13,7 +13,7 @@ pub use step::{Step, Update};
 use std::path::Path;
 
 use enmm::cosimulation::{Cosimulation, Interpolation, Saved, apply};
-use enmm::io::LoadedCase;
+use enmm_io::LoadedCase;
 
 use crate::log::{Category, Filter, Message, Status};
 use crate::phase::{Call, Phase, is_legal};
@@ -82,7 +82,7 @@ impl Instance {
             return Err("the name of the instance is empty: give one".to_owned());
         }
         let loaded = resource::load(plan.resources).map_err(|error| error.to_string())?;
-        let model = Cosimulation::new(&loaded).map_err(|error| error.to_string())?;
+        let model = loaded.cosimulation().map_err(|error| error.to_string())?;
         let blocks = model.simulation().model().covers.block_count();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, plan.version);
         if plan.token != table.token {
@@ -314,11 +314,11 @@ impl Instance {
             }
         }
         if changed.is_empty() {
-            return Cosimulation::new(&self.loaded).map_err(|error| error.to_string());
+            return self.loaded.cosimulation().map_err(|error| error.to_string());
         }
         let located = |problem: String| format!("no model can be built with {}: {problem}", changed.join(", "));
         let loaded = LoadedCase::of(case, self.loaded.source.file()).map_err(|error| located(error.to_string()))?;
-        Cosimulation::new(&loaded).map_err(|error| located(error.to_string()))
+        loaded.cosimulation().map_err(|error| located(error.to_string()))
     }
 
     fn take_model(&mut self, model: Cosimulation, built: Vec<f64>) {

@@ -7,9 +7,9 @@ use std::ptr::null_mut;
 use std::sync::Mutex;
 
 use enmm::cosimulation::Cosimulation;
-use enmm::io::{LoadedCase, load_case, parse_case};
 use enmm_fmi::table::{Table, Version};
 use enmm_fmi2::*;
+use enmm_io::{LoadedCase, load_case, parse_case};
 
 pub const OK: Status = Status::Ok;
 pub const ERROR: Status = Status::Error;
@@ -26,7 +26,7 @@ impl Fmu {
         let folder = tempfile::tempdir().unwrap();
         let resources = folder.path().join("resources");
         write_resources(&loaded, &resources);
-        let blocks = Cosimulation::new(&loaded).unwrap().block_states().len();
+        let blocks = loaded.cosimulation().unwrap().block_states().len();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, Version::Two);
         Self { loaded, folder, table }
     }
@@ -41,7 +41,7 @@ impl Fmu {
     }
 
     pub fn model(&self) -> Cosimulation {
-        Cosimulation::new(&self.loaded).unwrap()
+        self.loaded.cosimulation().unwrap()
     }
 
     pub fn reference(&self, name: &str) -> u32 {

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use engine::io::{LoadedCase, bound, parse_case};
 use engine::model::{Case, Simulation};
+use enmm_io::{LoadedCase, parse_case};
+use enmm_run::bound;
 
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;

@@ -4,13 +4,12 @@ use std::ffi::{CString, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::{null, null_mut};
 
-use engine::cosimulation::Cosimulation;
-use engine::io::{LoadedCase, parse_case};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;
 use enmm_fmi::table::{Causality, Table, Type, Version};
 use enmm_fmi2 as fmi2;
 use enmm_fmi3 as fmi3;
+use enmm_io::{LoadedCase, parse_case};
 
 use crate::parts::buffer::Buffer;
 use crate::parts::calls::CASE;
@@ -37,7 +36,7 @@ impl Fmu {
     /// The block on a slab.
     pub fn new(version: Version) -> Result<Self, String> {
         let loaded: LoadedCase = parse_case(CASE, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
-        let model = Cosimulation::new(&loaded).map_err(|error| error.to_string())?;
+        let model = loaded.cosimulation().map_err(|error| error.to_string())?;
         let table = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, version);
         let folder = std::env::temp_dir().join(format!("enmm-fuzz-{}-{version:?}", std::process::id()));
         let resources = folder.join("resources");

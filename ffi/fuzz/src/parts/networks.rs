@@ -4,8 +4,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use engine::io::parse_case;
 use engine::model::Simulation;
+use enmm_io::parse_case;
 
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;

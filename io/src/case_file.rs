@@ -1,0 +1,192 @@
+//! Reading of case files: TOML to [`Case`], geometry file merged, every value checked, every error with its line.
+
+mod reader;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::case_error::{CaseError, read_text};
+use super::geometry_file::{self, Format, Geometry, Trace};
+use super::lines::{LineMap, beginnings};
+use super::record_file;
+use enmm::cosimulation::Cosimulation;
+use enmm::model::case::{Case, Invalid, JointTrace};
+
+/// A case that has been read and checked.
+#[derive(Debug, Clone)]
+pub struct LoadedCase {
+    /// The case; outline and joints of the geometry file and the rows of records are part of it, and the keys of those
+    /// files are empty.
+    pub case: Case,
+    /// Where each value came from.
+    pub source: CaseSource,
+    /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
+    pub hash: String,
+    /// What the user should know though it is no error.
+    pub warnings: Vec<String>,
+}
+
+impl LoadedCase {
+    /// A case that has been read or changed elsewhere; `file` stands in messages.
+    ///
+    /// # Errors
+    /// The first value that cannot be used.
+    pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
+        let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
+        Self::checked(case, source, Vec::new())
+    }
+
+    fn checked(case: Case, source: CaseSource, warnings: Vec<String>) -> Result<Self, CaseError> {
+        let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
+        case.validate().map_err(located)?;
+        let hash = case.fingerprint().map_err(located)?;
+        Ok(Self { case, source, hash, warnings })
+    }
+
+    /// Builds the model of the case for a host that drives it.
+    ///
+    /// # Errors
+    /// The first value that does not fit, with file and line.
+    pub fn cosimulation(&self) -> Result<Cosimulation, CaseError> {
+        Cosimulation::new(self.case.clone()).map_err(|invalid| self.source.locate(&invalid.key, &invalid.message))
+    }
+}
+
+/// Where the values of a case came from.
+#[derive(Debug, Clone, Default)]
+pub struct CaseSource {
+    file: String,
+    lines: LineMap,
+    geometry_file: String,
+    geometry_lines: LineMap,
+    /// Keys of the geometry file by those of the case.
+    geometry: BTreeMap<String, String>,
+    /// File and lines of the rows of records, by the keys of their tables.
+    records: BTreeMap<String, (String, Vec<usize>)>,
+}
+
+impl CaseSource {
+    /// Returns the case file as the user named it.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
+    /// beginning of the key that is known; a value from the geometry file is located there.
+    pub fn locate(&self, key: &str, message: &str) -> CaseError {
+        if let Some((table, (file, lines))) = self.records.iter().find(|(table, _)| key.starts_with(table.as_str())) {
+            let row = key[table.len()..].trim_start_matches('[').split(']').next().and_then(|row| row.parse().ok());
+            let line = row.and_then(|row: usize| lines.get(row)).copied().unwrap_or(1);
+            return CaseError::at(file, line, key, message);
+        }
+        let of_geometry = beginnings(key).find_map(|part| Some((self.geometry.get(part)?, &key[part.len()..])));
+        let (file, lines, key) = match of_geometry {
+            Some((place, rest)) => {
+                let rest = rest.strip_prefix(".points").unwrap_or(rest);
+                (&self.geometry_file, &self.geometry_lines, format!("{place}{rest}"))
+            }
+            None => (&self.file, &self.lines, key.to_string()),
+        };
+        CaseError::at(file, lines.line(&key), &key, message)
+    }
+
+    fn note(&mut self, key: String, place: String) {
+        self.geometry.insert(key, place);
+    }
+}
+
+/// Reads a case file and the geometry file that it names, and checks every value.
+///
+/// # Errors
+/// The first thing that cannot be used, with file, line and key.
+pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
+    let file = path.display().to_string();
+    let text = read_text(path).map_err(|message| CaseError::Unreadable { file: file.clone(), message })?;
+    parse_case(&text, &file, path.parent().unwrap_or(Path::new("")))
+}
+
+/// Reads a case from text; `file_name` stands in messages, and `base_dir` is where relative paths start.
+///
+/// # Errors
+/// See [`load_case`].
+pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<LoadedCase, CaseError> {
+    let (mut case, lines) = reader::read(text, file_name)?;
+    let file = file_name.to_string();
+    let mut source = CaseSource { file, lines, ..CaseSource::default() };
+    let warnings = merge_geometry_file(&mut case, &mut source, base_dir)?;
+    merge_record_files(&mut case, &mut source, base_dir)?;
+    LoadedCase::checked(case, source, warnings)
+}
+
+/// Moves the rows of the files of base motions and waves into their tables.
+fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<(), CaseError> {
+    let motions = case.base_motions.iter_mut().map(|base| ("base_motion", &mut base.file, &mut base.table));
+    let waves = case.quiets.iter_mut().map(|quiet| ("quiet", &mut quiet.file, &mut quiet.table));
+    for records in [motions.collect::<Vec<_>>(), waves.collect()] {
+        for (k, (name, file, table)) in records.into_iter().enumerate() {
+            let Some(name_of_file) = file.take() else { continue };
+            let key = |field: &str| format!("{name}[{k}].{field}");
+            let path = base_dir.join(name_of_file);
+            let shown = path.display().to_string();
+            if table.is_some() {
+                let message = format!("the rows are also in {shown:?}, only one can be; remove `table` or `file`");
+                return Err(source.locate(&key("table"), &message));
+            }
+            let text = read_text(&path);
+            let text = text.map_err(|message| source.locate(&key("file"), &format!("{shown:?}: {message}")))?;
+            let record = record_file::parse(&shown, &text)?;
+            *table = Some(record.rows);
+            source.records.insert(key("table"), (shown, record.lines));
+        }
+    }
+    Ok(())
+}
+
+/// Moves outline, loops and traces of `domain.geometry_file` into the case; returns the warnings.
+fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<Vec<String>, CaseError> {
+    let Some(name) = case.domain.geometry_file.take() else { return Ok(Vec::new()) };
+    let path = base_dir.join(name);
+    source.geometry_file = path.display().to_string();
+    let geometry = read_geometry_file(case, source, &path)?;
+    if !case.domain.outline.is_empty() && geometry.outline.is_some() {
+        let message = format!("the outline is also in {:?}, only one can be; remove this one", source.geometry_file);
+        return Err(source.locate("domain.outline", &message));
+    }
+    let warnings = geometry.warnings.iter().map(|warning| format!("{}: {warning}", source.geometry_file)).collect();
+    merge(case, source, geometry);
+    Ok(warnings)
+}
+
+fn read_geometry_file(case: &Case, source: &CaseSource, path: &Path) -> Result<Geometry, CaseError> {
+    let file = &source.geometry_file;
+    let located = |message: String| source.locate("domain.geometry_file", &format!("{file:?}: {message}"));
+    let format = Format::of(path).map_err(located)?;
+    let text = read_text(path).map_err(located)?;
+    geometry_file::parse(format, file, &text, case)
+}
+
+fn merge(case: &mut Case, source: &mut CaseSource, geometry: Geometry) {
+    let Geometry { outline, holes, islands, traces, lines, .. } = geometry;
+    source.geometry_lines = lines;
+    if let Some((points, place)) = outline {
+        case.domain.outline = points;
+        source.note("domain.outline".to_string(), place);
+    }
+    for (name, target, loops) in
+        [("holes", &mut case.domain.holes, holes), ("islands", &mut case.domain.islands, islands)]
+    {
+        for (points, place) in loops {
+            source.note(format!("domain.{name}[{}]", target.len()), place);
+            target.push(points);
+        }
+    }
+    for Trace { points: (points, place), law } in traces {
+        let key = format!("joint[{}]", case.joints.len());
+        let law = law.map(|(law, place)| {
+            source.note(format!("{key}.law"), place);
+            law
+        });
+        source.note(key, place);
+        case.joints.push(JointTrace { points, law });
+    }
+}

@@ -1,0 +1,151 @@
+//! TOML to [`Case`]: walks the parsed text beside the schema of the case, so that every unknown key, missing key and
+//! wrong type is an error with its line and a remedy.
+
+mod expected;
+
+use serde_json::{Map, Number, Value};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use self::expected::{Expected, Fields, Schema, example, literal};
+use crate::case_error::CaseError;
+use crate::lines::{LineMap, LineStarts};
+use enmm::model::Case;
+use enmm::model::case::key::{Key, list, nearest};
+
+/// Reads a case and the lines of its keys.
+///
+/// # Errors
+/// The text is not TOML, or the first unknown key, missing key, wrong type or number that is not finite.
+pub fn read(text: &str, file: &str) -> Result<(Case, LineMap), CaseError> {
+    let starts = LineStarts::new(text);
+    let syntax = |line, message: String| CaseError::at(file, line, "", message);
+    let document = DeTable::parse(text).map_err(|error| {
+        let line = error.span().map_or(1, |span| starts.line(span.start));
+        syntax(line, format!("not TOML: {}; correct the line", one_line(error.message())))
+    })?;
+    let schema = crate::schema();
+    let mut reader = Reader { file, starts, lines: LineMap::default() };
+    let value = reader.table(document.get_ref(), &Schema::new(&schema).fields(), &Key::root())?;
+    let case = serde_json::from_value(value).map_err(|error| syntax(1, one_line(&error.to_string())))?;
+    Ok((case, reader.lines))
+}
+
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// What a walk carries along.
+struct Reader<'a> {
+    file: &'a str,
+    starts: LineStarts,
+    lines: LineMap,
+}
+
+impl Reader<'_> {
+    fn fail<T>(&self, key: &Key, message: String) -> Result<T, CaseError> {
+        Err(CaseError::at(self.file, self.lines.line(key.as_str()), key.as_str(), message))
+    }
+
+    fn value(&mut self, value: &DeValue, schema: &Schema, key: &Key) -> Result<Value, CaseError> {
+        match (schema.expected(), value) {
+            (Expected::Table(fields), DeValue::Table(table)) => self.table(table, &fields, key),
+            (Expected::Array { items, length }, DeValue::Array(array)) => self.array(array, (&items, length), key),
+            (Expected::Number, DeValue::Float(text)) => self.number(text.as_str(), key),
+            (Expected::Number, DeValue::Integer(text)) if text.radix() == 10 => self.number(text.as_str(), key),
+            (Expected::Integer(max), DeValue::Integer(text)) => {
+                match u64::from_str_radix(text.as_str(), text.radix()).ok().filter(|value| *value <= max) {
+                    Some(value) => Ok(Value::from(value)),
+                    None => self.fail(key, format!("is {text}, must be at least 0 and at most {max}; correct it")),
+                }
+            }
+            (Expected::Text, DeValue::String(text)) => Ok(Value::from(text.as_ref())),
+            (Expected::Boolean, DeValue::Boolean(value)) => Ok(Value::from(*value)),
+            (Expected::Choice(names), DeValue::String(text)) => self.choice(text, &names, key),
+            (expected, found) => {
+                self.fail(key, format!("is {}, must be {expected}; write {}", shown(found), example(key, schema)))
+            }
+        }
+    }
+
+    fn table(&mut self, table: &DeTable, fields: &Fields, key: &Key) -> Result<Value, CaseError> {
+        let mut values = Map::new();
+        for (name, value) in table {
+            let child = key.field(name.get_ref());
+            self.lines.insert(&child, self.starts.line(name.span().start));
+            let Some(schema) = fields.get(name.get_ref()) else { return self.unknown(name.get_ref(), fields, &child) };
+            if fields.are_free() && !value.get_ref().is_table() {
+                let remedy = example(key, &fields.schema());
+                return self.fail(&child, format!("is {}, must be a table; write {remedy}", shown(value.get_ref())));
+            }
+            values.insert(name.get_ref().to_string(), self.value(value.get_ref(), &schema, &child)?);
+        }
+        for name in fields.required().filter(|name| !table.contains_key(*name)) {
+            let child = key.field(name);
+            let Some(schema) = fields.get(name) else { continue };
+            let meaning = schema.description().unwrap_or_default();
+            return self.fail(&child, format!("is missing ({meaning}); add {}", example(&child, &schema)));
+        }
+        Ok(Value::Object(values))
+    }
+
+    fn unknown<T>(&self, name: &str, fields: &Fields, key: &Key) -> Result<T, CaseError> {
+        let near = nearest(name, fields.names()).unwrap_or_default();
+        let known = list(fields.names());
+        self.fail(key, format!("unknown key {name:?}, did you mean `{near}`? Known keys: {known}; rename or remove it"))
+    }
+
+    fn array(
+        &mut self,
+        array: &[Spanned<DeValue>],
+        (items, length): (&Schema, Option<usize>),
+        key: &Key,
+    ) -> Result<Value, CaseError> {
+        if let Some(length) = length.filter(|length| *length != array.len()) {
+            let sample = vec![literal(items); length].join(", ");
+            return self.fail(key, format!("has {} values, must have {length}; write `[{sample}]`", array.len()));
+        }
+        let mut values = Vec::with_capacity(array.len());
+        for (i, value) in array.iter().enumerate() {
+            let child = key.index(i);
+            self.lines.insert(&child, self.starts.line(value.span().start));
+            values.push(self.value(value.get_ref(), items, &child)?);
+        }
+        Ok(Value::Array(values))
+    }
+
+    fn number(&self, text: &str, key: &Key) -> Result<Value, CaseError> {
+        match text.parse().ok().and_then(Number::from_f64) {
+            Some(number) => Ok(Value::Number(number)),
+            None => self.fail(key, format!("is {text}, must be a finite number of at most 1.8e308; correct it")),
+        }
+    }
+
+    fn choice(&self, text: &str, names: &[&str], key: &Key) -> Result<Value, CaseError> {
+        if names.contains(&text) {
+            return Ok(Value::from(text));
+        }
+        let near = nearest(text, names.iter().copied()).unwrap_or_default();
+        let known = list(names.iter().copied());
+        self.fail(key, format!("is {text:?}, did you mean {near:?}? It must be one of {known}"))
+    }
+}
+
+/// Longest text of a value that is quoted in a message (characters).
+const SHOWN_LENGTH: usize = 40;
+
+/// Returns type and value for a message.
+fn shown(value: &DeValue) -> String {
+    match value {
+        DeValue::String(text) => {
+            let short: String = text.chars().take(SHOWN_LENGTH).collect();
+            format!("the string {short:?}")
+        }
+        DeValue::Integer(text) => format!("the integer {text}"),
+        DeValue::Float(text) => format!("the number {text}"),
+        DeValue::Boolean(value) => format!("the boolean {value}"),
+        DeValue::Datetime(value) => format!("the date {value}"),
+        DeValue::Array(array) => format!("an array of {} values", array.len()),
+        DeValue::Table(table) => format!("a table of {} keys", table.len()),
+    }
+}

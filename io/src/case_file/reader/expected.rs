@@ -1,0 +1,187 @@
+//! What the JSON Schema of the case expects at a key, and how an example of it is written in TOML.
+
+use std::fmt;
+
+use serde_json::Value;
+
+use enmm::model::case::key::Key;
+
+/// A node of the schema of the case.
+#[derive(Clone, Copy)]
+pub struct Schema<'a> {
+    root: &'a Value,
+    node: &'a Value,
+}
+
+/// What a value must be.
+pub enum Expected<'a> {
+    /// A table with these keys.
+    Table(Fields<'a>),
+    /// A list, perhaps of fixed length.
+    Array {
+        /// Schema of the elements.
+        items: Schema<'a>,
+        /// Number of elements, if fixed.
+        length: Option<usize>,
+    },
+    /// A finite number.
+    Number,
+    /// A whole number from 0 to this.
+    Integer(u64),
+    /// A string.
+    Text,
+    /// True or false.
+    Boolean,
+    /// One of these strings.
+    Choice(Vec<&'a str>),
+}
+
+/// Keys of a table.
+pub struct Fields<'a>(Schema<'a>);
+
+impl<'a> Schema<'a> {
+    /// Returns the schema of the whole case.
+    pub fn new(root: &'a Value) -> Self {
+        Self { root, node: root }
+    }
+
+    /// Returns the keys, for a schema that is a table.
+    pub fn fields(self) -> Fields<'a> {
+        Fields(self.resolved())
+    }
+
+    /// Returns the first sentence of the doc comment.
+    pub fn description(&self) -> Option<&'a str> {
+        let text = self.node.get("description")?.as_str()?;
+        Some(text.split(['.', ';', '\n']).next().unwrap_or(text))
+    }
+
+    /// Returns what the schema expects.
+    pub fn expected(self) -> Expected<'a> {
+        let Self { node, .. } = self.resolved();
+        if let Some(choices) = node.get("oneOf").and_then(Value::as_array) {
+            return Expected::Choice(choices.iter().filter_map(|choice| choice.get("const")?.as_str()).collect());
+        }
+        match self.kind() {
+            "object" => Expected::Table(self.fields()),
+            "array" => Expected::Array {
+                items: self.at(node.get("items").unwrap_or(&Value::Null)),
+                length: node.get("minItems").and_then(Value::as_u64).and_then(|length| usize::try_from(length).ok()),
+            },
+            "integer" if node.get("format").and_then(Value::as_str) == Some("uint32") => {
+                Expected::Integer(u64::from(u32::MAX))
+            }
+            "integer" => Expected::Integer(u64::MAX),
+            "boolean" => Expected::Boolean,
+            "string" => Expected::Text,
+            _ => Expected::Number,
+        }
+    }
+
+    fn at(&self, node: &'a Value) -> Self {
+        Self { root: self.root, node }
+    }
+
+    /// Returns the type, that of the value where it may be left out.
+    fn kind(&self) -> &'a str {
+        match self.resolved().node.get("type") {
+            Some(Value::Array(kinds)) => kinds.iter().filter_map(Value::as_str).find(|kind| *kind != "null"),
+            kind => kind.and_then(Value::as_str),
+        }
+        .unwrap_or_default()
+    }
+
+    /// Follows references and the first of alternatives.
+    fn resolved(self) -> Self {
+        let alternative = self.node.get("anyOf").and_then(|alternatives| alternatives.get(0)).unwrap_or(self.node);
+        let reference = alternative.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix('#'));
+        self.at(reference.and_then(|path| self.root.pointer(path)).unwrap_or(alternative))
+    }
+}
+
+impl<'a> Fields<'a> {
+    /// Returns the schema of a key, or none if the key is unknown.
+    pub fn get(&self, name: &str) -> Option<Schema<'a>> {
+        let node = self.0.node;
+        let others = || node.get("additionalProperties").filter(|schema| schema.is_object());
+        let schema = node.get("properties").and_then(|properties| properties.get(name)).or_else(others)?;
+        Some(self.0.at(schema))
+    }
+
+    /// Returns the known keys.
+    pub fn names(&self) -> impl Iterator<Item = &'a str> {
+        self.0.node.get("properties").and_then(Value::as_object).into_iter().flatten().map(|(name, _)| name.as_str())
+    }
+
+    /// Returns the keys that must be there.
+    pub fn required(&self) -> impl Iterator<Item = &'a str> {
+        self.0.node.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+    }
+
+    /// Returns the schema of the table.
+    pub fn schema(&self) -> Schema<'a> {
+        self.0
+    }
+
+    /// Returns whether the keys are names that the user chooses.
+    pub fn are_free(&self) -> bool {
+        self.names().next().is_none()
+    }
+}
+
+impl fmt::Display for Expected<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Table(_) => f.write_str("a table"),
+            Self::Array { items, .. } if items.kind() == "object" => f.write_str("an array of tables"),
+            Self::Array { length: Some(length), .. } => write!(f, "an array of {length} values"),
+            Self::Array { length: None, .. } => f.write_str("an array"),
+            Self::Number => f.write_str("a number"),
+            Self::Integer(_) => f.write_str("a whole number"),
+            Self::Text => f.write_str("a string"),
+            Self::Boolean => f.write_str("true or false"),
+            Self::Choice(names) => write!(f, "one of the strings {}", names.join(", ")),
+        }
+    }
+}
+
+/// Returns one line of TOML that gives `key` an acceptable value: `size = 1.0`, or the header and keys of a section.
+pub fn example(key: &Key, schema: &Schema) -> String {
+    let header = without_indices(key.as_str());
+    let section = match schema.expected() {
+        Expected::Table(fields) if fields.are_free() => {
+            fields.get("NAME").map(|item| (format!("[{header}.NAME]"), item))
+        }
+        Expected::Table(_) => Some((format!("[{header}]"), *schema)),
+        Expected::Array { items, .. } if items.kind() == "object" => Some((format!("[[{header}]]"), items)),
+        _ => None,
+    };
+    if let Some((header, table)) = section {
+        let fields = table.fields();
+        let needed = fields.required().filter_map(|name| Some(format!("{name} = {}", literal(&fields.get(name)?))));
+        let needed = needed.collect::<Vec<_>>().join(", ");
+        return if needed.is_empty() { format!("`{header}`") } else { format!("`{header}` with `{needed}`") };
+    }
+    match header.rsplit('.').next() {
+        Some(name) if !key.as_str().ends_with(']') => format!("`{name} = {}`", literal(schema)),
+        _ => format!("`{}`", literal(schema)),
+    }
+}
+
+/// Returns an acceptable value.
+pub fn literal(schema: &Schema) -> String {
+    match schema.expected() {
+        Expected::Table(_) => "{ }".to_string(),
+        Expected::Array { items, length } => format!("[{}]", vec![literal(&items); length.unwrap_or(1)].join(", ")),
+        Expected::Number => "1.0".to_string(),
+        Expected::Integer(_) => "1".to_string(),
+        Expected::Text => "\"name\"".to_string(),
+        Expected::Boolean => "true".to_string(),
+        Expected::Choice(names) => format!("{:?}", names.first().unwrap_or(&"")),
+    }
+}
+
+/// Removes the indices of a key: `stage[0].law` becomes `stage.law`.
+fn without_indices(key: &str) -> String {
+    key.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect()
+}

@@ -1,0 +1,68 @@
+//! The pairs of lines that a DXF file is made of: a code and a value.
+
+use crate::case_error::CaseError;
+use enmm::model::case::key::Key;
+
+/// One pair of lines.
+#[derive(Debug, Clone, Copy)]
+pub struct Group<'a> {
+    /// What the value means.
+    pub code: i32,
+    /// The value.
+    pub value: &'a str,
+    /// Line of the value, counted from 1.
+    pub line: usize,
+}
+
+/// All pairs of a file.
+pub struct Groups<'a> {
+    file: &'a str,
+    /// The pairs in order.
+    pub all: Vec<Group<'a>>,
+}
+
+impl<'a> Groups<'a> {
+    /// Splits a file into pairs, up to `EOF`.
+    ///
+    /// # Errors
+    /// The file is binary, a code is no whole number, or the last pair has no value.
+    pub fn parse(file: &'a str, text: &'a str) -> Result<Self, CaseError> {
+        let mut groups = Self { file, all: Vec::new() };
+        if text.starts_with("AutoCAD Binary DXF") {
+            return groups.syntax(1, "binary DXF, which is not read; save the drawing as ASCII DXF".to_string());
+        }
+        let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
+        while let Some((line, code)) = lines.next() {
+            let Ok(code) = code.parse() else {
+                if code.is_empty() && lines.all(|(_, rest)| rest.is_empty()) {
+                    break;
+                }
+                return groups.syntax(line, format!("{code:?} is no group code of DXF, a whole number; save it again"));
+            };
+            let Some((line, value)) = lines.next() else {
+                return groups.syntax(line, format!("the value of group {code} is missing; the file is cut off"));
+            };
+            groups.all.push(Group { code, value, line });
+            if (code, value) == (0, "EOF") {
+                break;
+            }
+        }
+        Ok(groups)
+    }
+
+    /// Returns the error that a line is not DXF.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn syntax<T>(&self, line: usize, message: String) -> Result<T, CaseError> {
+        Err(CaseError::at(self.file, line, "", message))
+    }
+
+    /// Returns the error at an entity.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn fail<T>(&self, line: usize, key: &Key, message: String) -> Result<T, CaseError> {
+        Err(CaseError::at(self.file, line, key.as_str(), message))
+    }
+}

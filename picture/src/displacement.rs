@@ -1,0 +1,207 @@
+//! The deformed slope coloured by the size of its displacement.
+
+use std::collections::HashMap;
+
+use super::Picture;
+use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, is_drawable, number_text, round_above};
+use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
+use super::slope::{
+    BELOW_FRAME, LEFT, Labels, TOP, WIDTH, corners, draw_absence, draw_block_outlines, draw_filled, draw_title,
+    outlines, time_text,
+};
+use super::svg::{Anchor, Rect, Style, Svg, TextStyle, text_width};
+use enmm::geometry::{Point, Vector};
+use enmm::model::Snapshot;
+use enmm::model::snapshot::Polygons;
+
+/// Height (px) of the frame at most.
+const HEIGHT_MAX: f64 = 820.0;
+/// Room (px) at the right of the frame for the colour bar.
+const BAR_ROOM: f64 = 180.0;
+/// Height (px) of the notes at the bottom.
+const NOTES: f64 = 60.0;
+/// Length (px) of the length bar at least.
+const LENGTH_MIN: f64 = 80.0;
+/// Deformation below this part of the size of the slope cannot be seen and is drawn larger.
+const VISIBLE: f64 = 1e-3;
+/// Part of the size of the slope to which such a deformation is drawn at least.
+const EXAGGERATED: f64 = 0.008;
+
+/// Draws the slope at its current position, each element coloured by the mean displacement of its points.
+///
+/// `reference_outline` (m) is the slope before it moved, drawn dashed. A displacement below a thousandth of the size of
+/// the slope is drawn larger, and the picture says by how much.
+pub fn displacement_picture(snapshot: &Snapshot, title: &str, reference_outline: &Polygons) -> Picture {
+    let field = Field::new(snapshot);
+    let factor = exaggeration(field.largest_at_point, &snapshot.elements);
+    let shown = if factor > 1.0 { &exaggerated(snapshot, factor) } else { snapshot };
+    let bounds = Bounds::of(shown.elements.points.iter().chain(&reference_outline.points));
+    let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - BAR_ROOM, height: HEIGHT_MAX };
+    let view = View::fit(bounds, area);
+    let mut sheet = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES);
+    draw_title(&mut sheet, title, &time_text(snapshot.time));
+    sheet.clipped(&view.area, |sheet| draw_slope(sheet, &view, shown, &field, reference_outline));
+    view.draw_axes(&mut sheet);
+    draw_colour_bar(&mut sheet, &view.area, &field);
+    draw_notes(&mut sheet, &view, &field, factor);
+    sheet.finish()
+}
+
+/// Sizes of displacement.
+struct Field {
+    /// Mean (m) of the points of each element; zero where it is not finite.
+    of_elements: Vec<f64>,
+    /// Largest (m) of `of_elements`.
+    largest: f64,
+    /// Largest (m) at any point.
+    largest_at_point: f64,
+    /// The element with the largest mean.
+    largest_element: Option<usize>,
+}
+
+impl Field {
+    fn new(snapshot: &Snapshot) -> Self {
+        let sizes: Vec<f64> =
+            snapshot.displacement.iter().map(|u| if is_drawable(u) { u.norm() } else { 0.0 }).collect();
+        let mean = |k: usize| {
+            let sizes = corners(&snapshot.elements, k).and_then(|_| sizes.get(snapshot.elements.range(k)));
+            sizes.map_or(0.0, |sizes| sizes.iter().sum::<f64>() / sizes.len() as f64)
+        };
+        let of_elements: Vec<f64> = (0..snapshot.elements.len()).map(mean).collect();
+        let largest_element = (0..of_elements.len()).max_by(|&a, &b| of_elements[a].total_cmp(&of_elements[b]));
+        let largest = largest_element.map_or(0.0, |k| of_elements[k]);
+        Self { largest, largest_element, of_elements, largest_at_point: sizes.into_iter().fold(0.0, f64::max) }
+    }
+
+    /// Name and size (m) of the unit in which the field reads well.
+    fn unit(&self) -> (&'static str, f64) {
+        match self.largest {
+            largest if largest >= 0.1 => ("m", 1.0),
+            largest if largest >= 1e-4 || largest == 0.0 => ("mm", 1e-3),
+            _ => ("µm", 1e-6),
+        }
+    }
+}
+
+/// 1, or the round factor that makes a displacement of `largest` (m) visible.
+fn exaggeration(largest: f64, elements: &Polygons) -> f64 {
+    let size = Bounds::of(&elements.points).map_or(0.0, |bounds| bounds.diagonal());
+    if !(largest > 1e-12 * size && largest < VISIBLE * size) {
+        return 1.0;
+    }
+    round_above(EXAGGERATED * size / largest)
+}
+
+/// Elements and boundaries alone, with every point displaced `factor` times as far.
+fn exaggerated(snapshot: &Snapshot, factor: f64) -> Snapshot {
+    let (elements, boundaries) = (snapshot.elements.clone(), snapshot.boundaries.clone());
+    let mut shown = Snapshot { elements, boundaries, ..Snapshot::default() };
+    for (point, displacement) in shown.elements.points.iter_mut().zip(&snapshot.displacement) {
+        *point += displacement * (factor - 1.0);
+    }
+    let displacement_at = corner_displacements(snapshot);
+    for boundary in &mut shown.boundaries {
+        for point in &mut boundary.loops.points {
+            let corner = displacement_at.get(&(boundary.block, place_key(point))).copied().flatten();
+            *point += corner.unwrap_or(boundary.displacement) * (factor - 1.0);
+        }
+    }
+    shown
+}
+
+/// Displacement (m) by block and position of the points of its boundary that are corners of its elements.
+fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Option<Vector>> {
+    let points = snapshot.boundaries.iter().flat_map(|b| b.loops.points.iter().map(|p| (b.block, place_key(p))));
+    let mut displacements: HashMap<_, _> = points.map(|key| (key, None)).collect();
+    for (k, &block) in snapshot.block.iter().enumerate().take(snapshot.elements.len()) {
+        if corners(&snapshot.elements, k).is_none() {
+            continue;
+        }
+        for i in snapshot.elements.range(k) {
+            let known = displacements.get_mut(&(block, place_key(&snapshot.elements.points[i])));
+            if let (Some(known), Some(displacement)) = (known, snapshot.displacement.get(i)) {
+                *known = Some(*displacement);
+            }
+        }
+    }
+    displacements
+}
+
+/// Positions closer than about a micrometre share a key.
+fn place_key(point: &Point) -> [i64; 2] {
+    [(point.x * 1e6).round() as i64, (point.y * 1e6).round() as i64]
+}
+
+fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, reference_outline: &Polygons) {
+    let colours: Vec<_> = (0..SCALE_STEPS).map(scale).collect();
+    let step = |k: usize| scale_step(field.of_elements[k] / field.largest);
+    draw_filled(sheet, &shown.elements, view, &colours, step);
+    draw_block_outlines(sheet, shown, view);
+    draw_absence(sheet, view, &shown.elements);
+    sheet.path(&outlines(reference_outline, view), Style::line(GREY, 1.8).dashed());
+    let largest = field.largest_element.filter(|_| field.largest > 0.0);
+    if let Some(corners) = largest.and_then(|k| corners(&shown.elements, k)) {
+        let centre = view.pixel(&(corners.iter().sum::<Vector>() / corners.len() as f64));
+        sheet.circle(centre, 8.0, Style::line(ACCENT, 2.5));
+        if let Some(position) = Labels::new(view.area).position(centre, "max") {
+            sheet.text(position, "max", TextStyle::new(LABEL_SIZE).colour(ACCENT).halo());
+        }
+    }
+}
+
+fn draw_colour_bar(sheet: &mut Svg, frame: &Rect, field: &Field) {
+    let bar = Rect { left: frame.right() + 34.0, width: 26.0, ..*frame };
+    let step_height = bar.height / SCALE_STEPS as f64;
+    for step in 0..SCALE_STEPS {
+        let top = bar.bottom() - (step + 1) as f64 * step_height;
+        sheet.rect(&Rect { top, height: step_height, ..bar }, Style::fill(scale(step)).crisp());
+    }
+    sheet.rect(&bar, Style::line(INK, 1.2));
+    let (unit, size) = field.unit();
+    let largest = field.largest / size;
+    let ticks = Ticks::new(0.0, largest, (bar.height / 60.0).max(2.0));
+    // Without a displacement the bar says zero.
+    let values = if ticks.values.is_empty() { &[0.0] } else { &ticks.values[..] };
+    for &value in values {
+        let y = bar.bottom() - if largest > 0.0 { value / largest } else { 0.0 } * bar.height;
+        sheet.line([bar.right(), y], [bar.right() + 6.0, y], Style::line(INK, 1.2));
+        sheet.text([bar.right() + 10.0, y + 0.36 * TICK_SIZE], &ticks.label(value), TextStyle::new(TICK_SIZE));
+    }
+    let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
+    let middle = bar.top + 0.5 * bar.height;
+    sheet.text([bar.right() + 74.0, middle], &format!("displacement [{unit}]"), style);
+}
+
+/// Below the frame: a length, the dashed line explained, the largest value, the factor of deformation.
+fn draw_notes(sheet: &mut Svg, view: &View, field: &Field, factor: f64) {
+    let y = view.area.bottom() + BELOW_FRAME + 24.0;
+    let style = TextStyle::new(LABEL_SIZE);
+    let mut x = draw_length(sheet, view, y);
+    sheet.line([x, y - 5.0], [x + 50.0, y - 5.0], Style::line(GREY, 1.8).dashed());
+    sheet.text([x + 60.0, y], "outline before", style);
+    x += 60.0 + text_width("outline before", LABEL_SIZE) + 50.0;
+    let (unit, size) = field.unit();
+    let largest = format!("largest displacement {} {unit}", number_text(field.largest_at_point / size));
+    sheet.text([x, y], &largest, style);
+    x += text_width(&largest, LABEL_SIZE) + 50.0;
+    let deformation = if factor > 1.0 {
+        format!("deformation drawn {} × larger", number_text(factor))
+    } else {
+        "deformation true to scale".to_owned()
+    };
+    sheet.text([x, y], &deformation, style);
+}
+
+/// Draws a bar of a round length; returns where the next note starts.
+fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
+    let length = round_above(LENGTH_MIN / view.scale);
+    let (left, right) = (LEFT, LEFT + length * view.scale);
+    let style = Style::line(INK, 2.5);
+    sheet.line([left, y - 5.0], [right, y - 5.0], style);
+    for x in [left, right] {
+        sheet.line([x, y - 12.0], [x, y + 2.0], style);
+    }
+    let label = format!("{} m", number_text(length));
+    sheet.text([right + 12.0, y], &label, TextStyle::new(LABEL_SIZE));
+    right + 12.0 + text_width(&label, LABEL_SIZE) + 50.0
+}

@@ -1,0 +1,75 @@
+//! Pictures of the model, of the deformed slope and of histories: SVG built by hand, rasterised to PNG.
+//!
+//! Knows snapshots and series only. The same input gives the same bytes on every machine: the font is embedded, and no
+//! font of the system is looked at. Coordinates that are not finite are left out.
+#![forbid(unsafe_code)]
+
+mod annotations;
+mod axes;
+mod chart;
+mod colour;
+mod displacement;
+mod history;
+mod model;
+mod reduction;
+mod slope;
+mod svg;
+
+use std::io;
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+
+use resvg::{tiny_skia, usvg};
+
+use enmm_io::files::{at_path, write_atomic};
+
+pub use annotations::model_annotations;
+pub use chart::{Chart, ChartSeries, chart_picture};
+pub use displacement::displacement_picture;
+pub use history::{Series, history_picture};
+pub use model::{ModelAnnotations, model_picture};
+pub use reduction::{failure_picture, trials_picture};
+
+/// The embedded font (DejaVu Sans), read once.
+static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(dejavu::sans::regular())));
+    Arc::new(fonts)
+});
+
+/// A finished picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    svg: String,
+}
+
+impl Picture {
+    /// The picture as SVG text.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// The picture as the bytes of a PNG file, one pixel per SVG unit.
+    ///
+    /// # Errors
+    /// `Other` if the rasteriser refuses the picture.
+    pub fn png(&self) -> io::Result<Vec<u8>> {
+        let options =
+            usvg::Options { fontdb: FONTS.clone(), font_family: svg::FONT.to_owned(), ..usvg::Options::default() };
+        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(io::Error::other)?;
+        let size = tree.size().to_int_size();
+        let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
+            .ok_or_else(|| io::Error::other("the picture is too large to rasterise"))?;
+        resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
+        pixels.encode_png().map_err(io::Error::other)
+    }
+
+    /// Writes the picture as PNG to `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Picture::png`], and whatever the file system refuses; the path is in the message.
+    pub fn write_png(&self, path: &Path) -> io::Result<()> {
+        let png = self.png().map_err(at_path(path))?;
+        write_atomic(path, &png)
+    }
+}

@@ -1,0 +1,135 @@
+//! What `enmm check` tells of a model that has been built and not run.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use enmm::geometry::Point;
+use enmm::model::Simulation;
+use enmm::model::assemble::ignored_traces;
+use enmm::state::{State, Workspace};
+
+/// Share of a full cover's mass below which a cover counts as small.
+const SMALL_COVER: f64 = 1e-3;
+/// Share of a lattice triangle's area below which a block counts as tiny.
+const TINY_BLOCK: f64 = 1e-3;
+
+/// Counts, areas, masses and warnings of a built model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Areas of the blocks (m²), ascending.
+    pub block_areas: Vec<f64>,
+    /// Area of all rock (m²).
+    pub total_area: f64,
+    /// Number of manifold elements.
+    pub elements: usize,
+    /// Number of physical covers.
+    pub physical_covers: usize,
+    /// Number of stars that have a physical cover.
+    pub stars: usize,
+    /// Number of stars by their number of physical covers.
+    pub stars_by_cover_count: BTreeMap<u32, usize>,
+    /// Row-sum masses of the covers (kg/m), ascending.
+    pub cover_masses: Vec<f64>,
+    /// Number of distinct corners of the elements.
+    pub vertices: usize,
+    /// Number of pieces of the block boundaries, both sides of a joint counted.
+    pub boundary_edges: usize,
+    /// Contacts of the untouched model.
+    pub initial_contacts: usize,
+    /// Stability limit of the step (s).
+    pub critical_dt: f64,
+    /// Covers with less than a thousandth of a full cover's mass, which only equal thirds keep from ruling the step.
+    pub small_covers_treated: usize,
+    /// Blocks with less than a thousandth of a lattice triangle's area.
+    pub tiny_blocks: usize,
+    /// Ends and vertices that were merged within the snap tolerance.
+    pub merged_vertices: usize,
+    /// Joint traces that cut no rock.
+    pub ignored_joints: usize,
+    /// Memory that the model needs while it runs (bytes): itself, its state twice, buffers; outputs come on top.
+    pub memory_bytes: u64,
+    /// That memory by part; the state counts once.
+    pub memory: Vec<MemoryPart>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Looks at a built model; `warnings` are those of reading its case.
+pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
+    let (model, built) = (simulation.model(), simulation.built());
+    let covers = &model.covers;
+    let block_areas = sorted((0..covers.block_count()).map(|b| covers.block_area(b)).collect());
+    let mut stars_by_cover_count = BTreeMap::new();
+    for (_, count) in covers.covers_by_star() {
+        *stars_by_cover_count.entry(count).or_default() += 1;
+    }
+    let (state, workspace) = simulation.look_ahead();
+    let triangle = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
+    Check {
+        blocks: covers.block_count(),
+        total_area: covers.element_area.iter().sum(),
+        elements: covers.element_count(),
+        physical_covers: covers.cover_count(),
+        stars: stars_by_cover_count.values().sum(),
+        stars_by_cover_count,
+        cover_masses: sorted(model.mass_matrix.row_sum.clone()),
+        vertices: distinct(&covers.polygon_points),
+        boundary_edges: built.boundary_pieces,
+        initial_contacts: workspace.contacts.len(),
+        critical_dt: model.critical_dt,
+        small_covers_treated: small_covers(simulation, 2.0 * triangle),
+        tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
+        block_areas,
+        merged_vertices: built.noding.merged_vertices,
+        ignored_joints: ignored_traces(&built.noding).len(),
+        memory_bytes: (model.bytes() + 2 * state.bytes() + workspace.bytes()) as u64,
+        memory: memory(simulation, &state, &workspace),
+        warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
+    }
+}
+
+/// A part of the memory that a model needs while it runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MemoryPart {
+    /// `model`, `state` or `buffers`.
+    pub heap: &'static str,
+    /// What it holds.
+    pub part: &'static str,
+    /// Its size (bytes).
+    pub bytes: usize,
+}
+
+/// Memory of a model with this state and these buffers.
+fn memory(simulation: &Simulation, state: &State, workspace: &Workspace) -> Vec<MemoryPart> {
+    let heaps = [("model", simulation.model().memory()), ("state", state.memory()), ("buffers", workspace.memory())];
+    let part = |heap| move |(part, bytes)| MemoryPart { heap, part, bytes };
+    heaps.into_iter().flat_map(|(heap, parts)| parts.into_iter().map(part(heap))).collect()
+}
+
+fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+fn distinct(points: &[Point]) -> usize {
+    let mut keys: Vec<[u64; 2]> = points.iter().map(|p| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()]).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys.len()
+}
+
+/// Covers with less than the share of a full cover's mass; `third` is a third of the cover's hexagon (m²).
+fn small_covers(simulation: &Simulation, third: f64) -> usize {
+    let model = simulation.model();
+    let covers = &model.covers;
+    let mut density = vec![0.0f64; covers.cover_count()];
+    for (e, ids) in covers.element_covers.iter().enumerate() {
+        let of_element = model.rocks[model.element_rock[e] as usize].density;
+        ids.iter().for_each(|&i| density[i as usize] = density[i as usize].max(of_element));
+    }
+    let masses = model.mass_matrix.row_sum.iter().zip(density);
+    masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()
+}

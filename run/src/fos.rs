@@ -1,0 +1,320 @@
+//! A search for the factor of safety from case to results: `fos.json`, `fos.csv` and two pictures.
+//!
+//! Nothing is written before the first trial has ended. Prints nothing: a closure hears of each trial.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::bound::bound_record;
+use enmm::engine_version;
+use enmm_io::CaseError;
+use enmm_io::LoadedCase;
+use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
+use enmm_picture::{failure_picture, trials_picture};
+use enmm_stability::strength_reduction::{
+    End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
+    TOLERANCE, Trial, mechanisms,
+};
+
+/// How to look for the factor of safety of a case, and where results go.
+#[derive(Debug)]
+pub struct FosOptions<'a> {
+    /// Where results go.
+    pub directory: PathBuf,
+    /// Least F that trials reach; where the search begins when given.
+    pub low: Option<f64>,
+    /// Greatest F that trials reach; where the search begins when given.
+    pub high: Option<f64>,
+    /// Width of the final bracket relative to F.
+    pub tolerance: f64,
+    /// Which ways to fail to look for.
+    pub mechanisms: MechanismOptions,
+    /// Threads; all that there are when none is given. The results do not depend on it.
+    pub threads: Option<usize>,
+    /// Set by another thread to end the search with the trials that are done.
+    pub interrupt: Option<&'a AtomicBool>,
+}
+
+impl FosOptions<'_> {
+    /// The defaults of a search with results in a directory.
+    pub fn into_directory(directory: PathBuf) -> Self {
+        Self {
+            directory,
+            low: None,
+            high: None,
+            tolerance: TOLERANCE,
+            mechanisms: MechanismOptions::default(),
+            threads: None,
+            interrupt: None,
+        }
+    }
+
+    /// Refuses options with which no search can be made.
+    ///
+    /// # Errors
+    /// What, the value, the limit and the remedy.
+    pub fn check(&self) -> Result<(), String> {
+        let [least, most] = FACTOR_RANGE;
+        for (name, value) in [("--low", self.low), ("--high", self.high)] {
+            if let Some(value) = value.filter(|value| !(least..=most).contains(value)) {
+                return Err(format!(
+                    "{name}: is {value}, must be from {least} to {most}; 0.5 and 3 bracket most slopes"
+                ));
+            }
+        }
+        let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));
+        if low >= high {
+            return Err(format!("--low: is {low}, must be below --high, {high}; swap or leave out one of them"));
+        }
+        if !(1e-4..=0.5).contains(&self.tolerance) {
+            return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", self.tolerance));
+        }
+        let area = self.mechanisms.least_area;
+        if !(area >= 0.0 && area.is_finite()) {
+            return Err(format!(
+                "--least-area: is {area}, must be 0 m² or more; the area of a block that does not count"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+pub enum FosError {
+    /// An option cannot be used.
+    #[error("{0}")]
+    Options(String),
+    /// The case cannot be built or begun.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The slope does not come to rest, or fails numerically, before the trials.
+    #[error("{0}")]
+    NoRest(ReductionError),
+    /// The caller asked to stop before the first trial.
+    #[error("interrupted before the first trial")]
+    Interrupted,
+    /// The threads cannot be started.
+    #[error("cannot start {0} threads: ask for fewer")]
+    Threads(usize),
+    /// A result cannot be written.
+    #[error("cannot write results ({0}): choose another directory with -o")]
+    Output(io::Error),
+}
+
+/// What was found: one search for each mechanism, in their order.
+#[derive(Debug)]
+pub struct Found {
+    /// Searches; none is left out, also where too little rock fails to count.
+    pub searches: Vec<Reduction>,
+    /// Which of them count.
+    pub which: MechanismOptions,
+}
+
+impl Found {
+    /// The first search that counts, else the last.
+    pub fn main(&self) -> &Reduction {
+        &self.searches[self.place_of_main()]
+    }
+
+    fn place_of_main(&self) -> usize {
+        let counts = self.searches.iter().position(|search| self.which.counts(search));
+        counts.unwrap_or(self.searches.len() - 1)
+    }
+}
+
+/// Finds the factor of safety of a case and writes its results.
+///
+/// # Errors
+/// What cannot be used, built or written; a search without end is not an error but an [`End`].
+pub fn fos(
+    loaded: &LoadedCase,
+    options: &FosOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Found, FosError> {
+    options.check().map_err(FosError::Options)?;
+    let clock = Instant::now();
+    let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
+    let search = ReductionOptions { low, high, tolerance, interrupt };
+    let mut find = || mechanisms(&loaded.case, which, &search, hear);
+    let found = match options.threads {
+        None => find(),
+        Some(threads) => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.map_err(|_| FosError::Threads(threads))?.install(find)
+        }
+    };
+    let mut searches = found.map_err(|error| match error {
+        ReductionError::Case(invalid) => FosError::Case(loaded.source.locate(&invalid.key, &invalid.message)),
+        ReductionError::Interrupted => FosError::Interrupted,
+        other => FosError::NoRest(other),
+    })?;
+    searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
+    let found = Found { searches, which };
+    let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
+    write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
+    Ok(found)
+}
+
+fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
+    sweep_temporaries(directory)?;
+    let path = directory.join("fos.json");
+    let text = serde_json::to_vec_pretty(record).map_err(io::Error::from).map_err(at_path(&path))?;
+    write_table(&directory.join("fos.csv"), &reduction.trials)?;
+    let title = &reduction.simulation.case().title;
+    trials_picture(title, reduction).write_png(&directory.join("fos.png"))?;
+    failure_picture(title, reduction).write_png(&directory.join("failure.png"))?;
+    write_atomic(&path, &text)
+}
+
+/// A word for how a search ended.
+pub fn end_name(end: &End) -> &'static str {
+    match end {
+        End::Found => "found",
+        End::StableThroughout => "stable_throughout",
+        End::UnstableThroughout => "unstable_throughout",
+        End::Interrupted => "interrupted",
+        End::Failed(_) => "failed",
+    }
+}
+
+/// What a user can do about a search that found no factor; none when it did.
+pub fn remedy(reduction: &Reduction) -> Option<String> {
+    let edge = |pick: fn(f64, f64) -> f64, start: f64| reduction.trials.iter().map(|t| t.factor).fold(start, pick);
+    match &reduction.end {
+        End::Found => None,
+        End::StableThroughout => Some(format!(
+            "the slope bears even F = {:.4}, the greatest that was tried: raise --high to go on; where no joint on \
+             which it could fail daylights there is no end",
+            edge(f64::max, 0.0)
+        )),
+        End::UnstableThroughout => Some(format!(
+            "the slope fails even at F = {:.4}: lower --low, or hold or excavate the blocks that fail by their weight \
+             alone",
+            edge(f64::min, f64::INFINITY)
+        )),
+        End::Interrupted => Some("interrupted; the trials so far are kept".to_owned()),
+        End::Failed(error) => Some(format!(
+            "a trial failed numerically, {error}: a finer mesh, a smaller solver.dt_safety or a stiffer contact help"
+        )),
+    }
+}
+
+fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -> Value {
+    let mut mechanisms: Vec<Value> = found.searches.iter().map(search_record).collect();
+    let main = mechanisms[found.place_of_main()].clone();
+    for (mechanism, search) in mechanisms.iter_mut().zip(&found.searches) {
+        mechanism["counts"] = json!(found.which.counts(search));
+    }
+    let mut record = json!({
+        "title": loaded.case.title,
+        "version": engine_version(),
+        "case_file": loaded.source.file(),
+        "case_hash": loaded.hash,
+        "tolerance": options.tolerance,
+        "least_area": found.which.least_area,
+        "wall_seconds": wall,
+        "mechanisms": mechanisms,
+    });
+    if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
+        record.extend(main);
+    }
+    record
+}
+
+/// One search as an object.
+fn search_record(reduction: &Reduction) -> Value {
+    let failing = reduction.first_unstable();
+    json!({
+        "status": end_name(&reduction.end),
+        "factor_of_safety": reduction.factor(),
+        "at_least": reduction.at_least(),
+        "bracket": { "stable": reduction.low, "unstable": reduction.high },
+        "rest": { "strength_factor": reduction.rest_factor, "time": reduction.rest.0, "steps": reduction.rest.1 },
+        "trials": reduction.trials.iter().map(trial_record).collect::<Vec<_>>(),
+        "failing": failing.map(|trial| json!({
+            "verdict": trial.verdict.name(),
+            "blocks": trial.failing.len(),
+            "area": trial.failing_area(),
+            "mass": trial.failing_mass(),
+            "share": trial.failing_area() / reduction.free_area,
+        })),
+        "failing_blocks": failing.map_or(&[][..], |trial| &trial.failing).iter().map(block_record).collect::<Vec<_>>(),
+        "bound": match &reduction.bound {
+            Ok(bound) => bound_record(bound),
+            Err(refused) => json!({ "refused": refused }),
+        },
+        "remedy": remedy(reduction),
+        "warnings": reduction.warnings,
+    })
+}
+
+fn block_record(block: &FailingBlock) -> Value {
+    json!({
+        "block": block.block,
+        "place": [block.position.x, block.position.y],
+        "area": block.area,
+        "mass": block.mass,
+        "displacement": block.displacement,
+        "rotation": block.rotation,
+        "speed": block.speed,
+    })
+}
+
+/// One trial as an object.
+fn trial_record(trial: &Trial) -> Value {
+    json!({
+        "factor": trial.factor,
+        "verdict": trial.verdict.name(),
+        "reason": trial.reason.name(),
+        "time": trial.time,
+        "displacement": trial.displacement,
+        "slip": trial.slip,
+        "speed": trial.speed,
+        "kinetic_energy": trial.kinetic,
+        "released_energy": trial.released,
+        "acceleration": trial.acceleration,
+        "failing_blocks": trial.failing.len(),
+        "failing_area": trial.failing_area(),
+        "steps": trial.steps,
+        "ledger_residual": trial.ledger_residual,
+        "wall_seconds": trial.wall,
+    })
+}
+
+const HEADER: [&str; 14] = [
+    "factor",
+    "verdict",
+    "reason",
+    "time [s]",
+    "displacement [m]",
+    "slip [m]",
+    "speed [m/s]",
+    "kinetic_energy [J/m]",
+    "released_energy [J/m]",
+    "acceleration [m/s2]",
+    "failing_blocks",
+    "failing_area [m2]",
+    "steps",
+    "wall [s]",
+];
+
+/// Writes the trials as CSV, ascending in F.
+fn write_table(path: &Path, trials: &[Trial]) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    csv.write_record(HEADER).map_err(io::Error::from).map_err(at_path(path))?;
+    for t in trials {
+        let numbers = [t.time, t.displacement, t.slip, t.speed, t.kinetic, t.released, t.acceleration];
+        let mut row = vec![t.factor.to_string(), t.verdict.name().to_owned(), t.reason.name().to_owned()];
+        row.extend(numbers.map(|number| number.to_string()));
+        row.extend([t.failing.len().to_string(), t.failing_area().to_string()]);
+        row.extend([t.steps.to_string(), t.wall.to_string()]);
+        csv.write_record(row).map_err(io::Error::from).map_err(at_path(path))?;
+    }
+    let bytes = csv.into_inner().map_err(|error| error.into_error()).map_err(at_path(path))?;
+    write_atomic(path, &bytes)
+}

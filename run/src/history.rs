@@ -1,0 +1,129 @@
+//! Histories as CSV: one row per output time, the unit of every column in the header.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use enmm_io::files::{at_path, write_atomic};
+
+/// Writes one row after another; every row is in the file before [`HistoryWriter::row`] returns.
+#[derive(Debug)]
+pub struct HistoryWriter {
+    path: PathBuf,
+    columns: usize,
+    csv: csv::Writer<File>,
+}
+
+impl HistoryWriter {
+    /// Starts the file at `path` with a header such as `time [s],crest_ux [m]`; the first column is the time.
+    ///
+    /// A column is its name and its unit; an empty unit leaves the name alone.
+    ///
+    /// # Errors
+    /// Whatever the file system refuses, with the path in the message.
+    pub fn new(path: &Path, columns: &[(impl AsRef<str>, impl AsRef<str>)]) -> io::Result<Self> {
+        let header = encode([header(columns)]).map_err(at_path(path))?;
+        write_atomic(path, &header)?;
+        Self::at_end(path, columns.len())
+    }
+
+    /// Continues the file of an interrupted run: rows later than `keep_until_time` (s) are dropped, then rows follow.
+    ///
+    /// A last row that the interruption cut short is dropped too. A missing file is started anew.
+    ///
+    /// # Errors
+    /// `InvalidData` if the header is not that of `columns` or a kept row is not numbers; else what the file system
+    /// refuses. The path is in the message.
+    pub fn open_for_append(
+        path: &Path,
+        columns: &[(impl AsRef<str>, impl AsRef<str>)],
+        keep_until_time: f64,
+    ) -> io::Result<Self> {
+        let text = match fs::read_to_string(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(path, columns),
+            read => read.map_err(at_path(path))?,
+        };
+        let kept = rows_until(&text, &header(columns), keep_until_time).map_err(at_path(path))?;
+        write_atomic(path, &kept)?;
+        Self::at_end(path, columns.len())
+    }
+
+    /// Appends one row: a value per column, the time (s) first, in digits that read back to the same number.
+    ///
+    /// # Errors
+    /// `InvalidInput` if the number of values is not the number of columns; else what the file system refuses.
+    pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        if values.len() != self.columns {
+            let message = format!("a row of {} values in a history of {} columns", values.len(), self.columns);
+            return Err(at_path(&self.path)(io::Error::new(ErrorKind::InvalidInput, message)));
+        }
+        let written = self.csv.write_record(values.iter().map(|value| format!("{value:?}"))).map_err(io::Error::from);
+        written.and_then(|()| self.csv.flush()).map_err(at_path(&self.path))
+    }
+
+    /// Fails when the file is no longer in its place: rows then went where nobody finds them.
+    ///
+    /// # Errors
+    /// Whatever the file system tells of it, with the path in the message.
+    pub fn check_place(&self) -> io::Result<()> {
+        fs::metadata(&self.path).map(|_| ()).map_err(at_path(&self.path))
+    }
+
+    fn at_end(path: &Path, columns: usize) -> io::Result<Self> {
+        let file = OpenOptions::new().append(true).open(path).map_err(at_path(path))?;
+        Ok(Self { path: path.to_owned(), columns, csv: csv::Writer::from_writer(file) })
+    }
+}
+
+fn header(columns: &[(impl AsRef<str>, impl AsRef<str>)]) -> Vec<String> {
+    columns.iter().map(|(name, unit)| titled(name.as_ref(), unit.as_ref())).collect()
+}
+
+fn titled(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+}
+
+/// The records as CSV, each on its line.
+fn encode<R: AsRef<[u8]>>(records: impl IntoIterator<Item = impl IntoIterator<Item = R>>) -> io::Result<Vec<u8>> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    for record in records {
+        csv.write_record(record)?;
+    }
+    csv.into_inner().map_err(csv::IntoInnerError::into_error)
+}
+
+/// Header and rows of `text` up to the time `until` (s); what follows the last line end was cut short and is left out.
+fn rows_until(text: &str, header: &[String], until: f64) -> io::Result<Vec<u8>> {
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(whole.as_bytes());
+    let mut kept = Vec::new();
+    for (line, record) in reader.records().enumerate() {
+        let record = record?;
+        if line == 0 {
+            check_header(&record, header)?;
+            kept.push(record);
+        } else if time_of(&record, header.len()).ok_or_else(|| no_row(line + 1))? <= until {
+            kept.push(record);
+        }
+    }
+    if kept.is_empty() { encode([header]) } else { encode(&kept) }
+}
+
+fn check_header(found: &csv::StringRecord, expected: &[String]) -> io::Result<()> {
+    if found.iter().eq(expected) {
+        return Ok(());
+    }
+    let found = found.iter().collect::<Vec<_>>().join(",");
+    let message = format!("the columns are {found}, but this run writes {}", expected.join(","));
+    Err(io::Error::new(ErrorKind::InvalidData, message))
+}
+
+/// The first of `columns` numbers, if the record is such a row.
+fn time_of(record: &csv::StringRecord, columns: usize) -> Option<f64> {
+    let values = record.iter().map(str::parse).collect::<Result<Vec<f64>, _>>().ok()?;
+    if values.len() == columns { values.first().copied() } else { None }
+}
+
+fn no_row(line: usize) -> io::Error {
+    io::Error::new(ErrorKind::InvalidData, format!("line {line} is not a row of numbers under this header"))
+}

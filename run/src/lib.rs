@@ -1,0 +1,18 @@
+//! Runs of cases and what they leave: histories, tables of blocks, frames, pictures, summaries, factors of safety.
+#![forbid(unsafe_code)]
+
+mod base64;
+pub mod blocks;
+mod bound;
+pub mod check;
+pub mod fos;
+pub mod history;
+mod run;
+pub mod summary;
+pub mod vtu;
+
+pub use bound::{BoundFailure, bound, bound_record};
+pub use check::check;
+pub use fos::{FosError, FosOptions, fos};
+pub use run::{Observer, RunError, RunOptions, RunProgress, run};
+pub use summary::{RunStatus, Summary};

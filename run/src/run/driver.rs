@@ -1,0 +1,449 @@
+//! The loop over stages and steps, with outputs at their times.
+
+use std::io;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::blocks::write_blocks;
+use crate::history::HistoryWriter;
+use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
+use crate::vtu::PvdWriter;
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+use enmm::model::case::{Invalid, StageKind};
+use enmm::model::fit::{self, Unfit};
+use enmm::model::settle;
+use enmm::state::bytes::BytesError;
+use enmm::state::{Ledger, Seconds, State};
+use enmm::step::{StepError, StepReport};
+use enmm_io::LoadedCase;
+use enmm_io::checkpoint;
+
+use super::results::Past;
+use super::rows::{self, Plan};
+use super::{Observer, RunError, RunOptions, RunProgress, results};
+
+/// Most steps between two copies of the state to which a failed run falls back.
+const GOOD_STEPS: u64 = 200;
+
+/// What a run knows beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Progress {
+    /// Stages that are over.
+    done: Vec<StageRecord>,
+    /// Unsettled sub-steps before this stage.
+    unsettled_before: u64,
+    /// Potential energy at the start of this stage (J/m).
+    potential_start: Option<f64>,
+    /// Sweeps and sub-steps at the last row.
+    row_sweeps: [u64; 2],
+    /// Largest penetration at reports of this stage (m).
+    penetration_max: f64,
+    /// Unbalanced ratio at the last report.
+    unbalanced: f64,
+    /// Ledger at the last report.
+    ledger: Ledger,
+}
+
+impl Progress {
+    /// Whether it can be that of a state.
+    ///
+    /// # Errors
+    /// The first number that cannot.
+    fn check(&self, state: &State) -> Result<(), Unfit> {
+        let Self { done, unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger } = self;
+        let stages = u64::from(state.stage);
+        fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
+        fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
+        fit::number("potential_start", potential_start.unwrap_or_default(), fit::FORCE)?;
+        fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
+        fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
+        fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
+        fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
+        fit::check_ledger(ledger)
+    }
+}
+
+/// A checkpoint of a run. The state comes first, so that it can be read alone.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Saved<S = State> {
+    state: S,
+    progress: Progress,
+}
+
+/// How a stage ended.
+enum StageEnd {
+    Over,
+    Interrupted,
+    Failed(StepError),
+}
+
+/// What ends a stage before it is over.
+type Halt = Result<StageEnd, RunError>;
+
+struct Driver<'a> {
+    loaded: &'a LoadedCase,
+    options: &'a RunOptions<'a>,
+    observer: &'a mut dyn Observer,
+    simulation: Simulation,
+    progress: Progress,
+    good: Saved,
+    history: HistoryWriter,
+    frames: Option<PvdWriter>,
+    clock: Instant,
+    stage_clock: Instant,
+    warnings: Vec<String>,
+}
+
+/// Runs all stages; see [`super::run`].
+pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
+    let clock = Instant::now();
+    let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
+    let mut simulation = Simulation::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
+    simulation.validate_stages().map_err(invalid)?;
+    let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
+    let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;
+    loop {
+        match driver.run_stage()? {
+            StageEnd::Over => {}
+            StageEnd::Interrupted => return driver.close(RunStatus::Interrupted, None),
+            StageEnd::Failed(error) => return driver.fail(&error),
+        }
+        if !driver.simulation.next_stage().map_err(invalid)? {
+            return driver.close(RunStatus::Finished, None);
+        }
+        driver.begin_stage();
+    }
+}
+
+fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
+    let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
+    let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
+    let fits = simulation.check(&saved.state).and_then(|()| saved.progress.check(&saved.state));
+    fits.map_err(|unfit| refuse(BytesError::Damaged(unfit.to_string()).into()))?;
+    Ok(saved)
+}
+
+impl<'a> Driver<'a> {
+    /// Opens or continues the results; the first thing that writes.
+    fn open(
+        loaded: &'a LoadedCase,
+        options: &'a RunOptions<'a>,
+        observer: &'a mut dyn Observer,
+        mut simulation: Simulation,
+        saved: Option<Saved>,
+        clock: Instant,
+    ) -> Result<Self, RunError> {
+        let directory = &options.directory;
+        let used = results::enter(directory).map_err(RunError::Directory)?;
+        let past = options.resume.as_deref().map(|checkpoint| results::bring_past(checkpoint, directory));
+        let past = past.transpose().map_err(RunError::Directory)?;
+        if used && past != Some(Past::Here) {
+            observer.warn(&format!("the results of an earlier run in {} are overwritten", directory.display()));
+        }
+        if simulation.case().output.pictures {
+            results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
+        }
+        let resumed = saved.is_some();
+        let good = saved.unwrap_or_else(|| Saved { state: simulation.state().clone(), progress: Progress::default() });
+        if resumed {
+            simulation.return_to(&good.state);
+        }
+        let mut warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
+        warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
+        warnings.iter().for_each(|warning| observer.warn(warning));
+        let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
+        let progress = good.progress.clone();
+        let stage_clock = Instant::now();
+        let mut driver = Self {
+            loaded,
+            options,
+            observer,
+            simulation,
+            progress,
+            good,
+            history,
+            frames,
+            clock,
+            stage_clock,
+            warnings,
+        };
+        if !resumed {
+            driver.begin_stage();
+        }
+        Ok(driver)
+    }
+
+    fn begin_stage(&mut self) {
+        self.stage_clock = Instant::now();
+        self.begin_row();
+        self.progress.unsettled_before = self.simulation.state().counters.unsettled;
+        self.progress.potential_start = None;
+        self.progress.penetration_max = 0.0;
+    }
+
+    /// Runs the stage in progress to its end, unless a checkpoint says that it is over.
+    fn run_stage(&mut self) -> Result<StageEnd, RunError> {
+        let plan = Plan::of(&self.simulation);
+        let recorded = self.progress.done.len() > self.simulation.state().stage as usize;
+        if recorded {
+            return self.end_stage(None, recorded);
+        }
+        match settle::until_over(self, |driver| &driver.simulation, |driver| driver.pass(&plan)) {
+            Ok(last) => self.end_stage(last, recorded),
+            Err(halt) => halt,
+        }
+    }
+
+    /// What is due at the start of a step, and the step.
+    fn pass(&mut self, plan: &Plan) -> Result<Option<StepReport>, Halt> {
+        if self.options.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Ok(StageEnd::Interrupted));
+        }
+        let step = self.simulation.state().stage_step;
+        if plan.checkpoint_due(step) {
+            self.save().map_err(Err)?;
+        }
+        if plan.frame_due(step) {
+            self.push_frame().map_err(Err)?;
+        }
+        self.tell();
+        self.step(plan)
+    }
+
+    /// One step, with a report and a row when they are due.
+    fn step(&mut self, plan: &Plan) -> Result<Option<StepReport>, Halt> {
+        let step = self.simulation.state().stage_step;
+        let row = plan.row_due(step);
+        if row || step.is_multiple_of(GOOD_STEPS) {
+            self.keep_good();
+        }
+        let before = if row { rows::monitors(&self.simulation) } else { Vec::new() };
+        let dt_before = self.simulation.state().dt_last;
+        let sweeps_mean = self.sweeps_mean();
+        if row {
+            self.begin_row();
+        }
+        let wanted = plan.report_due(step);
+        let report = self.simulation.advance(wanted).map_err(|error| Ok(StageEnd::Failed(error)))?;
+        if !wanted {
+            return Ok(None);
+        }
+        self.note(&report);
+        if row {
+            self.write_row(&report, &before, dt_before, sweeps_mean).map_err(Err)?;
+        }
+        Ok(Some(report))
+    }
+
+    /// Notes that there is a row now.
+    fn begin_row(&mut self) {
+        let counters = &self.simulation.state().counters;
+        self.progress.row_sweeps = [counters.sweeps, counters.substeps];
+    }
+
+    fn note(&mut self, report: &StepReport) {
+        let progress = &mut self.progress;
+        progress.potential_start.get_or_insert(report.ledger.potential);
+        progress.penetration_max = progress.penetration_max.max(report.penetration_max);
+        progress.unbalanced = report.unbalanced;
+        progress.ledger = report.ledger;
+    }
+
+    /// Mean sweeps of a sub-step since the last row.
+    fn sweeps_mean(&self) -> f64 {
+        let counters = &self.simulation.state().counters;
+        let [sweeps, substeps] = self.progress.row_sweeps;
+        (counters.sweeps - sweeps) as f64 / (counters.substeps - substeps).max(1) as f64
+    }
+
+    fn write_row(
+        &mut self,
+        report: &StepReport,
+        before: &[(Vector, Vector)],
+        dt_before: f64,
+        sweeps_mean: f64,
+    ) -> Result<(), RunError> {
+        let after = rows::monitors(&self.simulation);
+        let dt = [dt_before, self.simulation.model().dt];
+        let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
+        self.history.row(&row).map_err(RunError::Output)
+    }
+
+    /// Row and frame of the end of a stage, and its record; the step that the row needs is taken back.
+    fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
+        self.keep_good();
+        self.push_frame()?;
+        let dt_before = self.simulation.state().dt_last;
+        let before = rows::monitors(&self.simulation);
+        let sweeps_mean = self.sweeps_mean();
+        let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
+        let report = self.simulation.advance(true);
+        if let Ok(report) = &report {
+            self.note(report);
+            converged |= self.simulation.at_rest(report);
+            self.write_row(report, &before, dt_before, sweeps_mean)?;
+        }
+        self.simulation.return_to(&self.good.state);
+        if !recorded {
+            self.warn_of_stage(converged);
+            let record = self.stage_record(Some(converged));
+            self.progress.done.push(record);
+        }
+        Ok(StageEnd::Over)
+    }
+
+    fn warn_of_stage(&mut self, converged: bool) {
+        let stage = self.simulation.stage();
+        if stage.kind == StageKind::Static && !converged {
+            let (name, time, ratio) = (&stage.name, stage.duration, self.progress.unbalanced);
+            self.warn(format!(
+                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}): \
+                 the slope moves, or the stage needs a longer duration"
+            ));
+        }
+    }
+
+    fn warn(&mut self, message: String) {
+        self.observer.warn(&message);
+        self.warnings.push(message);
+    }
+
+    fn stage_record(&self, converged: Option<bool>) -> StageRecord {
+        let (stage, state, progress) = (self.simulation.stage(), self.simulation.state(), &self.progress);
+        let potential = progress.ledger.potential;
+        StageRecord {
+            name: stage.name.clone(),
+            kind: stage.kind,
+            start: state.stage_start,
+            time: self.simulation.time() - state.stage_start,
+            steps: state.stage_step,
+            converged: converged.filter(|_| stage.kind == StageKind::Static),
+            wall_seconds: Some(self.stage_clock.elapsed().as_secs_f64()),
+            unbalanced: progress.unbalanced,
+            kinetic_energy: progress.ledger.kinetic,
+            potential_released: progress.potential_start.unwrap_or(potential) - potential,
+            unsettled: state.counters.unsettled - progress.unsettled_before,
+            penetration_max: progress.penetration_max,
+        }
+    }
+
+    fn tell(&mut self) {
+        let (simulation, state) = (&self.simulation, self.simulation.state());
+        let stages = &simulation.case().stages;
+        let number = state.stage as usize + 1;
+        let later: f64 = stages[number..].iter().map(|stage| stage.duration).sum();
+        let time = simulation.time();
+        self.observer.step(&RunProgress {
+            stage: &simulation.stage().name,
+            stage_number: number,
+            stage_count: stages.len(),
+            time,
+            time_left: (state.stage_start + simulation.stage().duration - time).max(0.0) + later,
+            step: state.step,
+        });
+    }
+
+    fn push_frame(&mut self) -> Result<(), RunError> {
+        let Some(frames) = &mut self.frames else { return Ok(()) };
+        self.simulation.drop_buffers();
+        frames.push(&self.simulation.snapshot()).map_err(RunError::Output)
+    }
+
+    fn keep_good(&mut self) {
+        self.good.state.copy_from(self.simulation.state());
+        self.good.progress.clone_from(&self.progress);
+    }
+
+    fn wall(&self) -> WallSeconds {
+        let parts: &Seconds = &self.simulation.workspace().seconds;
+        WallSeconds::of(parts, self.clock.elapsed().as_secs_f64())
+    }
+
+    /// Writes the checkpoint of the state now.
+    fn save(&self) -> Result<(), RunError> {
+        let mut progress = self.progress.clone();
+        progress.done.iter_mut().for_each(|stage| stage.wall_seconds = None);
+        let saved = Saved { state: self.simulation.state(), progress };
+        let path = self.options.directory.join("checkpoint.enmm");
+        checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)
+    }
+
+    /// Falls back to the last good state and closes.
+    fn fail(mut self, error: &StepError) -> Result<Summary, RunError> {
+        self.simulation.return_to(&self.good.state);
+        self.progress = self.good.progress.clone();
+        self.close(RunStatus::Failed, Some(error))
+    }
+
+    /// Writes what a run leaves at its end, the checkpoint first and the summary last.
+    fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
+        self.simulation.drop_buffers();
+        self.save()?;
+        self.history.check_place().map_err(RunError::Output)?;
+        let directory = &self.options.directory;
+        write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
+        if self.simulation.case().output.pictures && status != RunStatus::Interrupted {
+            results::draw_end(&self.simulation, directory).map_err(RunError::Output)?;
+        }
+        let mut stages = self.progress.done.clone();
+        if stages.len() <= self.simulation.state().stage as usize {
+            stages.push(self.stage_record(None));
+        }
+        let ended = status == RunStatus::Finished;
+        let doubt = self.simulation.doubt(&self.progress.ledger).filter(|_| ended);
+        self.warnings.extend(doubt.clone());
+        let record = RunRecord {
+            case_file: self.loaded.source.file(),
+            case_hash: &self.loaded.hash,
+            status,
+            failure,
+            stages,
+            ledger: &self.progress.ledger,
+            wall: self.wall(),
+            warnings: std::mem::take(&mut self.warnings),
+            doubt,
+        };
+        let summary = Summary::new(&self.simulation, record);
+        summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;
+        Ok(summary)
+    }
+}
+
+/// Begins histories and frames, or continues those of the past of a restored state.
+fn writers(simulation: &Simulation, directory: &Path, resumed: bool) -> io::Result<(HistoryWriter, Option<PvdWriter>)> {
+    let (path, columns) = (directory.join("history.csv"), rows::columns(simulation.case()));
+    let frames = simulation.case().output.frames;
+    if !resumed {
+        results::clear(directory)?;
+        let history = HistoryWriter::new(&path, &columns)?;
+        return Ok((history, frames.then(|| PvdWriter::new(directory)).transpose()?));
+    }
+    let until = kept_until(simulation);
+    let history = HistoryWriter::open_for_append(&path, &columns, until)?;
+    Ok((history, frames.then(|| PvdWriter::open_for_append(directory, until)).transpose()?))
+}
+
+/// What a user should know whose histories begin at a checkpoint.
+fn lost_past(past: Past, simulation: &Simulation, directory: &Path) -> Option<String> {
+    let lost = past == Past::Lost && simulation.time() > 0.0;
+    lost.then(|| {
+        format!(
+            "history.csv and frames in {} begin at t = {:.6} s: neither there nor beside the checkpoint is a \
+             history.csv with the rows before; continue from the checkpoint in the directory of its run to have them",
+            directory.display(),
+            simulation.time()
+        )
+    })
+}
+
+/// Time (s) up to which rows and frames belong to the past of a restored state; it writes those of its own time
+/// again, but for those of the start of a later stage, which the stage before wrote.
+fn kept_until(simulation: &Simulation) -> f64 {
+    let state = simulation.state();
+    let half = 0.5 * simulation.model().dt;
+    if state.stage > 0 && state.stage_step == 0 { simulation.time() + half } else { simulation.time() - half }
+}

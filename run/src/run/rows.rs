@@ -1,0 +1,139 @@
+//! Columns and rows of `history.csv`, and how often rows, frames and checkpoints are due.
+
+use std::io;
+use std::path::Path;
+
+use enmm::geometry::Vector;
+use enmm::model::settle::Cadence;
+use enmm::model::{Case, Simulation};
+use enmm::state::{ENERGIES, Quantity};
+use enmm::step::StepReport;
+use enmm_picture::Series;
+
+/// Frames of a stage that names no interval.
+const FRAMES: f64 = 20.0;
+
+/// What a row tells of its step behind the energies.
+const REPORTED: [Quantity<StepReport>; 4] = [
+    Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |report| report.unbalanced),
+    Quantity::new(["penetration_max"; 2], "m", "Largest penetration", |report| report.penetration_max),
+    Quantity::count("locked", "Contacts below their shear limit", |report| f64::from(report.locked)),
+    Quantity::count("slipping", "Contacts at their shear limit", |report| f64::from(report.slipping)),
+];
+
+/// Steps between outputs of one stage.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    cadence: Cadence,
+    frame: u64,
+    checkpoint: Option<u64>,
+    first: bool,
+}
+
+impl Plan {
+    /// The plan of the stage in progress.
+    pub fn of(simulation: &Simulation) -> Self {
+        let (stage, output) = (simulation.stage(), &simulation.case().output);
+        Self {
+            cadence: Cadence::of(simulation),
+            frame: simulation.steps_in(output.frame_interval.unwrap_or(stage.duration / FRAMES)),
+            checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
+            first: simulation.state().stage == 0,
+        }
+    }
+
+    /// Whether a row is due at the start of a step; the end of the stage before wrote that of step 0.
+    pub fn row_due(&self, step: u64) -> bool {
+        self.cadence.row_due(step) && self.begins(step)
+    }
+
+    /// Whether a frame is due at the start of a step.
+    pub fn frame_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.frame) && self.begins(step)
+    }
+
+    /// Whether a checkpoint is due at the start of a step.
+    pub fn checkpoint_due(&self, step: u64) -> bool {
+        step > 0 && self.checkpoint.is_some_and(|every| step.is_multiple_of(every))
+    }
+
+    /// Whether a step must report.
+    pub fn report_due(&self, step: u64) -> bool {
+        self.cadence.report_due(step)
+    }
+
+    fn begins(&self, step: u64) -> bool {
+        step > 0 || self.first
+    }
+}
+
+/// Names and units of the columns.
+pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
+    let mut columns = vec![("time".to_owned(), "s"), ("stage".to_owned(), "")];
+    for monitor in &case.monitors {
+        for (part, unit) in [("ux", "m"), ("uy", "m"), ("vx", "m/s"), ("vy", "m/s")] {
+            columns.push((format!("{}_{part}", monitor.name), unit));
+        }
+    }
+    columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
+    columns.extend(REPORTED.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
+    columns.push(("sweeps_mean".to_owned(), ""));
+    columns
+}
+
+/// Displacement and velocity of all monitors.
+pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
+    (0..simulation.case().monitors.len()).map(|k| simulation.monitor(k)).collect()
+}
+
+/// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
+/// step before (s). Velocities, which live halfway between, are brought to the time of the row.
+pub fn row(
+    stage: u32,
+    report: &StepReport,
+    before: &[(Vector, Vector)],
+    after: &[(Vector, Vector)],
+    [dt_before, dt]: [f64; 2],
+    sweeps_mean: f64,
+) -> Vec<f64> {
+    let mut row = vec![report.time, f64::from(stage + 1)];
+    for ((u, v), (_, v_after)) in before.iter().zip(after) {
+        let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
+        row.extend([u.x, u.y, velocity.x, velocity.y]);
+    }
+    row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
+    row.extend(REPORTED.iter().map(|quantity| (quantity.get)(report)));
+    row.push(sweeps_mean);
+    row
+}
+
+/// The series that the picture of the histories shows, read back from `history.csv`.
+///
+/// # Errors
+/// Whatever the file system refuses, or what is not a table of numbers.
+pub fn series(path: &Path) -> io::Result<Vec<Series>> {
+    let mut reader = csv::Reader::from_path(path)?;
+    let headers = reader.headers()?.clone();
+    // Terms of the balance that stand behind the residual are left to readers of the table.
+    let pictured = ENERGIES.iter().map(|energy| energy.column).take_while(|column| *column != "energy_residual");
+    let pictured: Vec<&str> = pictured.collect();
+    let mut series: Vec<(usize, Series)> = headers
+        .iter()
+        .enumerate()
+        .filter_map(|(k, header)| {
+            let (name, unit) = header.strip_suffix(']').and_then(|h| h.rsplit_once(" [")).unwrap_or((header, ""));
+            let energy = unit == "J/m" && pictured.contains(&name);
+            let shown = k > 1 && (energy || name.ends_with("_ux") || name.ends_with("_uy"));
+            shown.then(|| (k, Series { name: name.to_owned(), unit: unit.to_owned(), points: Vec::new() }))
+        })
+        .collect();
+    for record in reader.records() {
+        let record = record?;
+        let number = |k: usize| record.get(k).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN);
+        for (k, series) in &mut series {
+            series.points.push((number(0), number(*k)));
+        }
+    }
+    let moves = |series: &Series| series.unit == "m" || series.points.iter().any(|point| point.1 != 0.0);
+    Ok(series.into_iter().map(|(_, series)| series).filter(moves).collect())
+}

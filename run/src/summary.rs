@@ -1,0 +1,371 @@
+//! `summary.json`: what a run was, did and cost. A value that is not finite is written as null.
+
+use std::io;
+use std::path::Path;
+
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize, Serializer};
+
+use enmm::contact::{BoltSegment, BoltState};
+use enmm::engine_version;
+use enmm::model::Simulation;
+use enmm::model::case::StageKind;
+use enmm::state::{ENERGIES, Ledger, Seconds};
+use enmm::step::StepError;
+use enmm_io::files::{at_path, write_atomic};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunStatus {
+    /// All stages are over.
+    Finished,
+    /// The caller asked it to stop; a checkpoint was written.
+    Interrupted,
+    /// A numerical failure; the checkpoint holds the last good state.
+    Failed,
+}
+
+/// What a run was, did and cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Title of the case.
+    pub title: String,
+    /// Version of the engine.
+    pub version: String,
+    /// Case file as the user named it.
+    pub case_file: String,
+    /// Hash of the case.
+    pub case_hash: String,
+    /// How the run ended.
+    pub status: RunStatus,
+    /// Numerical failure, if any.
+    pub failure: Option<FailureRecord>,
+    /// Size of the model.
+    pub model: ModelCounts,
+    /// Stages that have begun.
+    pub stages: Vec<StageRecord>,
+    /// Simulated time (s).
+    pub time: f64,
+    /// Internal steps.
+    pub steps: u64,
+    /// Steps in time.
+    pub dt: StepSizes,
+    /// The open–close iteration over the whole run.
+    pub open_close: OpenCloseRecord,
+    /// Energy ledger at the last report (J/m).
+    #[serde(serialize_with = "energies")]
+    pub energy: Ledger,
+    /// Elements that have yielded.
+    pub yielded_elements: usize,
+    /// Bolts at the end, in the order of the case.
+    pub bolts: Vec<BoltRecord>,
+    /// Largest penetration of all steps (m).
+    pub penetration_max: f64,
+    /// The same over the mesh size.
+    pub penetration_max_relative: f64,
+    /// Wall time (s) of the process that writes this.
+    pub wall_seconds: WallSeconds,
+    /// Threads that the run could use.
+    pub threads: usize,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Why the results of a run that has ended are worthless; it is among the warnings too.
+    #[serde(skip)]
+    pub doubt: Option<String>,
+}
+
+/// Where, when and why a run failed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FailureRecord {
+    /// Block.
+    pub block: u32,
+    /// Place (m).
+    pub place: [f64; 2],
+    /// Simulated time (s).
+    pub time: f64,
+    /// Cause.
+    pub cause: String,
+}
+
+impl From<&StepError> for FailureRecord {
+    fn from(error: &StepError) -> Self {
+        let place = [error.position.x, error.position.y];
+        Self { block: error.block, place, time: error.time, cause: error.failure.to_string() }
+    }
+}
+
+/// Size of a model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelCounts {
+    /// Blocks.
+    pub blocks: usize,
+    /// Manifold elements.
+    pub elements: usize,
+    /// Physical covers.
+    pub physical_covers: usize,
+    /// Stars.
+    pub stars: usize,
+    /// Nodes of the boundary that may meet edges.
+    pub contact_nodes: usize,
+    /// Pieces of the block boundaries.
+    pub boundary_edges: usize,
+    /// Contacts of the last step.
+    pub contacts: usize,
+    /// Joint traces.
+    pub joints: usize,
+    /// Springs that hold.
+    pub supports: usize,
+    /// Area of the rock (m²).
+    pub area: f64,
+    /// Mesh size (m).
+    pub mesh_size: f64,
+}
+
+impl ModelCounts {
+    /// Counts a model.
+    pub fn of(simulation: &Simulation) -> Self {
+        let model = simulation.model();
+        let covers = &model.covers;
+        Self {
+            blocks: covers.block_count(),
+            elements: covers.element_count(),
+            physical_covers: covers.cover_count(),
+            stars: covers.covers_by_star().len(),
+            contact_nodes: model.boundary.node_count(),
+            boundary_edges: simulation.built().boundary_pieces,
+            contacts: simulation.state().contacts.len(),
+            joints: model.trace_law.len(),
+            supports: model.supports.len(),
+            area: covers.element_area.iter().sum(),
+            mesh_size: covers.mesh.size,
+        }
+    }
+}
+
+/// One stage as it went.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageRecord {
+    /// Name.
+    pub name: String,
+    /// Static or dynamic.
+    pub kind: StageKind,
+    /// Time at its start (s).
+    pub start: f64,
+    /// Simulated time in it (s).
+    pub time: f64,
+    /// Internal steps.
+    pub steps: u64,
+    /// Whether a static stage came to rest; null for a dynamic one.
+    pub converged: Option<bool>,
+    /// Wall time (s) in the process that writes this; null for a stage that ended before it went on from a checkpoint.
+    pub wall_seconds: Option<f64>,
+    /// Unbalanced ratio at its end.
+    pub unbalanced: f64,
+    /// Kinetic energy at its end (J/m).
+    pub kinetic_energy: f64,
+    /// Potential energy that it released (J/m).
+    pub potential_released: f64,
+    /// Sub-steps whose open–close iteration ended unsettled.
+    pub unsettled: u64,
+    /// Largest penetration at the reports of the stage (m).
+    pub penetration_max: f64,
+}
+
+/// What a bar segment does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BarState {
+    /// It is not installed, or a block that held it is gone.
+    Absent,
+    /// It bears no force.
+    Slack,
+    /// It is in tension and has never yielded.
+    Elastic,
+    /// It has yielded.
+    Yielded,
+    /// It has broken.
+    Broken,
+}
+
+/// A free length of a bolt at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BoltRecord {
+    /// Name; null for a bolt without one.
+    pub name: Option<String>,
+    /// Index of the bolt in the case.
+    pub bolt: u32,
+    /// Middle of the free length in the reference configuration (m).
+    pub place: [f64; 2],
+    /// Tension of one bar (N).
+    pub force: f64,
+    /// Lasting elongation of the bar (m).
+    pub plastic_elongation: f64,
+    /// What it does.
+    pub state: BarState,
+}
+
+impl BoltRecord {
+    fn of(simulation: &Simulation) -> Vec<Self> {
+        let segments = simulation.model().bolts.iter().zip(&simulation.state().bolts);
+        let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
+            let case = &simulation.case().bolts[segment.bolt as usize];
+            let middle = (segment.points[0] + segment.points[1]) * 0.5;
+            let state = match bolt {
+                BoltState { broken: true, .. } => BarState::Broken,
+                BoltState { active: false, .. } => BarState::Absent,
+                _ if bolt.rest > bolt.natural => BarState::Yielded,
+                _ if bolt.force > 0.0 => BarState::Elastic,
+                _ => BarState::Slack,
+            };
+            Self {
+                name: case.name.clone(),
+                bolt: segment.bolt,
+                place: [middle.x, middle.y],
+                force: bolt.force * case.spacing,
+                plastic_elongation: bolt.rest - bolt.natural,
+                state,
+            }
+        };
+        segments.map(record).collect()
+    }
+}
+
+/// Internal steps (s).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StepSizes {
+    /// Shortest that was taken.
+    pub min: f64,
+    /// Longest that was taken.
+    pub max: f64,
+    /// Internal step of the model.
+    pub internal: f64,
+    /// Stability limit.
+    pub critical: f64,
+}
+
+/// The open–close iteration over a whole run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OpenCloseRecord {
+    /// Mean sweeps of a sub-step.
+    pub mean: f64,
+    /// Most sweeps of a sub-step.
+    pub max: u32,
+    /// Sub-steps that ended unsettled.
+    pub unsettled: u64,
+    /// Sub-steps taken.
+    pub substeps: u64,
+    /// Steps that were redone in halves.
+    pub halved: u64,
+    /// Contacts first seen deep.
+    pub deep_contacts: u64,
+    /// Deepest of them (m).
+    pub deepest_contact: f64,
+    /// Contacts judged, over all sweeps.
+    pub judged: u64,
+    /// Searches for near edges.
+    pub searches: u64,
+}
+
+/// Writes all energies of the table (J/m), and the residual over the largest term.
+fn energies<S: Serializer>(ledger: &Ledger, out: S) -> Result<S::Ok, S::Error> {
+    let mut map = out.serialize_map(Some(ENERGIES.len() + 1))?;
+    for energy in &ENERGIES {
+        map.serialize_entry(energy.name, &(energy.get)(ledger))?;
+    }
+    map.serialize_entry("residual_relative", &ledger.residual_relative())?;
+    map.end()
+}
+
+/// Wall time (s) by part of the step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct WallSeconds {
+    /// The whole run, outputs included.
+    pub total: f64,
+    /// Elements and kick.
+    pub elements: f64,
+    /// Search for near edges.
+    pub search: f64,
+    /// Vertex rule and contact geometry.
+    pub entrance: f64,
+    /// Open–close iteration.
+    pub sweep: f64,
+    /// Velocities, positions, ledger.
+    pub commit: f64,
+}
+
+impl WallSeconds {
+    /// Those of the parts of the step, and a total.
+    pub fn of(parts: &Seconds, total: f64) -> Self {
+        let &Seconds { elements, search, entrance, sweep, commit } = parts;
+        Self { total, elements, search, entrance, sweep, commit }
+    }
+}
+
+/// What only the driver of a run knows of it.
+pub(super) struct RunRecord<'a> {
+    pub case_file: &'a str,
+    pub case_hash: &'a str,
+    pub status: RunStatus,
+    pub failure: Option<&'a StepError>,
+    pub stages: Vec<StageRecord>,
+    pub ledger: &'a Ledger,
+    pub wall: WallSeconds,
+    pub warnings: Vec<String>,
+    pub doubt: Option<String>,
+}
+
+impl Summary {
+    pub(super) fn new(simulation: &Simulation, record: RunRecord) -> Self {
+        let (model, state) = (simulation.model(), simulation.state());
+        let counters = &state.counters;
+        Self {
+            title: simulation.case().title.clone(),
+            version: engine_version().to_owned(),
+            case_file: record.case_file.to_owned(),
+            case_hash: record.case_hash.to_owned(),
+            status: record.status,
+            failure: record.failure.map(FailureRecord::from),
+            model: ModelCounts::of(simulation),
+            stages: record.stages,
+            time: simulation.time(),
+            steps: state.step,
+            dt: StepSizes {
+                min: counters.dt_min,
+                max: counters.dt_max,
+                internal: model.dt,
+                critical: model.critical_dt,
+            },
+            open_close: OpenCloseRecord {
+                mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
+                max: counters.sweeps_max,
+                unsettled: counters.unsettled,
+                substeps: counters.substeps,
+                halved: counters.halved,
+                deep_contacts: counters.deep_contacts,
+                deepest_contact: counters.deepest_contact,
+                judged: counters.judged,
+                searches: counters.searches,
+            },
+            energy: *record.ledger,
+            yielded_elements: simulation.yielded_elements(),
+            bolts: BoltRecord::of(simulation),
+            penetration_max: counters.penetration_max,
+            penetration_max_relative: counters.penetration_max / model.covers.mesh.size,
+            wall_seconds: record.wall,
+            threads: rayon::current_num_threads(),
+            warnings: record.warnings,
+            doubt: record.doubt,
+        }
+    }
+
+    /// Writes the summary as JSON, whole or not at all.
+    ///
+    /// # Errors
+    /// Whatever the file system refuses, with the path in the message.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from).map_err(at_path(path))?;
+        text.push(b'\n');
+        write_atomic(path, &text)
+    }
+}

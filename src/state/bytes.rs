@@ -1,0 +1,176 @@
+//! Bytes of saved states: a payload in a container that says of which case it is and whether it is whole.
+//!
+//! Layout, little-endian: magic `ENMMCKPT`; format version u32; engine version and case hash, each as u32 length and
+//! text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
+
+use std::cmp::Ordering;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+const MAGIC: &[u8; 8] = b"ENMMCKPT";
+const FORMAT: u32 = 6;
+const TEXT_MAX: usize = 256;
+/// Bytes of length and checksum.
+const SUMMARY: usize = 12;
+/// Most bytes before the payload.
+pub const HEAD_MAX: usize = MAGIC.len() + 4 + 2 * (4 + TEXT_MAX) + SUMMARY;
+
+/// Why bytes are no saved state that can be used.
+#[derive(Debug, thiserror::Error)]
+pub enum BytesError {
+    /// It is something else.
+    #[error("this is no checkpoint of enmm: give a checkpoint.enmm that a run has written")]
+    Foreign,
+    /// It ends too early.
+    #[error("the checkpoint is truncated after {0} bytes: use an older one, or start a new run")]
+    Truncated(usize),
+    /// Another format or engine wrote it.
+    #[error("the checkpoint is of {found}, this is {own}: continue with that version, or start a new run")]
+    Version {
+        /// What wrote it.
+        found: String,
+        /// What reads it.
+        own: String,
+    },
+    /// It belongs to another case.
+    #[error("the checkpoint is of case {found}, this case is {own}: use the case file that made it")]
+    OtherCase {
+        /// Hash in the checkpoint.
+        found: String,
+        /// Hash of this case.
+        own: String,
+    },
+    /// Its bytes have changed.
+    #[error("the checkpoint is damaged ({0}): use an older one, or start a new run")]
+    Damaged(String),
+}
+
+/// Version of the engine that writes checkpoints and results.
+pub const fn engine_version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}
+
+/// Returns the bytes of a checkpoint of `payload` for the case with this hash.
+///
+/// # Errors
+/// When the payload cannot be serialised.
+pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> Result<Vec<u8>, BytesError> {
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(FORMAT.to_le_bytes());
+    for text in [engine_version(), case_hash] {
+        bytes.extend((text.len() as u32).to_le_bytes());
+        bytes.extend(text.as_bytes());
+    }
+    // Length and checksum are known when the payload is there, which is too large to be copied behind them.
+    let summary = bytes.len();
+    bytes.extend([0; SUMMARY]);
+    let mut bytes = postcard::to_extend(payload, bytes).map_err(|error| BytesError::Damaged(error.to_string()))?;
+    let (head, payload) = bytes.split_at_mut(summary + SUMMARY);
+    head[summary..summary + 8].copy_from_slice(&(payload.len() as u64).to_le_bytes());
+    head[summary + 8..].copy_from_slice(&crc32fast::hash(payload).to_le_bytes());
+    Ok(bytes)
+}
+
+/// Returns the payload of a checkpoint of the case with this hash.
+///
+/// # Errors
+/// When the bytes are no whole checkpoint of this engine and case.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, BytesError> {
+    let head = head(bytes, case_hash)?;
+    head.check_size(bytes.len() as u64)?;
+    let payload = &bytes[head.size..];
+    if crc32fast::hash(payload) != head.checksum {
+        return Err(BytesError::Damaged("its checksum does not match".to_owned()));
+    }
+    match postcard::take_from_bytes(payload) {
+        Ok((value, [])) => Ok(value),
+        Ok(_) => Err(BytesError::Damaged("it holds something else".to_owned())),
+        Err(error) => Err(BytesError::Damaged(error.to_string())),
+    }
+}
+
+/// What stands before a payload.
+pub struct Head {
+    /// Bytes of the head itself.
+    size: usize,
+    /// Bytes of the payload.
+    length: u64,
+    /// CRC-32 of the payload.
+    checksum: u32,
+}
+
+impl Head {
+    /// Refuses `found` bytes that are not head and payload, neither more nor less.
+    ///
+    /// # Errors
+    /// What is too short or too long.
+    pub fn check_size(&self, found: u64) -> Result<(), BytesError> {
+        match found.cmp(&self.length.saturating_add(self.size as u64)) {
+            Ordering::Less => Err(BytesError::Truncated(found as usize)),
+            Ordering::Equal => Ok(()),
+            Ordering::Greater => Err(BytesError::Damaged("bytes follow its end".to_owned())),
+        }
+    }
+}
+
+/// Reads the head at the beginning of some bytes, of which the first [`HEAD_MAX`] are enough.
+///
+/// # Errors
+/// When they do not begin a checkpoint of this engine and of the case with this hash.
+pub fn head(bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
+    let mut reader = Reader { bytes, at: 0 };
+    if reader.take(MAGIC.len()).map_err(|_| BytesError::Foreign)? != MAGIC {
+        return Err(BytesError::Foreign);
+    }
+    let format = reader.number()?;
+    if format != FORMAT {
+        return Err(version(format!("format {format}"), format!("format {FORMAT}")));
+    }
+    let engine = reader.text()?;
+    if engine != engine_version() {
+        return Err(version(format!("enmm {engine}"), format!("enmm {}", engine_version())));
+    }
+    let found = reader.text()?;
+    if found != case_hash {
+        return Err(BytesError::OtherCase { found, own: case_hash.to_owned() });
+    }
+    let length = u64::from_le_bytes(reader.array()?);
+    let checksum = reader.number()?;
+    Ok(Head { size: reader.at, length, checksum })
+}
+
+fn version(found: String, own: String) -> BytesError {
+    BytesError::Version { found, own }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, length: usize) -> Result<&'a [u8], BytesError> {
+        let part = self.bytes[self.at..].get(..length).ok_or(BytesError::Truncated(self.bytes.len()))?;
+        self.at += length;
+        Ok(part)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], BytesError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    fn number(&mut self) -> Result<u32, BytesError> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    fn text(&mut self) -> Result<String, BytesError> {
+        let length = self.number()? as usize;
+        if length > TEXT_MAX {
+            return Err(BytesError::Damaged(format!("a text of {length} bytes")));
+        }
+        String::from_utf8(self.take(length)?.to_vec()).map_err(|_| BytesError::Damaged("no text".to_owned()))
+    }
+}

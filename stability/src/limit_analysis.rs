@@ -1,0 +1,205 @@
+//! Limit analysis of rigid blocks: the greatest factor of safety that equilibrium allows, whatever the path, as a
+//! second opinion beside strength reduction (theory, section 19).
+
+mod contact;
+mod corner;
+mod model;
+mod program;
+mod refusal;
+mod search;
+
+use enmm::geometry::{Point, Vector};
+
+use contact::Contact;
+use enmm::model::Simulation;
+use enmm::model::assemble::outlines;
+use enmm::model::case::{Case, Invalid};
+use model::{Body, Strengths};
+use program::{Program, Unsolved};
+use search::{Limit, Search};
+
+/// Least and greatest factor that are told from none and from no end.
+pub const RANGE: [f64; 2] = [1e-3, 1e3];
+/// Speed, relative to that of the fastest block, from which a block is part of a mechanism.
+const MOVES: f64 = 1e-2;
+
+/// A factor on the strength of all joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Factor {
+    /// Equilibrium ends at this factor.
+    Found(f64),
+    /// There is equilibrium even at this factor.
+    AtLeast(f64),
+    /// There is none even at this factor.
+    AtMost(f64),
+}
+
+impl std::fmt::Display for Factor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Found(factor) => write!(f, "{factor:.4}"),
+            Self::AtLeast(least) => write!(f, "at least {least}"),
+            Self::AtMost(most) => write!(f, "at most {most}"),
+        }
+    }
+}
+
+impl Factor {
+    /// The factor where equilibrium ends; infinite when it does not, zero when there is none.
+    pub fn value(&self) -> f64 {
+        match *self {
+            Self::Found(factor) => factor,
+            Self::AtLeast(_) => f64::INFINITY,
+            Self::AtMost(_) => 0.0,
+        }
+    }
+}
+
+/// A block that moves in a mechanism.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingBlock {
+    /// Block.
+    pub block: u32,
+    /// Its mass centroid (m).
+    pub position: Point,
+    /// Velocity of the centroid over the speed of the fastest block.
+    pub velocity: Vector,
+    /// Angular velocity over the speed of the fastest block (rad/m), counter-clockwise.
+    pub spin: f64,
+    /// Speed of the block, its turning at its own radius included, over that of the fastest.
+    pub speed: f64,
+    /// Area (m²).
+    pub area: f64,
+    /// Mass (kg/m).
+    pub mass: f64,
+}
+
+/// A factor and the way in which the slope fails there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collapse {
+    /// The factor.
+    pub factor: Factor,
+    /// Blocks that move, fastest first; none when there is equilibrium throughout.
+    pub mechanism: Vec<MovingBlock>,
+}
+
+/// What limit analysis says of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// Corners that face each other at crossings may pass through each other: exact for joints that dilate by their
+    /// friction angle, as far as such corners play no part.
+    pub associated: Collapse,
+    /// Each of them stays outside one facet or the other: no rule of contact by which level tops pass bears more.
+    pub level_tops: Collapse,
+    /// No choice of facets gives less than this: the factor of `level_tops`, unless choices were left untried.
+    pub least: Factor,
+    /// Each of them stays outside both facets: what a rule bears that catches blocks at every crossing.
+    pub catching: Collapse,
+    /// Blocks that are there, and those that can move.
+    pub blocks: [usize; 2],
+    /// Straight interfaces.
+    pub interfaces: usize,
+    /// Corners that meet a face in a point.
+    pub points: usize,
+    /// Pairs of corners that face each other.
+    pub corners: usize,
+    /// Linear programs that were solved.
+    pub programs: usize,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Why there is no bound.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BoundError {
+    /// The case cannot be built, or holds what limit analysis cannot treat.
+    #[error("{}: {}", .0.key, .0.message)]
+    Case(Invalid),
+    /// A linear program has a solution, but the solver did not reach it.
+    #[error(
+        "the linear program of {blocks} blocks was not solved ({status}): remove slivers of rock, or snap points that \
+         nearly coincide with a larger domain.snap_tolerance"
+    )]
+    Unsolved {
+        /// Blocks that can move.
+        blocks: usize,
+        /// What the solver says.
+        status: String,
+    },
+}
+
+impl From<Invalid> for BoundError {
+    fn from(invalid: Invalid) -> Self {
+        Self::Case(invalid)
+    }
+}
+
+/// Finds the bounds of a case in the stage in which strength reduction makes its trials: after the static stages with
+/// which it begins.
+///
+/// # Errors
+/// A case that cannot be built, that holds what cannot be treated, or whose program is not solved.
+pub fn bound(case: &Case) -> Result<Bound, BoundError> {
+    let (simulation, warnings) = refusal::staged(case)?;
+    let bodies = model::bodies(&simulation);
+    let free = bodies.iter().filter(|body| body.is_free()).count();
+    if free == 0 {
+        let message = "every block is held, so that none can fail: free a block, or cut the rock by joints".to_owned();
+        return Err(Invalid { key: "fix".to_owned(), message }.into());
+    }
+    let outlines = outlines(simulation.case())?;
+    let element_block = &simulation.model().covers.element_block;
+    let strengths = Strengths::new(&simulation, &bodies);
+    let tolerance = 2.0 * simulation.built().noding.tolerance;
+    let mut contacts = contact::interfaces(&outlines, element_block, &strengths, tolerance);
+    let interfaces = contacts.len();
+    let (points, corners) = corner::corners(&outlines, element_block, &strengths);
+    let blocks = [bodies.iter().filter(|body| !body.is_gone).count(), free];
+    let counts = (interfaces, points.len(), corners.len());
+    contacts.extend(points);
+    let program = Program { contacts, bars: model::bars(&simulation), bodies };
+    let mut search = Search { program: &program, programs: 0 };
+    let unsolved = |error: Unsolved| BoundError::Unsolved { blocks: free, status: format!("{:?}", error.status) };
+    let associated = search.limit_near(&[], None).map_err(unsolved)?;
+    let choice = search.facets(&corners, associated.clone()).map_err(unsolved)?;
+    let both: Vec<Contact> = corners.iter().flat_map(|corner| corner.facets).collect();
+    let catching = match both.is_empty() {
+        true => associated.clone(),
+        false => search.limit_near(&both, None).map_err(unsolved)?,
+    };
+    let collapse = |limit: &Limit| collapse(&simulation, &program.bodies, limit);
+    Ok(Bound {
+        associated: collapse(&associated),
+        level_tops: collapse(&choice.limit),
+        least: choice.least,
+        catching: collapse(&catching),
+        blocks,
+        interfaces: counts.0,
+        points: counts.1,
+        corners: counts.2,
+        programs: search.programs,
+        warnings,
+    })
+}
+
+/// A limit as users see it: motions relative to the fastest block.
+fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse {
+    let model = simulation.model();
+    let motions = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.motions);
+    let speed = |b: usize| motions[b].0.norm().hypot(motions[b].1 * bodies[b].radius);
+    let fastest = (0..motions.len()).map(speed).fold(0.0, f64::max);
+    let moving = (0..motions.len()).filter(|&b| fastest > 0.0 && speed(b) >= MOVES * fastest);
+    let mut mechanism: Vec<MovingBlock> = moving
+        .map(|b| MovingBlock {
+            block: b as u32,
+            position: bodies[b].centre,
+            velocity: motions[b].0 / fastest,
+            spin: motions[b].1 / fastest,
+            speed: speed(b) / fastest,
+            area: model.covers.block_area(b),
+            mass: model.mass_matrix.total[b],
+        })
+        .collect();
+    mechanism.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
+    Collapse { factor: limit.factor(), mechanism }
+}

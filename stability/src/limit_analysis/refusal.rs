@@ -1,0 +1,89 @@
+//! What limit analysis cannot treat, by name, and the stage in which it looks at a model.
+
+use enmm::model::Simulation;
+use enmm::model::case::key::Key;
+use enmm::model::case::{Case, Invalid, JointLawKind, StageKind};
+
+/// The model in its last static stage before any motion, and what was left out.
+///
+/// # Errors
+/// A key that cannot be treated or does not fit the model.
+pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
+    case.validate()?;
+    let mut case = case.clone();
+    let count = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
+    if count == 0 {
+        let message = "is \"dynamic\", but limit analysis looks at the slope as its static stages leave it: begin with \
+                       a stage of kind \"static\"";
+        return Err(refused(Key::root().field("stage").index(0).field("kind"), message));
+    }
+    let left_out: Vec<&str> = case.stages[count..].iter().map(|stage| stage.name.as_str()).collect();
+    let mut warnings = Vec::new();
+    if !left_out.is_empty() {
+        warnings.push(format!("stages from the first dynamic one on are left out: {}", left_out.join(", ")));
+    }
+    case.stages.truncate(count);
+    refuse_yielding(&case)?;
+    refuse_motion(&case)?;
+    refuse_curves(&case)?;
+    let mut simulation = Simulation::new(case)?;
+    while simulation.next_stage()? {}
+    warnings.extend(simulation.built().warnings.iter().cloned());
+    Ok((simulation, warnings))
+}
+
+fn refused(key: Key, message: impl Into<String>) -> Invalid {
+    Invalid { key: key.as_str().to_owned(), message: message.into() }
+}
+
+fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
+    if let Some((name, rock)) = case.rocks.iter().find(|(_, rock)| rock.yields()) {
+        let key = Key::root().field("rock").field(name);
+        let (field, value) = match (rock.friction_deg, rock.cohesion) {
+            (Some(friction), _) => ("friction_deg", friction),
+            (None, cohesion) => ("cohesion", cohesion.unwrap_or_default()),
+        };
+        let message = format!(
+            "is {value}, but limit analysis takes blocks as rigid, and this rock yields: leave out its strength, or \
+             use `enmm fos`"
+        );
+        return Err(refused(key.field(field), message));
+    }
+    Ok(())
+}
+
+fn refuse_motion(case: &Case) -> Result<(), Invalid> {
+    let root = Key::root();
+    let lists = [
+        ("base_motion", case.base_motions.len(), "the base moves"),
+        ("quiet", case.quiets.len(), "a quiet boundary answers to motion"),
+        ("free_field", case.free_fields.len(), "a free field answers to motion"),
+    ];
+    if let Some((name, _, why)) = lists.into_iter().find(|(_, count, _)| *count > 0) {
+        let message = format!(
+            "{why}, but limit analysis knows no time: leave it out, hold the boundary by [[fix]], and give a seismic \
+             coefficient as a load of kind \"body\""
+        );
+        return Err(refused(root.field(name).index(0), message));
+    }
+    let varies =
+        |table: &Option<Vec<[f64; 2]>>| table.as_ref().is_some_and(|rows| rows.iter().any(|row| row[1] != rows[0][1]));
+    match case.loads.iter().position(|load| varies(&load.table)) {
+        Some(k) => {
+            let message = "changes in time, but limit analysis knows no time: leave out the table and give the load \
+                           that counts";
+            Err(refused(root.field("load").index(k).field("table"), message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Laws whose friction is no straight line.
+fn refuse_curves(case: &Case) -> Result<(), Invalid> {
+    if let Some((name, _)) = case.joint_laws.iter().find(|(_, law)| law.kind == JointLawKind::BartonBandis) {
+        let message = "is \"barton_bandis\", whose friction falls with the normal stress, but limit analysis takes \
+                       straight lines: use \"mohr_coulomb\" with friction and cohesion for the stress of the slope";
+        return Err(refused(Key::root().field("joint_law").field(name).field("kind"), message));
+    }
+    Ok(())
+}

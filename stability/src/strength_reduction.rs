@@ -1,0 +1,273 @@
+//! Factor of safety by strength reduction: the case at rest, then trials with its strength divided by F until the
+//! greatest stable F is known (theory, section 16).
+
+mod bracket;
+mod doubt;
+mod judge;
+mod mechanism;
+mod reference;
+mod trial;
+
+use std::sync::atomic::AtomicBool;
+
+use enmm::geometry::Point;
+use enmm::step::StepError;
+
+use super::limit_analysis::{self, Bound};
+use enmm::model::Simulation;
+use enmm::model::case::{Case, Invalid};
+
+pub use judge::{Reason, Verdict};
+pub use mechanism::{MechanismOptions, mechanisms};
+
+/// Least and greatest F that trials reach when none are given.
+pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
+/// Width of the final bracket, relative to F, when none is given.
+pub const TOLERANCE: f64 = 5e-3;
+
+/// How to look for the factor of safety.
+#[derive(Debug, Clone, Copy)]
+pub struct ReductionOptions<'a> {
+    /// Least F that trials reach; where the search begins when given.
+    pub low: Option<f64>,
+    /// Greatest F that trials reach; where the search begins when given.
+    pub high: Option<f64>,
+    /// Width of the final bracket relative to F.
+    pub tolerance: f64,
+    /// Set by another thread to end the search with the trials that are done.
+    pub interrupt: Option<&'a AtomicBool>,
+}
+
+impl Default for ReductionOptions<'_> {
+    fn default() -> Self {
+        Self { low: None, high: None, tolerance: TOLERANCE, interrupt: None }
+    }
+}
+
+/// One trial: the slope at rest, its strength divided by `factor`, and what became of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// F.
+    pub factor: f64,
+    /// Whether the slope bears it.
+    pub verdict: Verdict,
+    /// What told so.
+    pub reason: Reason,
+    /// Simulated time (s).
+    pub time: f64,
+    /// Largest displacement of a block's covers since the trial began (m).
+    pub displacement: f64,
+    /// Largest slip of a contact since the trial began (m); where rock yields, the largest displacement.
+    pub slip: f64,
+    /// Speed of the fastest block in the mean of the last window (m/s).
+    pub speed: f64,
+    /// Kinetic energy at the end (J/m).
+    pub kinetic: f64,
+    /// Energy that the motion has set free since the trial began (J/m).
+    pub released: f64,
+    /// Acceleration of the fastest block by a straight line through its last speeds (m/s²).
+    pub acceleration: f64,
+    /// Blocks that fail or were caught, fastest first; none when the slope is stable.
+    pub failing: Vec<FailingBlock>,
+    /// Internal steps.
+    pub steps: u64,
+    /// Energy that the ledger does not explain over its largest term.
+    pub ledger_residual: f64,
+    /// Wall time (s).
+    pub wall: f64,
+}
+
+impl Trial {
+    /// Area (m²) of the blocks that fail.
+    pub fn failing_area(&self) -> f64 {
+        self.failing.iter().map(|block| block.area).sum()
+    }
+
+    /// Their mass (kg/m).
+    pub fn failing_mass(&self) -> f64 {
+        self.failing.iter().map(|block| block.mass).sum()
+    }
+}
+
+/// How far a search has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Trials so far.
+    pub trials: usize,
+    /// How many there will be, as far as can be told.
+    pub expected: usize,
+}
+
+/// A block that moves with a failure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FailingBlock {
+    /// Block.
+    pub block: u32,
+    /// Its centroid in the reference configuration (m).
+    pub position: Point,
+    /// Area (m²).
+    pub area: f64,
+    /// Mass (kg/m).
+    pub mass: f64,
+    /// Largest displacement of its covers since the trial began (m).
+    pub displacement: f64,
+    /// Turn since the trial began (rad), counter-clockwise.
+    pub rotation: f64,
+    /// Speed at the end (m/s).
+    pub speed: f64,
+}
+
+/// How a search ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// The bracket is as narrow as it should be.
+    Found,
+    /// Stable even at the greatest F.
+    StableThroughout,
+    /// Not stable even at the least F.
+    UnstableThroughout,
+    /// The caller asked it to stop.
+    Interrupted,
+    /// A trial failed numerically.
+    Failed(StepError),
+}
+
+/// What a search found.
+#[derive(Debug, Clone)]
+pub struct Reduction {
+    /// All trials, ascending in F.
+    pub trials: Vec<Trial>,
+    /// Greatest F that was stable, below every other.
+    pub low: Option<f64>,
+    /// Least F that was not.
+    pub high: Option<f64>,
+    /// How the search ended.
+    pub end: End,
+    /// Factor on the strength under which the slope came to rest before the trials: 1 unless it fails by itself.
+    pub rest_factor: f64,
+    /// Time (s) and steps that coming to rest took.
+    pub rest: (f64, u64),
+    /// Area (m²) of all blocks that can move and have no support.
+    pub free_area: f64,
+    /// Limit analysis of the same model, or why there is none.
+    pub bound: Result<Bound, String>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The model at the end of the least trial that was not stable, else at rest.
+    pub simulation: Simulation,
+}
+
+impl Reduction {
+    /// The factor of safety: the middle of the bracket, when it was found.
+    pub fn factor(&self) -> Option<f64> {
+        let (low, high) = (self.low?, self.high?);
+        (self.end == End::Found).then_some(0.5 * (low + high))
+    }
+
+    /// The least trial that was not stable.
+    pub fn first_unstable(&self) -> Option<&Trial> {
+        self.trials.iter().find(|trial| Some(trial.factor) == self.high)
+    }
+
+    /// The greatest F that was tried, when the slope bears it: the factor of safety is at least that.
+    pub fn at_least(&self) -> Option<f64> {
+        self.low.filter(|_| self.end == End::StableThroughout)
+    }
+}
+
+/// Why no trial was made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReductionError {
+    /// The case cannot be built, or has no stage to begin with.
+    #[error("{}: {}", .0.key, .0.message)]
+    Case(Invalid),
+    /// The slope does not come to rest, whatever its strength.
+    #[error(
+        "stage {stage:?} does not come to rest within {time:.4} s even with {factor} times the strength (unbalanced \
+         ratio {unbalanced:.2e}): lengthen the stage's duration, or hold or excavate the blocks that are loose"
+    )]
+    NotAtRest {
+        /// Stage.
+        stage: String,
+        /// Time at which it was given up (s).
+        time: f64,
+        /// Factor on the strength.
+        factor: f64,
+        /// Unbalanced ratio then.
+        unbalanced: f64,
+    },
+    /// A numerical failure before the trials.
+    #[error("before the trials: {0}")]
+    Failed(StepError),
+    /// Interrupted before the trials.
+    #[error("interrupted before the first trial")]
+    Interrupted,
+}
+
+impl From<Invalid> for ReductionError {
+    fn from(invalid: Invalid) -> Self {
+        Self::Case(invalid)
+    }
+}
+
+/// Finds the factor of safety of a case; `hear` is told each trial as it ends. Limit analysis of the same model stands
+/// beside it.
+///
+/// Trials are made in pairs, which two threads can share; what is tried does not depend on how many there are.
+///
+/// # Errors
+/// A case that cannot be built, has no static stage or does not come to rest.
+pub fn factor_of_safety(
+    case: &Case,
+    options: &ReductionOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Reduction, ReductionError> {
+    let rest = reference::settle(case, options)?;
+    let base = trial::Base::new(rest.simulation, options.tolerance);
+    let run = |factor: f64| base.run(factor, options.interrupt);
+    let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
+    let start = bracket::start(rest.factor, options.low, options.high, range);
+    let mut search = bracket::Search::new(start, range, options.tolerance);
+    let mut trials: Vec<Trial> = Vec::new();
+    let mut unstable: Option<(f64, Simulation)> = None;
+    let mut end = None;
+    while let (None, Some(pair)) = (&end, search.next()) {
+        let both = match pair {
+            (a, Some(b)) => {
+                let (a, b) = rayon::join(|| run(a), || run(b));
+                vec![a, b]
+            }
+            (a, None) => vec![run(a)],
+        };
+        for outcome in both {
+            match outcome {
+                Ok((trial, simulation)) => {
+                    search.note(trial.factor, trial.verdict);
+                    hear(&trial, Progress { trials: trials.len() + 1, expected: search.expected() });
+                    let is_least = unstable.as_ref().is_none_or(|(f, _)| trial.factor < *f);
+                    if trial.verdict != Verdict::Stable && is_least {
+                        unstable = Some((trial.factor, simulation));
+                    }
+                    trials.push(trial);
+                }
+                Err(trial::Stop::Interrupted) => _ = end.get_or_insert(End::Interrupted),
+                Err(trial::Stop::Failed(error)) => _ = end.get_or_insert(End::Failed(error)),
+            }
+        }
+    }
+    trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let end = end.unwrap_or_else(|| search.end());
+    let bound = match end {
+        End::Interrupted => Err("interrupted".to_owned()),
+        _ => limit_analysis::bound(case).map_err(|error| error.to_string()),
+    };
+    let [low, high] = search.bracket();
+    let free_area = base.free_area();
+    let simulation = unstable.map_or(base.simulation, |(_, simulation)| simulation);
+    let (rest_factor, effort, warnings) = (rest.factor, rest.effort, rest.warnings);
+    let mut reduction =
+        Reduction { trials, low, high, end, rest_factor, rest: effort, free_area, bound, warnings, simulation };
+    let doubts = doubt::doubts(&reduction, case);
+    reduction.warnings.extend(doubts);
+    Ok(reduction)
+}

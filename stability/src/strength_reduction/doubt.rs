@@ -1,0 +1,77 @@
+//! What a reader of a factor of safety should know of its trials.
+
+use super::{Reason, Reduction, Trial, Verdict};
+use enmm::model::case::Case;
+
+/// Part of the largest term of the ledger that may stay unexplained.
+const RESIDUAL: f64 = 1e-3;
+/// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
+const ABOVE: f64 = 1.02;
+
+/// What speaks against taking the result as it is.
+pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
+    let trials = &reduction.trials;
+    let mut doubts = Vec::new();
+    doubts.extend(not_monotone(trials));
+    doubts.extend(caught(trials));
+    doubts.extend(above_the_bound(reduction));
+    doubts.extend(undecided(trials));
+    let rubbing = case.joint_laws.values().any(|law| law.friction_deg > 0.0);
+    if !rubbing && !case.joint_laws.is_empty() {
+        doubts.push("no joint has friction: the factor is one on cohesion and tensile strength alone".to_owned());
+    }
+    let worst = trials.iter().map(|t| t.ledger_residual.abs()).fold(0.0, f64::max);
+    if worst > RESIDUAL {
+        doubts.push(format!(
+            "the energy ledger of a trial is open by {worst:.1e} of its largest term (limit {RESIDUAL})"
+        ));
+    }
+    doubts
+}
+
+fn not_monotone(trials: &[Trial]) -> Option<String> {
+    let of = |stable: bool| trials.iter().filter(move |t| (t.verdict == Verdict::Stable) == stable).map(|t| t.factor);
+    let (stable, other) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
+    (other < stable).then(|| {
+        format!(
+            "F = {stable:.4} was stable, but F = {other:.4} was not: the verdict is not monotone, look at both trials"
+        )
+    })
+}
+
+/// Trials whose time was over before motion had died or grown.
+fn undecided(trials: &[Trial]) -> Option<String> {
+    let trend = trials.iter().filter(|t| t.reason == Reason::Trend);
+    let told: Vec<String> = trend.map(|t| format!("{:.4} ({})", t.factor, t.verdict.name())).collect();
+    let trials = if told.len() == 1 { "trial F =" } else { "trials F =" };
+    (!told.is_empty()).then(|| format!("judged by their trend when their time was over: {trials} {}", told.join(", ")))
+}
+
+/// Blocks that slid and stopped.
+fn caught(trials: &[Trial]) -> Option<String> {
+    let caught: Vec<&Trial> = trials.iter().filter(|t| t.verdict == Verdict::Caught).collect();
+    let (first, last) = (caught.first()?, caught.last()?);
+    let far = caught.iter().map(|t| t.displacement).fold(0.0, f64::max);
+    let range = if caught.len() == 1 {
+        format!("F = {:.4}", first.factor)
+    } else {
+        format!("F = {:.4} to {:.4}", first.factor, last.factor)
+    };
+    Some(format!(
+        "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and were \
+         caught: that does not count as stable"
+    ))
+}
+
+/// What stands although no forces between rigid blocks could hold it.
+fn above_the_bound(reduction: &Reduction) -> Option<String> {
+    let bound = reduction.bound.as_ref().ok()?;
+    let (stable, limit) = (reduction.low?, bound.level_tops.factor.value());
+    (stable > ABOVE * limit).then(|| {
+        format!(
+            "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
+             something other than strength holds a block; look at those that `enmm bound` names, and try a finer mesh",
+            100.0 * (stable / limit - 1.0)
+        )
+    })
+}

@@ -1,0 +1,82 @@
+//! One way to fail after the other: the next is looked for when the blocks of the last have gone.
+
+use enmm::model::Simulation;
+use enmm::model::case::{Case, Stage, StageKind};
+
+use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
+
+/// Which ways to fail to look for.
+#[derive(Debug, Clone, Copy)]
+pub struct MechanismOptions {
+    /// Area (m²) of failing blocks below which a way to fail is passed over.
+    pub least_area: f64,
+    /// How many of the others to find.
+    pub count: usize,
+}
+
+impl Default for MechanismOptions {
+    fn default() -> Self {
+        Self { least_area: 0.0, count: 1 }
+    }
+}
+
+impl MechanismOptions {
+    /// Whether a way to fail counts: blocks of at least the least area, or no blocks at all.
+    pub fn counts(&self, reduction: &Reduction) -> bool {
+        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= self.least_area)
+    }
+}
+
+/// Finds the factors of safety of one mechanism after the other; each search begins without the blocks that failed in
+/// those before, as if they had fallen and been cleared away.
+///
+/// # Errors
+/// A case that cannot be built, has no static stage or does not come to rest; not for the later ones, whose list ends.
+pub fn mechanisms(
+    case: &Case,
+    which: MechanismOptions,
+    options: &ReductionOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Vec<Reduction>, ReductionError> {
+    let mut found = vec![factor_of_safety(case, options, hear)?];
+    let mut case = case.clone();
+    while let Some(last) = found.last().filter(|last| goes_on(&found, last, which)) {
+        let failing = last.first_unstable().map_or(&[][..], |trial| &trial.failing);
+        let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
+        let cleared = without(&case.stages[..statics], &last.simulation, failing);
+        case.stages.insert(statics, cleared);
+        match factor_of_safety(&case, options, hear) {
+            Ok(reduction) => found.push(reduction),
+            Err(ReductionError::Interrupted) => break,
+            Err(error) => {
+                let message = format!("no further mechanism was found: without the blocks that fail, {error}");
+                found.last_mut().into_iter().for_each(|last| last.warnings.push(message.clone()));
+                break;
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether another search follows the last: it found blocks to clear away, and fewer ways to fail count than wanted.
+fn goes_on(found: &[Reduction], last: &Reduction, which: MechanismOptions) -> bool {
+    let counted = found.iter().filter(|reduction| which.counts(reduction)).count();
+    let fails = last.first_unstable().is_some_and(|trial| !trial.failing.is_empty());
+    fails
+        && match last.end {
+            End::Found => counted < which.count,
+            End::UnstableThroughout => !which.counts(last),
+            _ => false,
+        }
+}
+
+/// A static stage after those that there are, as long as the last, in which blocks are cleared away.
+fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) -> Stage {
+    let last = &stages[stages.len() - 1];
+    let inside = |block: &FailingBlock| simulation.model().covers.point_inside(block.block as usize);
+    Stage {
+        convergence: last.convergence,
+        excavate: failing.iter().map(|block| inside(block).into()).collect(),
+        ..Stage::plain(stages, "cleared", StageKind::Static, last.duration)
+    }
+}

@@ -1,0 +1,118 @@
+//! The slope at rest before its strength is reduced.
+
+use std::sync::atomic::AtomicBool;
+
+use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
+use enmm::model::Simulation;
+use enmm::model::case::{Case, Invalid, Stage, StageKind};
+use enmm::model::settle::REST_STEPS;
+use enmm::step::StepError;
+
+/// Name of the stage of the trials.
+const TRIAL: &str = "strength reduction";
+/// Damping ratio of the deformation of blocks in trials: none of it acts on rigid motion. With less, columns that are
+/// near their limit flutter: friction is no force of a potential, and a block that hops slips for less.
+const DAMPING: f64 = 1.0;
+/// The same where rock yields, so that a failure by deformation is not held up.
+const DAMPING_YIELDING: f64 = 0.01;
+
+/// A slope at rest in a dynamic stage of no end.
+pub struct Rest {
+    /// At the start of the trials' stage.
+    pub simulation: Simulation,
+    /// Factor on the strength under which it came to rest.
+    pub factor: f64,
+    /// Time (s) and steps that it took.
+    pub effort: (f64, u64),
+    /// What was left out.
+    pub warnings: Vec<String>,
+}
+
+/// How the static stages went.
+enum Settled {
+    AtRest(Box<Simulation>),
+    NotAtRest { stage: String, time: f64, unbalanced: f64, failure: Option<StepError> },
+}
+
+/// Runs the static stages that the case begins with; when they do not come to rest, with ever more strength.
+///
+/// # Errors
+/// No static stage, a case that cannot be built, or no rest.
+pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, ReductionError> {
+    let (case, mut warnings) = trial_case(case)?;
+    let mut factor = 1.0;
+    loop {
+        match settle_with(&case, factor, options.interrupt)? {
+            Settled::AtRest(simulation) => {
+                if factor > 1.0 {
+                    warnings.push(format!(
+                        "the slope does not come to rest with its own strength, only with {factor} times as much"
+                    ));
+                }
+                warnings.extend(simulation.built().warnings.iter().cloned());
+                let effort = (simulation.time(), simulation.state().step);
+                return Ok(Rest { simulation: *simulation, factor, effort, warnings });
+            }
+            Settled::NotAtRest { stage, time, unbalanced, failure } if 2.0 * factor * FACTOR_RANGE[0] > 1.0 => {
+                return Err(match failure {
+                    Some(error) => ReductionError::Failed(error),
+                    None => ReductionError::NotAtRest { stage, time, factor, unbalanced },
+                });
+            }
+            Settled::NotAtRest { .. } => factor *= 2.0,
+        }
+    }
+}
+
+/// The case without its dynamic stages, and with a stage for the trials at its end.
+fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
+    let mut case = case.clone();
+    let mut warnings = Vec::new();
+    let count = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
+    if count == 0 {
+        return Err(Invalid {
+            key: "stage[0].kind".into(),
+            message: "is \"dynamic\", but a slope must be at rest before its strength is reduced: begin with a stage \
+                      of kind \"static\""
+                .into(),
+        });
+    }
+    let left_out: Vec<&str> = case.stages[count..].iter().map(|stage| stage.name.as_str()).collect();
+    if !left_out.is_empty() {
+        warnings.push(format!("stages from the first dynamic one on are left out: {}", left_out.join(", ")));
+    }
+    case.stages.truncate(count);
+    if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
+        warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());
+        case.base_motions.clear();
+        case.quiets.iter_mut().for_each(|quiet| (quiet.wave, quiet.table, quiet.file) = (None, None, None));
+    }
+    case.quiets.iter_mut().for_each(|quiet| quiet.stage = None);
+    if case.loads.iter().any(|load| load.table.is_some()) {
+        warnings.push("loads with time tables go on changing during the trials".into());
+    }
+    let damping = Some(if case.yields() { DAMPING_YIELDING } else { DAMPING });
+    case.stages.push(Stage { damping, ..Stage::plain(&case.stages, TRIAL, StageKind::Dynamic, 1e9) });
+    Ok((case, warnings))
+}
+
+/// Runs all static stages with a factor on the strength.
+fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Result<Settled, ReductionError> {
+    let mut simulation = Simulation::new(case.clone())?;
+    let drive = simulation.drive();
+    (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
+    while simulation.stage().kind == StageKind::Static {
+        let outcome = simulation.run_stage_with(REST_STEPS, interrupt);
+        let (time, stage) = (simulation.time(), simulation.stage().name.clone());
+        match outcome {
+            Ok(None) => return Err(ReductionError::Interrupted),
+            Ok(Some(report)) if simulation.at_rest(&report) => {}
+            Ok(Some(report)) => {
+                return Ok(Settled::NotAtRest { stage, time, unbalanced: report.unbalanced, failure: None });
+            }
+            Err(error) => return Ok(Settled::NotAtRest { stage, time, unbalanced: f64::NAN, failure: Some(error) }),
+        }
+        simulation.next_stage()?;
+    }
+    Ok(Settled::AtRest(Box::new(simulation)))
+}

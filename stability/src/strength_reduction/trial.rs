@@ -1,0 +1,270 @@
+//! One trial: the strength falls from that of the slope at rest to 1/F of its own, and the motion is judged.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use nalgebra::Vector3;
+
+use super::judge::{self, Sample, Scales, Verdict};
+use super::{FailingBlock, Trial};
+use enmm::contact::ContactHistory;
+use enmm::geometry::{Vector, polygon};
+use enmm::model::Simulation;
+use enmm::state::Ledger;
+use enmm::step::{StepError, StepReport, block_motion};
+
+/// Samples while a wave of gravity's own time √(H/g) passes.
+const WINDOWS_PER_FALL: f64 = 10.0;
+/// Ways of a shear wave through the height of the model in a window, and in the fall of the strength.
+const WAVES: [f64; 2] = [2.0, 8.0];
+/// Times √(H/g) after which a trial ends undecided.
+const FALLS_MAX: f64 = 12.0;
+/// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
+const STILL: f64 = 0.01;
+/// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
+const ELASTIC: f64 = 1e-3;
+/// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
+const TAKES_PART: f64 = 0.1;
+/// Acceleration of gravity (m/s²) for the scales of models that have none.
+const STANDARD_GRAVITY: f64 = 9.81;
+
+/// Why a trial gave no verdict.
+pub enum Stop {
+    /// The caller asked for it.
+    Interrupted,
+    /// A numerical failure before anything had failed.
+    Failed(StepError),
+}
+
+/// What all trials begin with.
+pub struct Base {
+    /// The slope at rest.
+    pub simulation: Simulation,
+    scales: Scales,
+    /// Whether each block can move.
+    free: Vec<bool>,
+    /// Whether rock yields: what it flows is no slip of joints.
+    yields: bool,
+}
+
+impl Base {
+    /// Takes a slope at rest at the start of its dynamic stage.
+    pub fn new(simulation: Simulation, tolerance: f64) -> Self {
+        let scales = scales(&simulation, tolerance);
+        let free = free(&simulation);
+        let yields = simulation.case().yields();
+        Self { simulation, scales, free, yields }
+    }
+
+    /// Area (m²) of all blocks without a support; where each has one, of all that can move.
+    pub fn free_area(&self) -> f64 {
+        let model = self.simulation.model();
+        let mut held = vec![false; model.covers.block_count()];
+        model.supports.iter().for_each(|support| held[support.block as usize] = true);
+        let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
+            self.moving().filter(|&b| is_in(b)).map(|b| model.covers.block_area(b)).sum()
+        };
+        let free = area(&|b| !held[b]);
+        if free > 0.0 { free } else { area(&|_| true) }
+    }
+
+    /// Blocks that can move.
+    fn moving(&self) -> impl Iterator<Item = usize> {
+        self.free.iter().enumerate().filter(|(_, free)| **free).map(|(b, _)| b)
+    }
+
+    /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
+    fn positions(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
+        let position = |b: usize| {
+            let motion = simulation.motion_of(b);
+            let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
+            Vector3::new(motion.displacement.x, motion.displacement.y, turn)
+        };
+        self.moving().map(position).collect()
+    }
+
+    /// Makes one trial; returns the model at its end as well.
+    pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
+        let clock = Instant::now();
+        let mut simulation = self.simulation.clone();
+        let start = simulation.time();
+        let drive = simulation.drive();
+        drive.from.copy_from(&drive.to);
+        drive.to.strength_factor = 1.0 / factor;
+        (drive.since, drive.until) = (start, start + self.scales.ramp);
+        let mut samples = Vec::new();
+        let mut positions = self.positions(&simulation);
+        let steps = simulation.steps_in(self.scales.window);
+        let mut first = None;
+        let (mut judged, mut last) = (None, StepReport::default());
+        while judged.is_none() {
+            match window(&mut simulation, steps, interrupt)? {
+                Ok(report) => last = report,
+                Err(error) => {
+                    judged = Some(given_up(&samples, &self.scales).ok_or(Stop::Failed(error))?);
+                    break;
+                }
+            }
+            let first = *first.get_or_insert(last.ledger);
+            let before = std::mem::replace(&mut positions, self.positions(&simulation));
+            let way = positions.iter().zip(&before).map(|(now, before)| (now - before).norm()).fold(0.0, f64::max);
+            samples.push(self.sample(&simulation, &last, &first, way));
+            judged = judge::judge(&samples, &self.scales);
+        }
+        let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
+        let end = samples.last().copied().unwrap_or_default();
+        let trial = Trial {
+            factor,
+            verdict,
+            reason,
+            time: end.time,
+            displacement: end.displacement,
+            slip: end.slip,
+            speed: end.speed,
+            kinetic: end.kinetic,
+            released: end.released,
+            acceleration: judge::acceleration(&samples),
+            failing: self.failing(&simulation, verdict),
+            steps: simulation.state().step - self.simulation.state().step,
+            ledger_residual: last.ledger.residual_relative(),
+            wall: clock.elapsed().as_secs_f64(),
+        };
+        Ok((trial, simulation))
+    }
+
+    /// The motion at the end of a window in which the fastest block has gone a way (m).
+    fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, way: f64) -> Sample {
+        let far = self.moving().map(|b| self.moved(simulation, b)).fold(0.0, f64::max);
+        let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
+        Sample {
+            time: simulation.time() - self.simulation.time(),
+            displacement: far,
+            slip: if self.yields { far } else { self.slip(simulation) },
+            speed: way / self.scales.window,
+            kinetic: report.ledger.kinetic,
+            released: energy(first) - energy(&report.ledger),
+        }
+    }
+
+    /// Largest displacement (m) of a block's covers since the trial began.
+    fn moved(&self, simulation: &Simulation, block: usize) -> f64 {
+        let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
+        simulation.model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
+    }
+
+    /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks, which bears when they move.
+    fn slip(&self, simulation: &Simulation) -> f64 {
+        let key = |contact: &ContactHistory| (contact.node, contact.side);
+        let (model, state) = (simulation.model(), simulation.state());
+        let boundary = &model.boundary;
+        let bolts = model.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
+        let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
+        let mut before = self.simulation.state().contacts.iter().peekable();
+        let counts = |contact: &&ContactHistory| {
+            let points = [boundary.node_point[contact.node as usize], contact.edge];
+            let blocks = points.map(|point| boundary.block[point as usize]);
+            !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
+        };
+        let slipped = state.contacts.iter().filter(counts).map(|contact| {
+            while before.next_if(|b| key(b) < key(contact)).is_some() {}
+            let known = before.peek().filter(|b| key(b) == key(contact));
+            contact.slip - known.map_or(0.0, |b| b.slip)
+        });
+        slipped.fold(0.0, f64::max)
+    }
+
+    /// Motion of all free blocks since the trial began.
+    fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
+        let (model, state) = (simulation.model(), simulation.state());
+        let mass_matrix = &simulation.workspace().mass_matrix;
+        self.moving()
+            .map(|b| {
+                let (_, velocity, spin, _) = block_motion(model, state, mass_matrix, b);
+                let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
+                FailingBlock {
+                    block: b as u32,
+                    position: model.covers.block_centroid(b),
+                    area: model.covers.block_area(b),
+                    mass: model.mass_matrix.total[b],
+                    displacement: self.moved(simulation, b),
+                    rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
+                    speed: velocity.norm().hypot(spin * radius),
+                }
+            })
+            .collect()
+    }
+
+    /// Blocks that move with the failure, fastest first, or that were caught after they had gone too far.
+    fn failing(&self, simulation: &Simulation, verdict: Verdict) -> Vec<FailingBlock> {
+        let mut motions = self.motions(simulation);
+        let most = |of: fn(&FailingBlock) -> f64| motions.iter().map(of).fold(0.0, f64::max);
+        let (far, fast) = (most(|m| m.displacement), most(|m| m.speed));
+        match verdict {
+            Verdict::Stable => motions.clear(),
+            Verdict::Caught => motions.retain(|m| m.displacement >= TAKES_PART * far),
+            Verdict::Unstable => {
+                motions.retain(|m| m.displacement >= TAKES_PART * far && m.speed >= TAKES_PART * fast);
+            }
+        }
+        motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
+        motions
+    }
+}
+
+/// Which blocks can move.
+fn free(simulation: &Simulation) -> Vec<bool> {
+    let (fixed, removed) = (&simulation.workspace().mass_matrix.fixed, &simulation.state().removed);
+    fixed.iter().zip(removed).map(|(fixed, removed)| !fixed && !removed).collect()
+}
+
+/// Advances a window; the report of its last step, or the numerical failure.
+fn window(
+    simulation: &mut Simulation,
+    steps: u64,
+    interrupt: Option<&AtomicBool>,
+) -> Result<Result<StepReport, StepError>, Stop> {
+    let mut report = StepReport::default();
+    for step in 1..=steps {
+        if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Stop::Interrupted);
+        }
+        match simulation.advance(step == steps) {
+            Ok(made) => report = made,
+            Err(error) => return Ok(Err(error)),
+        }
+    }
+    Ok(Ok(report))
+}
+
+/// A slope that was running away when the numbers gave up has failed.
+fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reason)> {
+    let [.., before, last] = samples else { return None };
+    let running = last.displacement > scales.elastic && last.kinetic > before.kinetic;
+    running.then_some((Verdict::Unstable, judge::Reason::Runaway))
+}
+
+/// Times, speeds and lengths of a model's motion (Eqs. 61, 63).
+fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
+    let (model, state) = (simulation.model(), simulation.state());
+    let (low, high) = polygon::bounds(&model.covers.star_position);
+    let height = (high - low).y;
+    let wave = height / model.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
+    let gravity = state.drive.gravity(1.0).norm();
+    let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
+    let fall = (height / gravity).sqrt();
+    let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
+    let still_speed = STILL * tolerance * gravity * window;
+    let free = (0..model.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
+    let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
+    let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
+    let elastic = (ELASTIC * height).max(given_way);
+    Scales {
+        window,
+        ramp: (WAVES[1] * wave).max(2.0 * window),
+        time_max: FALLS_MAX * fall + WAVES[1] * wave,
+        still_speed,
+        still_kinetic: 0.5 * mass * still_speed * still_speed,
+        elastic,
+        limit: model.failure_displacement.max(elastic),
+    }
+}
