@@ -64,16 +64,15 @@ fn an_undamped_block_keeps_its_energy() {
     }
 }
 
-/// A block without friction in a bin, thrown so that it bounces on floor and walls, which are springs, for ever. The
-/// step is 0.28 of the critical one: the residual is that of leapfrog, at most ½(2·0.28)² = 0.16 of the energy of the
-/// waves that bounces wake, which is a hundredth of all.
+/// A block without friction in a bin, thrown so that it bounces on floor and walls, which are springs, for ever; at the
+/// default step, which is 0.87 of the critical one.
 fn bouncing() -> Simulation {
     simulation(&format!(
         "title = \"bin\"\n[domain]\n\
          outline = [[0, 0], [4, 0], [4, 3], [3.5, 3], [3.5, 0.5], [0.5, 0.5], [0.5, 3], [0, 3]]\n\
          islands = [[[1.5, 0.8], [2.5, 0.9], [2.4, 1.9], [1.4, 1.8]]]\n[mesh]\nsize = 1.1\norigin = [0.03, 0.02]\n\
          [joint_law.spring]\nfriction_deg = 0.0\nnormal_stiffness = 1e8\n[[fix]]\nblock = [0.2, 0.2]\n\
-         [[initial_velocity]]\nblock = [2, 1.3]\nvelocity = [0.7, 0.0]\n[solver]\ndt_max = 1e-4\n{}{}",
+         [[initial_velocity]]\nblock = [2, 1.3]\nvelocity = [0.7, 0.0]\n{}{}",
         rock(1e10, 2500.0),
         dynamic("bounce", 1e9, 0.0)
     ))
@@ -94,6 +93,26 @@ fn resident() -> Option<f64> {
     Some(4096.0 * pages.split(' ').nth(1)?.parse::<f64>().ok()?)
 }
 
+/// Residual (J/m) of a step and its largest energy. The ledger takes the kinetic energy as the mean of those before and
+/// after the kick; that is above what leapfrog keeps by ¼I·(v⁺ − v⁻) with the impulse I of stress and gravity (Eq. 28).
+/// Without this share, which swings with the waves in the rock, the sum of all energies and works is constant in a
+/// linear system, whatever contacts do.
+fn residual(simulation: &mut Simulation) -> [f64; 2] {
+    let before = simulation.state().clone();
+    let report = simulation.advance(true).unwrap_or_else(|error| panic!("{error}"));
+    let change: Vec<Vector> = simulation.state().velocity.iter().zip(&before.velocity).map(|(a, b)| a - b).collect();
+    // So small a way that the difference of both energies is their slope, and so large that it is above rounding.
+    let way = 1e-7 / change.iter().map(Vector::norm).fold(f64::MIN_POSITIVE, f64::max);
+    let stored = |way: f64| {
+        let displacement = before.displacement.iter().zip(&change).map(|(u, v)| u + v * way).collect();
+        let moved = State { displacement, ..before.clone() };
+        let energies = energies(simulation.model(), &moved, &simulation.workspace().mass_matrix);
+        energies.strain + energies.potential
+    };
+    let impulse = -(stored(way) - stored(-way)) / (2.0 * way) * 0.5 * (before.dt_last + report.dt);
+    [report.ledger.residual() - 0.25 * impulse, report.ledger.largest()]
+}
+
 /// What many steps have left.
 #[derive(Debug, Default)]
 struct Endured {
@@ -108,16 +127,17 @@ struct Endured {
 /// Takes `steps`, and the second half of them once more from a checkpoint.
 fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
     let advance = |simulation: &mut Simulation, report: bool| {
-        simulation.advance(report).unwrap_or_else(|error| panic!("{error}")).ledger
+        simulation.advance(report).unwrap_or_else(|error| panic!("{error}"));
     };
     let mut simulation = make();
     let (mut endured, mut largest, mut early, mut half) = (Endured::default(), 0.0f64, None, Vec::new());
     for k in 0..steps {
-        let report = k % 100 == 99;
-        let ledger = advance(&mut simulation, report);
-        if report {
-            largest = largest.max(ledger.largest());
-            endured.residual[1] = endured.residual[1].max(ledger.residual().abs() / largest);
+        if k % 100 == 99 {
+            let [residual, energy] = residual(&mut simulation);
+            largest = largest.max(energy);
+            endured.residual[1] = endured.residual[1].max(residual.abs() / largest);
+        } else {
+            advance(&mut simulation, false);
         }
         if k == steps / 10 {
             endured.residual[0] = endured.residual[1];
@@ -143,7 +163,8 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
     endured
 }
 
-/// A million steps each with `ENMM_LONG=1`, a hundredth of them otherwise.
+/// A million steps each with `ENMM_LONG=1`, a hundredth of them otherwise. What is left of the residual, 2.2e-4, comes
+/// from the stress of turning rock, which is not linear, and falls with the step.
 #[test]
 fn long_a_million_steps_lose_neither_energy_nor_memory_nor_bits() {
     let steps = if std::env::var_os("ENMM_LONG").is_some() { 1_000_000 } else { 10_000 };
@@ -151,7 +172,7 @@ fn long_a_million_steps_lose_neither_energy_nor_memory_nor_bits() {
         let clock = std::time::Instant::now();
         let endured = endure(make, steps);
         println!("{name}, {steps} steps in {:.1} s: {endured:?}", clock.elapsed().as_secs_f64());
-        assert!(endured.residual[1] < 3e-3, "{name}: {endured:?}");
+        assert!(endured.residual[1] < 5e-4, "{name}: {endured:?}");
         assert!(endured.grown < 1e6, "{name}: {endured:?}");
         assert!(endured.same_bits, "{name}");
     }
