@@ -3,7 +3,7 @@
 
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
-use crate::model::case::{Case, Invalid};
+use crate::model::case::{Case, Integrator, Invalid, Solver};
 use crate::state::Model;
 
 use super::locator::Locator;
@@ -65,12 +65,45 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
 /// What is unusual about values of the case.
 pub(super) fn of_values(case: &Case, model: &Model, positions: &Locator) -> Vec<String> {
     let mut warnings = rocks(case);
+    warnings.extend(without_effect(&case.solver));
     warnings.extend(extent(case, model));
     warnings.extend(gravity(case));
     warnings.extend(unheld(case));
     warnings.extend(long_edges(case, positions));
     warnings.extend(tension(model));
     warnings
+}
+
+/// Keys of the solver that the case sets and its integrator does not use.
+fn without_effect(solver: &Solver) -> Vec<String> {
+    let default = Solver::default();
+    let (name, others): (_, &[(&str, bool)]) = match solver.integrator {
+        Integrator::Implicit => (
+            "implicit",
+            &[
+                ("contact_theta", solver.contact_theta != default.contact_theta),
+                ("contact_tolerance", solver.contact_tolerance != default.contact_tolerance),
+                ("sweeps_max", solver.sweeps_max != default.sweeps_max),
+                ("mass_scaling", solver.mass_scaling != default.mass_scaling),
+                ("dt_safety", solver.dt_safety != default.dt_safety && solver.implicit_step.is_some()),
+            ],
+        ),
+        Integrator::Explicit => (
+            "explicit",
+            &[
+                ("newmark", solver.newmark != default.newmark),
+                ("implicit_step", solver.implicit_step.is_some()),
+                ("iterations_max", solver.iterations_max != default.iterations_max),
+                ("displacement_ratio", solver.displacement_ratio != default.displacement_ratio),
+            ],
+        ),
+    };
+    let tell = |(key, _): &(&str, bool)| {
+        format!(
+            "solver.{key}: has no effect with solver.integrator = \"{name}\"; remove it, or use the other integrator"
+        )
+    };
+    others.iter().filter(|(_, set)| *set).map(tell).collect()
 }
 
 fn rocks(case: &Case) -> Vec<String> {
