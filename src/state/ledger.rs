@@ -79,26 +79,15 @@ impl Ledger {
         self.residual() / self.largest().max(f64::MIN_POSITIVE)
     }
 
-    /// The largest term, against which the residual is judged.
+    /// The largest energy or work, with which the residual is compared: of all of [`ENERGIES`] but those in `COMPOSED`.
     pub fn largest(&self) -> f64 {
-        [
-            self.kinetic,
-            self.strain,
-            self.potential,
-            self.stored,
-            self.friction,
-            self.damping,
-            self.yielding,
-            self.external_work,
-            self.contact_work,
-            self.bolt_work,
-            self.radiation,
-        ]
-        .into_iter()
-        .map(f64::abs)
-        .fold(0.0, f64::max)
+        let terms = ENERGIES.iter().filter(|energy| !COMPOSED.contains(&energy.name));
+        terms.map(|energy| (energy.get)(self).abs()).fold(0.0, f64::max)
     }
 }
+
+/// Energies that the largest term leaves out: sums of others, and those of the start, which no force has moved.
+const COMPOSED: [&str; 5] = ["contact_dissipation", "residual", "baseline", "bolt_installed", "bolt_dissipation"];
 
 /// Energies and works as outputs show them: `history.csv` in this order, `summary.json`, the FMUs, and by their names
 /// the structures of C and Python. New ones go to the end.
@@ -194,6 +183,21 @@ mod tests {
         for (field, value) in fields.as_object().expect("fields") {
             assert_eq!(Some(get(field)), value.as_f64(), "{field}");
         }
+    }
+
+    /// A residual is small or large beside any energy that forces have moved: the work of supports was left out.
+    #[test]
+    fn every_energy_that_moves_counts_as_the_largest() {
+        let fields = serde_json::to_value(Ledger::default()).expect("a ledger");
+        let fields = fields.as_object().expect("fields");
+        let largest = |field: &str| {
+            let mut one = fields.clone();
+            one[field] = serde_json::json!(-3.0);
+            serde_json::from_value::<Ledger>(one.into()).expect("a ledger").largest()
+        };
+        let still: Vec<&str> = fields.keys().map(String::as_str).filter(|field| largest(field) != 3.0).collect();
+        assert_eq!(still, ["baseline", "bolt_installed"]);
+        assert!(fields.contains_key("support_work") && fields.len() == 15);
     }
 
     #[test]
