@@ -46,8 +46,9 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_traces(&traces)?;
     let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
-    demand.check_dense(&traces, tolerance)?;
-    demand.check_crossings(&traces, tolerance, |position| loops.hold(position))?;
+    let is_rock = |position| loops.hold(position);
+    demand.check_dense(&traces, tolerance, is_rock)?;
+    demand.check_crossings(&traces, tolerance, is_rock)?;
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));

@@ -27,10 +27,18 @@ const BYTES_PER_PAIR: f64 = 150.0;
 const CELLS_MAX: [f64; 2] = [1e9, u32::MAX as f64 / 3.0];
 /// Distance over the snap tolerance below which traces count as one: more than that at which vertices are merged.
 const MERGED: f64 = 4.0;
+/// Sine of the angle below which traces that cross become one on some way round the crossing, so that it may vanish
+/// among others.
+const SLANT: f64 = 0.1;
 /// Most pieces of traces whose crossings are counted one by one.
 const SAMPLE: usize = 2000;
 /// Crossings for each of them from which dead ends, which are no edges in the end, are few.
 const KNIT: usize = 4;
+/// Length over the mesh size at the ends of a trace in which no pieces are expected: dead ends within a triangle.
+const DEAD: f64 = 0.5;
+/// How many times more than the limit an estimate must be to refuse a case: twice as many sides as there may be. What
+/// remains is counted when it has been cut.
+const FLOOD: f64 = 4.0;
 /// Limit over the estimate at a spacing that is told as a remedy, so that it will do.
 const ROOM: f64 = 2.0;
 /// Step of the search for such a spacing.
@@ -65,6 +73,15 @@ impl Crossings {
     fn pieces(&self) -> f64 {
         self.mesh + 2.0 * self.mutual
     }
+}
+
+/// Sides of blocks near each other.
+#[derive(Debug, Clone, Copy, Default)]
+struct Near {
+    /// Pairs of a side and one near it.
+    pairs: f64,
+    /// Most sides near one position, and the position (m).
+    densest: (f64, Point),
 }
 
 /// A joint set before its traces are made.
@@ -219,11 +236,27 @@ impl Demand<'_> {
         FRAC_2_PI * 12f64.sqrt() / self.size()
     }
 
+    /// The part of a piece of a trace in the box of the rock.
+    fn within(&self, a: Point, b: Point) -> Option<[Point; 2]> {
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for axis in 0..2 {
+            let along = b[axis] - a[axis];
+            let [enters, leaves] = [self.low[axis] - a[axis], self.high[axis] - a[axis]].map(|to| to / along);
+            if along != 0.0 {
+                (from, to) = (from.max(enters.min(leaves)), to.min(enters.max(leaves)));
+            } else if a[axis] < self.low[axis] || a[axis] > self.high[axis] {
+                return None;
+            }
+        }
+        (from < to && a != b).then(|| [from, to].map(|share| a + (b - a) * share))
+    }
+
     /// Refuses traces that cross too many mesh edges.
     pub fn check_traces(&self, traces: &[(Vec<Point>, u32)]) -> Result<(), Invalid> {
-        let within = |p: &Point| p.sup(&self.low).inf(&self.high);
-        let length =
-            |points: &Vec<Point>| -> f64 { points.windows(2).map(|p| (within(&p[1]) - within(&p[0])).norm()).sum() };
+        let length = |points: &Vec<Point>| -> f64 {
+            let pieces = points.windows(2).filter_map(|pair| self.within(pair[0], pair[1]));
+            pieces.map(|[a, b]| (b - a).norm()).sum()
+        };
         let length: f64 = traces.iter().map(|(points, _)| length(points)).sum();
         let crossings = Crossings { traces: traces.len() as f64, mesh: length * self.mesh_crossings(), mutual: 0.0 };
         let bytes = self.bytes(&Crossings { mesh: 0.0, ..crossings }, 1.0) + crossings.mesh * BYTES_PER_CROSSING;
@@ -266,27 +299,49 @@ impl Demand<'_> {
         Invalid { key: "domain".into(), message: error.to_string() }
     }
 
-    /// Refuses traces that lie too close to each other, before they are cut: the pieces into which the mesh alone cuts
-    /// them are counted, and traces that become one at this snap tolerance (m) count once.
-    pub fn check_dense(&self, traces: &[(Vec<Point>, u32)], tolerance: f64) -> Result<(), Invalid> {
-        let (step, merged) = (CUTOFF * self.size(), MERGED * tolerance);
-        let mut samples = Vec::new();
-        for pair in traces.iter().flat_map(|(points, _)| points.windows(2)) {
-            let [a, b] = [0, 1].map(|k| pair[k].sup(&self.low).inf(&self.high));
-            let count = ((b - a).norm() / step) as usize;
-            samples.extend((0..count).map(|k| a + (b - a) * ((k as f64 + 0.5) / count as f64)));
-        }
-        self.check_near(&distinct(&samples, merged), step * self.mesh_crossings())
+    /// Refuses traces that lie too close to each other in the rock, before they are cut.
+    pub fn check_dense(
+        &self,
+        traces: &[(Vec<Point>, u32)],
+        tolerance: f64,
+        is_rock: impl Fn(Point) -> bool,
+    ) -> Result<(), Invalid> {
+        self.check_flood(self.dense(traces, tolerance, is_rock))
     }
 
-    /// Refuses traces that cross each other too often in the rock, before they are cut. Of many a sample is counted; a
-    /// crossing makes two edges, of which the half is taken, since dead ends are none in the end.
+    /// The pieces into which the mesh alone cuts traces; traces that become one at this snap tolerance (m) count once.
+    fn dense(&self, traces: &[(Vec<Point>, u32)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
+        let (step, merged) = (CUTOFF * self.size(), MERGED * tolerance);
+        let mut samples = Vec::new();
+        for (points, _) in traces {
+            let ends = [points.first(), points.last()].into_iter().flatten();
+            let is_dead = |p: &Point| ends.clone().any(|end| (p - end).norm() < DEAD * self.size());
+            for [a, b] in points.windows(2).filter_map(|pair| self.within(pair[0], pair[1])) {
+                samples.extend(regularly(a, b, step).filter(|p| !is_dead(p)));
+            }
+        }
+        let (samples, edges) = (distinct(&samples, merged), step * self.mesh_crossings());
+        let near = self.near(&samples, edges);
+        if self.fits(&near) {
+            return near;
+        }
+        // Only traces that would be refused are worth the question where each of their positions lies.
+        self.near(&samples.into_iter().filter(|&position| is_rock(position)).collect::<Vec<_>>(), edges)
+    }
+
+    /// Refuses traces that cross each other too often in the rock, before they are cut.
     pub fn check_crossings(
         &self,
         traces: &[(Vec<Point>, u32)],
         tolerance: f64,
         is_rock: impl Fn(Point) -> bool,
     ) -> Result<(), Invalid> {
+        self.check_flood(self.crossed(traces, tolerance, is_rock))
+    }
+
+    /// Crossings of traces in the rock, of many traces those of a sample. A crossing makes two edges, of which the half
+    /// is taken, since dead ends are none in the end.
+    fn crossed(&self, traces: &[(Vec<Point>, u32)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
         let merged = MERGED * tolerance;
         let pieces: Vec<&[Point]> = traces.iter().flat_map(|(points, _)| points.windows(2)).collect();
         let count = pieces.len().min(SAMPLE);
@@ -297,37 +352,64 @@ impl Demand<'_> {
             positions.extend(crossed.filter(|&position| is_rock(position)));
         }
         let positions = distinct(&positions, merged);
-        if positions.len() < KNIT * count { Ok(()) } else { self.check_near(&positions, 1.0) }
+        if positions.len() < KNIT * count { Near::default() } else { self.near(&positions, 1.0) }
     }
 
     /// Refuses edges of an arrangement that lie too close to each other.
     pub fn check_edges(&self, arrangement: &Arrangement) -> Result<(), Invalid> {
-        let point = |vertex: u32| arrangement.points[vertex as usize];
-        let edges = arrangement.edges.iter().filter(|edge| edge.label.trace != NONE || edge.label.outline != 0);
-        let positions: Vec<Point> = edges.map(|edge| (point(edge.a) + point(edge.b)) * 0.5).collect();
-        self.check_near(&positions, 1.0)
+        self.check_near(self.cut(arrangement))
     }
 
-    /// Refuses blocks that are so small beside the mesh size that too many of their sides are near each other; at each
-    /// position there are some edges, with rock and nodes on both sides.
-    fn check_near(&self, positions: &[Point], edges: f64) -> Result<(), Invalid> {
+    /// The edges of blocks, counted one by one.
+    fn cut(&self, arrangement: &Arrangement) -> Near {
+        let point = |vertex: u32| arrangement.points[vertex as usize];
+        let edges = (0u32..)
+            .zip(&arrangement.edges)
+            .filter(|(k, edge)| edge.label.outline != 0 || edge.label.trace != NONE && arrangement.in_rock(*k));
+        let positions: Vec<Point> = edges.map(|(_, edge)| (point(edge.a) + point(edge.b)) * 0.5).collect();
+        self.near(&positions, 1.0)
+    }
+
+    /// How many sides of blocks lie near each other, when at each position there are some edges, with rock and nodes on
+    /// both sides.
+    fn near(&self, positions: &[Point], edges: f64) -> Near {
         let (cutoff, sides) = (CUTOFF * self.size(), 2.0 * edges);
         let grid = CellGrid::new(self.low, self.high, cutoff);
         let mut counts = vec![0u32; grid.len()];
         positions.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);
-        let (mut pairs, mut densest) = (0.0, (0.0, self.low));
+        let mut near = Near::default();
         for &p in positions {
             let mut around = 0.0;
             grid.visit_square(p, cutoff, |cell| around += sides * f64::from(counts[cell]));
-            let near = around * PI * cutoff * cutoff / (9.0 * grid.area());
-            pairs += sides * near;
-            densest = if near > densest.0 { (near, p) } else { densest };
+            let here = around * PI * cutoff * cutoff / (9.0 * grid.area());
+            near.pairs += sides * here;
+            near.densest = if here > near.densest.0 { (here, p) } else { near.densest };
         }
-        let bytes = self.lattice_bytes() + pairs * BYTES_PER_PAIR;
-        if bytes <= self.limit() {
+        near
+    }
+
+    /// Bytes of a model with these pairs.
+    fn bytes_of(&self, near: &Near) -> f64 {
+        self.lattice_bytes() + near.pairs * BYTES_PER_PAIR
+    }
+
+    fn fits(&self, near: &Near) -> bool {
+        self.bytes_of(near) <= self.limit()
+    }
+
+    /// As [`Demand::check_near`], by an estimate.
+    fn check_flood(&self, estimate: Near) -> Result<(), Invalid> {
+        let sure = Near { pairs: estimate.pairs / FLOOD, ..estimate };
+        if self.fits(&sure) { Ok(()) } else { self.check_near(estimate) }
+    }
+
+    /// Refuses blocks that are so small beside the mesh size that too many of their sides are near each other.
+    fn check_near(&self, near: Near) -> Result<(), Invalid> {
+        if self.fits(&near) {
             return Ok(());
         }
-        let (near, position) = densest;
+        let (pairs, bytes) = (near.pairs, self.bytes_of(&near));
+        let (near, position) = near.densest;
         let message = format!(
             "{} m is so large beside the blocks that {near:.0} of their sides lie within a quarter of it round \
              ({:.6}, {:.6}) m: {pairs:.1e} pairs, a model of about {:.1} GB, above the limit of {:.3} GB: use a mesh \
@@ -349,6 +431,21 @@ impl SetDemand {
     }
 }
 
+/// Positions on a piece at multiples of a step (m) along the axis to which it is nearer, so that pieces that coincide
+/// have the same ones.
+fn regularly(a: Point, b: Point, step: f64) -> impl Iterator<Item = Point> {
+    let along = b - a;
+    let axis = along.iamax();
+    let [first, last] = [(a[axis].min(b[axis]) / step).ceil(), (a[axis].max(b[axis]) / step).floor()];
+    let count = (last - first + 1.0).max(0.0) as usize;
+    (0..count).map(move |k| {
+        let position = (first + k as f64) * step;
+        let mut p = a + along * ((position - a[axis]) / along[axis]);
+        p[axis] = position;
+        p
+    })
+}
+
 /// Positions that stay apart when those within a distance (m) become one.
 fn distinct(positions: &[Point], distance: f64) -> Vec<Point> {
     let cell = |position: &Point| [position.x / distance, position.y / distance].map(|number| number.round() as i64);
@@ -358,8 +455,13 @@ fn distinct(positions: &[Point], distance: f64) -> Vec<Point> {
     cells.iter().map(|&[x, y]| Point::new(x as f64, y as f64) * distance).collect()
 }
 
-/// Where two pieces cross each other, when the ends of each lie at least a distance (m) off the line of the other.
+/// Where two pieces cross each other at an angle, when the ends of each lie at least a distance (m) off the line of the
+/// other.
 fn crossing(first: &[Point], second: &[Point], distance: f64) -> Option<Point> {
+    let [own, other] = [first, second].map(|piece| piece[1] - piece[0]);
+    if own.perp(&other).abs() < SLANT * own.norm() * other.norm() {
+        return None;
+    }
     let across = |line: &[Point], ends: &[Point]| {
         let along = line[1] - line[0];
         let least = distance * along.norm();
@@ -375,3 +477,6 @@ fn extent(low: Point, high: Point) -> f64 {
     let span = (high - low).sup(&Vector::zeros());
     span.x * span.y
 }
+
+#[cfg(test)]
+mod tests;
