@@ -20,6 +20,10 @@ pub const CASE: &str = include_str!("../../../capi/tests/cases/small.toml");
 const INCLINE: &str = include_str!("../../../../examples/cases/block_on_incline.toml");
 /// Calls of an input.
 const CALLS: u64 = 80;
+/// Calls of an input that is a burst.
+const BURST: u64 = 20_000;
+/// Calls of a burst for one look at the bytes of the state before and after.
+const LOOK: usize = 200;
 const MODELS_MAX: usize = 3;
 const OK: enmm_status = enmm_status::ENMM_OK;
 
@@ -36,9 +40,20 @@ pub fn make() -> Result<Act, String> {
     }))
 }
 
+/// Bursts: many cheap calls of the same models, with short steps, where a campaign shall have many calls.
+pub fn bursts() -> Result<Act, String> {
+    Ok(Box::new(|random, trace| {
+        let mut host = Host { is_burst: true, ..Host::default() };
+        let done = (0..BURST).try_for_each(|_| host.act(random, trace));
+        host.close();
+        done.map(|()| Outcome::Done(host.calls))
+    }))
+}
+
 /// A host with models and states, live and dead.
 #[derive(Default)]
 pub struct Host {
+    is_burst: bool,
     models: Vec<Model>,
     states: Vec<*mut enmm_state>,
     dead: Vec<usize>,
@@ -50,9 +65,24 @@ impl Host {
     /// One call, and a look at what it left.
     fn act(&mut self, random: &mut Random, trace: &mut Trace) -> Result<(), String> {
         let model = if self.models.is_empty() { null_mut() } else { self.model(random) };
-        let before = self.bytes(model)?;
+        let looks = !self.is_burst || random.below(LOOK) == 0;
+        let before = if looks { self.bytes(model)? } else { None };
         trace.say(|| format!("model {:x}", model.addr()));
-        let kind = if self.models.is_empty() { 0 } else { random.below(20) };
+        let kind = match self.is_burst {
+            _ if self.models.is_empty() => 0,
+            false => random.below(20),
+            true => match random.below(10_000) {
+                0 => 0,
+                1 => 1,
+                2..=21 => 2,
+                22..=25 => 16,
+                26..=125 => 17,
+                126..=2999 => 6,
+                3000..=4999 => 10,
+                5000..=5099 => 13,
+                _ => 14,
+            },
+        };
         let (name, status) = match kind {
             0 => self.create(random, trace),
             1 => Ok(self.end(model, random, trace)),
@@ -170,7 +200,7 @@ impl Host {
             0 => random.pick(&[0.0, -dt, f64::NAN, f64::INFINITY, 1e300, 5e-324, 1e-3 * dt, 1e-9 * dt]),
             1 => random.between(0.0, 2.0) * dt,
             2 => dt,
-            _ => random.between(0.0, 40.0) * dt,
+            _ => random.between(0.0, if self.is_burst { 2.0 } else { 40.0 }) * dt,
         };
         let t = if random.chance(8) { random.wild() } else { time };
         trace.say(|| format!("do_step({t:?}, {h:?})"));

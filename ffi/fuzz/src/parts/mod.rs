@@ -33,10 +33,11 @@ pub struct Part {
 }
 
 /// All parts.
-pub const PARTS: [Part; 5] = [
+pub const PARTS: [Part; 6] = [
     Part { name: "cases", turn: 800, make: cases::make },
     Part { name: "networks", turn: 700, make: networks::make },
     Part { name: "calls", turn: 120, make: calls::make },
+    Part { name: "bursts", turn: 10, make: calls::bursts },
     Part { name: "states", turn: 20000, make: states::make },
     Part { name: "fmus", turn: 1500, make: fmus::make },
 ];
