@@ -1,6 +1,6 @@
-//! Memory under the eyes of other tools: valgrind over the hosts in C, the address sanitizer of the nightly compiler
-//! over the share of fuzzing, its thread sanitizer over the claim of equal bits. What is not there is told with what
-//! would bring it, and is no failure.
+//! Memory under the eyes of other tools: valgrind and the sanitizers of the C compiler over the hosts in C, the address
+//! sanitizer of the nightly compiler over the share of fuzzing, its thread sanitizer over the claim of equal bits. What
+//! is not there is told with what would bring it, and is no failure.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -24,6 +24,7 @@ const VALGRIND: [&str; 5] = [
     "--show-leak-kinds=definite",
     "--errors-for-leak-kinds=definite",
 ];
+const HOST_FLAGS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
 /// A flood is a find, as without the sanitizer, which takes too much address space for a limit of that.
 const ASAN_OPTIONS: &str = "detect_leaks=1:hard_rss_limit_mb=4096:allocator_may_return_null=1";
 
@@ -36,8 +37,9 @@ enum Verdict {
 /// Name of a tool with what it looks at, and how it is run.
 type Tool = (&'static str, fn(&Repository) -> Result<Verdict, String>);
 
-const TOOLS: [Tool; 3] = [
+const TOOLS: [Tool; 4] = [
     ("valgrind, hosts in C", valgrind),
+    ("sanitizers of the C compiler, hosts in C", hosts),
     ("address sanitizer, share of fuzzing", addresses),
     ("thread sanitizer, equal bits at any number of threads", threads),
 ];
@@ -74,10 +76,9 @@ fn valgrind(repository: &Repository) -> Result<Verdict, String> {
     if !is_there("valgrind", "--version") {
         return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
     }
-    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
-    let libraries = repository.target.join("release");
+    let libraries = libraries(repository)?;
     for (source, arguments) in HOSTS {
-        let program = compile(repository, source, &libraries)?;
+        let program = compile(repository, source, &libraries, &[])?;
         let mut watched = repository.command("valgrind");
         watched.args(VALGRIND).arg(program).args(arguments).stdout(Stdio::null());
         repository::run(&mut watched)?;
@@ -85,13 +86,35 @@ fn valgrind(repository: &Repository) -> Result<Verdict, String> {
     Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
 }
 
+/// The hosts with address and undefined-behaviour sanitizers, which see what the library reads and writes by functions
+/// of C, and every leak of it.
+fn hosts(repository: &Repository) -> Result<Verdict, String> {
+    let libraries = libraries(repository)?;
+    for (k, (source, arguments)) in HOSTS.into_iter().enumerate() {
+        let program = match compile(repository, source, &libraries, &HOST_FLAGS) {
+            Err(_) if k == 0 => return Ok(Verdict::Missing("the C compiler makes no programs with sanitizers")),
+            compiled => compiled?,
+        };
+        let mut watched = repository.command(program);
+        watched.env("ASAN_OPTIONS", "detect_leaks=1").args(arguments).stdout(Stdio::null());
+        repository::run(&mut watched)?;
+    }
+    Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
+}
+
+/// Builds the libraries; returns their folder.
+fn libraries(repository: &Repository) -> Result<PathBuf, String> {
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    Ok(repository.target.join("release"))
+}
+
 /// Compiles a host in C against the library as it is built.
-fn compile(repository: &Repository, source: &str, libraries: &Path) -> Result<PathBuf, String> {
+fn compile(repository: &Repository, source: &str, libraries: &Path, flags: &[&str]) -> Result<PathBuf, String> {
     let folder = repository.target.join("sanitize-hosts");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let program = folder.join(Path::new(source).file_stem().unwrap_or_default());
     let mut cc = repository.command(std::env::var_os("CC").unwrap_or_else(|| "cc".into()));
-    cc.args(["-std=c99", "-g", "-O1", "-Iinclude", source, "-o"]).arg(&program).arg("-L").arg(libraries);
+    cc.args(flags).args(["-std=c99", "-g", "-O1", "-Iinclude", source, "-o"]).arg(&program).arg("-L").arg(libraries);
     cc.args(["-lenmm", "-lm", "-lpthread"]).arg(format!("-Wl,-rpath,{}", libraries.display()));
     repository::run(&mut cc)?;
     Ok(program)
