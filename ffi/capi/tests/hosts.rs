@@ -70,6 +70,17 @@ fn no_call_that_fails_changes_a_byte_of_the_state() {
 }
 
 #[test]
+fn energy_from_nowhere_is_a_warning_in_the_log() {
+    // Rock of 50 Pa instead of 1 GPa: the initial equilibrium has two steps of 3.2 s.
+    let small = std::fs::read_to_string(root().join(SMALL)).expect("the case");
+    let soft = small.replace("young = 1e9", "young = 50").replace("duration = 0.2", "duration = 5.0");
+    let soft = soft.replace("ramp = 0.05", "").replace("duration = 1.0", "duration = 50.0");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("soft.toml");
+    std::fs::write(&file, soft.replace("communication_step = 0.01", "")).expect("a file that can be written");
+    succeed(Command::new(host("ffi/capi/tests/c/doubt.c")).arg(file).arg(SMALL));
+}
+
+#[test]
 fn the_coupled_reservoir_holds_its_checks() {
     let host = host("ffi/c/coupled_reservoir.c");
     let table = succeed(Command::new(&host).arg(COUPLED));
