@@ -280,3 +280,20 @@ fn derivatives_logging_and_whole_numbers() {
         assert_eq!(std::ffi::CStr::from_ptr(fmi2GetTypesPlatform()), c"default");
     }
 }
+
+#[test]
+fn energy_from_nowhere_is_a_warning_in_the_log() {
+    let doubts = |fmu: &Fmu| {
+        let instance = fmu.instantiate(&fmu.table.token, &fmu.uri(), 1, true).unwrap();
+        instance.start();
+        let is_doubt = |(_, _, text): &common::Line| text.contains(": the energy residual is ");
+        instance
+            .lines()
+            .into_iter()
+            .filter(is_doubt)
+            .map(|(status, category, _)| (status, category))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(doubts(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
+    assert_eq!(doubts(&Fmu::boxed()), []);
+}

@@ -392,3 +392,20 @@ fn a_discarded_step_changes_nothing() {
     plain.run_from(0.01, 0.01, 0.03);
     assert_eq!(instance.get("block_y"), plain.get("block_y"));
 }
+
+#[test]
+fn energy_from_nowhere_is_a_warning_in_the_log() {
+    let doubts = |fmu: &Fmu| {
+        let instance = fmu.instantiate(&Options { logging: true, ..Options::default() }).unwrap();
+        instance.start();
+        let is_doubt = |(_, _, text): &common::Line| text.contains(": the energy residual is ");
+        instance
+            .lines()
+            .into_iter()
+            .filter(is_doubt)
+            .map(|(status, category, _)| (status, category))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(doubts(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
+    assert_eq!(doubts(&Fmu::boxed()), []);
+}
