@@ -326,16 +326,12 @@ impl Svg {
 
 /// Appends text with the characters that XML reserves or forbids replaced.
 fn push_escaped(out: &mut String, text: &str) {
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            '\0'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            _ => out.push(letter),
-        }
-    }
+    let allowed = |letter| match letter {
+        '\t' | '\n' | '\r' => ' ',
+        '\0'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => char::REPLACEMENT_CHARACTER,
+        _ => letter,
+    };
+    out.push_str(&quick_xml::escape::partial_escape(text.chars().map(allowed).collect::<String>()));
 }
 
 /// Advance of the embedded font for the characters from space to tilde, in thousandths of the size.

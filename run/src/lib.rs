@@ -1,7 +1,6 @@
 //! Runs of cases and what they leave: histories, tables of blocks, frames, pictures, summaries, factors of safety.
 #![forbid(unsafe_code)]
 
-mod base64;
 pub mod blocks;
 mod bound;
 pub mod check;

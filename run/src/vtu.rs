@@ -4,16 +4,19 @@
 //! VTK, ParaView and meshio all read. Displacement jumps across joints, so elements share no points.
 
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::base64::Base64;
+use base64::prelude::BASE64_STANDARD;
+use base64::write::EncoderWriter;
 use enmm::contact::ContactState;
 use enmm::geometry::Vector;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::JointPoint;
 use enmm_io::files::{at_path, write_atomic, write_atomic_by};
 
+/// Bytes that become text together.
+const PIECE: usize = 1 << 13;
 /// Cell types of VTK.
 const VERTEX: u8 = 1;
 const POLY_VERTEX: u8 = 2;
@@ -250,7 +253,7 @@ fn section(file: &mut dyn Write, name: &str, arrays: &[&Array]) -> io::Result<()
 }
 
 /// Hands the values of an array over, as little-endian bytes.
-type Values<'a> = Box<dyn Fn(&mut Base64) -> io::Result<()> + 'a>;
+type Values<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
 
 /// A named array of VTK; its values are read when they are written, for a copy of all of them would be larger than the
 /// model.
@@ -272,7 +275,7 @@ impl<'a> Array<'a> {
         values: impl ExactSizeIterator<Item = [u8; N]> + Clone + 'a,
     ) -> Self {
         let count = values.len();
-        let each = move |text: &mut Base64| values.clone().try_for_each(|value| text.push(&value));
+        let each = move |text: &mut dyn Write| values.clone().try_for_each(|value| text.write_all(&value));
         Self { name, kind, components: 1, count, size: N, values: Box::new(each) }
     }
 
@@ -310,10 +313,10 @@ impl<'a> Array<'a> {
             write!(file, " NumberOfComponents=\"{}\"", self.components)?;
         }
         write!(file, " NumberOfTuples=\"{}\" format=\"binary\">", self.count)?;
-        let mut text = Base64::new(file);
-        text.push(&((self.count * self.size) as u64).to_le_bytes())?;
+        let mut text = BufWriter::with_capacity(PIECE, EncoderWriter::new(&mut *file, &BASE64_STANDARD));
+        text.write_all(&((self.count * self.size) as u64).to_le_bytes())?;
         (self.values)(&mut text)?;
-        text.finish()?;
+        text.into_inner()?.finish()?;
         writeln!(file, "</DataArray>")
     }
 }
