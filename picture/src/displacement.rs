@@ -1,7 +1,5 @@
 //! The deformed slope coloured by the size of its displacement.
 
-use std::collections::HashMap;
-
 use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, is_drawable, number_text, round_above};
 use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
@@ -10,7 +8,7 @@ use super::slope::{
     outlines, time_text,
 };
 use super::svg::{Anchor, Rect, Style, Svg, TextStyle, text_width};
-use enmm::geometry::{Point, Vector};
+use enmm::geometry::Vector;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::Polygons;
 
@@ -99,37 +97,12 @@ fn exaggerated(snapshot: &Snapshot, factor: f64) -> Snapshot {
     for (point, displacement) in shown.elements.points.iter_mut().zip(&snapshot.displacement) {
         *point += displacement * (factor - 1.0);
     }
-    let displacement_at = corner_displacements(snapshot);
     for boundary in &mut shown.boundaries {
-        for point in &mut boundary.loops.points {
-            let corner = displacement_at.get(&(boundary.block, place_key(point))).copied().flatten();
-            *point += corner.unwrap_or(boundary.displacement) * (factor - 1.0);
+        for (point, before) in boundary.loops.points.iter_mut().zip(&boundary.reference) {
+            *point += (*point - before) * (factor - 1.0);
         }
     }
     shown
-}
-
-/// Displacement (m) by block and position of the points of its boundary that are corners of its elements.
-fn corner_displacements(snapshot: &Snapshot) -> HashMap<(u32, [i64; 2]), Option<Vector>> {
-    let points = snapshot.boundaries.iter().flat_map(|b| b.loops.points.iter().map(|p| (b.block, place_key(p))));
-    let mut displacements: HashMap<_, _> = points.map(|key| (key, None)).collect();
-    for (k, &block) in snapshot.block.iter().enumerate().take(snapshot.elements.len()) {
-        if corners(&snapshot.elements, k).is_none() {
-            continue;
-        }
-        for i in snapshot.elements.range(k) {
-            let known = displacements.get_mut(&(block, place_key(&snapshot.elements.points[i])));
-            if let (Some(known), Some(displacement)) = (known, snapshot.displacement.get(i)) {
-                *known = Some(*displacement);
-            }
-        }
-    }
-    displacements
-}
-
-/// Positions closer than about a micrometre share a key.
-fn place_key(point: &Point) -> [i64; 2] {
-    [(point.x * 1e6).round() as i64, (point.y * 1e6).round() as i64]
 }
 
 fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, reference_outline: &Polygons) {
@@ -204,4 +177,42 @@ fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
     let label = format!("{} m", number_text(length));
     sheet.text([right + 12.0, y], &label, TextStyle::new(LABEL_SIZE));
     right + 12.0 + text_width(&label, LABEL_SIZE) + 50.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use enmm::geometry::Point;
+
+    /// Distance (m) of a point to the segment from `a` to `b`.
+    fn distance(point: &Point, a: &Point, b: &Point) -> f64 {
+        let along = b - a;
+        let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (point - a - along * t).norm()
+    }
+
+    /// Magnified outlines of blocks once had teeth off the rock, where a joint ends between corners of the elements.
+    #[test]
+    fn magnified_outlines_run_along_the_edges_of_magnified_elements() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/cases/plane_slide.toml");
+        let case = enmm_io::load_case(path.as_ref()).expect("a case").case;
+        let mut simulation = enmm::model::Simulation::new(case).expect("a model");
+        (0..40).for_each(|_| drop(simulation.advance(false).expect("a step")));
+        let shown = exaggerated(&simulation.snapshot(), 1e4);
+        let block_of = simulation.snapshot().block;
+        let edges_of = |block: u32| {
+            let of_block = (0..shown.elements.len()).filter(|&k| block_of[k] == block);
+            of_block.flat_map(|k| {
+                let corners = shown.elements.get(k);
+                (0..corners.len()).map(move |i| (corners[i], corners[(i + 1) % corners.len()]))
+            })
+        };
+        for boundary in &shown.boundaries {
+            let edges: Vec<(Point, Point)> = edges_of(boundary.block).collect();
+            for point in &boundary.loops.points {
+                let nearest = edges.iter().map(|(a, b)| distance(point, a, b)).fold(f64::INFINITY, f64::min);
+                assert!(nearest < 1e-4, "block {}: {nearest} m off at {point:?}", boundary.block);
+            }
+        }
+    }
 }

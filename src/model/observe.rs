@@ -2,6 +2,8 @@
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 
+use std::ops::Range;
+
 use crate::contact::{ContactHistory, ContactState, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
@@ -84,26 +86,32 @@ impl Simulation {
     /// Loops of all blocks that are there, at the current `positions` of the boundary points.
     fn boundaries(&self, positions: &[Point]) -> Vec<Boundary> {
         let (model, state) = (self.model(), self.state());
-        let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
+        let mut by_block: Vec<(u32, Vec<Range<usize>>)> = Vec::new();
         let mut k = 0;
         while k < model.boundary.len() {
             let end = loop_end(model, k);
-            let (block, points) = (model.boundary.block[k], positions[k..end].to_vec());
+            let block = model.boundary.block[k];
             match by_block.last_mut() {
-                Some((last, loops)) if *last == block => loops.push(points),
-                _ => by_block.push((block, vec![points])),
+                Some((last, loops)) if *last == block => loops.push(k..end),
+                _ => by_block.push((block, vec![k..end])),
             }
             k = end;
         }
         let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block as usize]);
         there
             .map(|(block, mut loops)| {
-                loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
+                let area = |points: &Range<usize>| polygon::area(&positions[points.clone()]);
+                loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
                 Boundary {
                     block,
                     fixed: self.workspace().mass_matrix.fixed[block as usize],
                     displacement: mean(model, &state.displacement, block as usize),
-                    loops: polygons(&loops),
+                    loops: polygons(&loops, positions),
+                    reference: loops
+                        .into_iter()
+                        .flat_map(|points| &model.boundary.reference[points])
+                        .copied()
+                        .collect(),
                 }
             })
             .collect()
@@ -197,10 +205,10 @@ fn loop_end(model: &Model, first: usize) -> usize {
     k + 1
 }
 
-fn polygons(loops: &[Vec<Point>]) -> Polygons {
+fn polygons(loops: &[Range<usize>], points: &[Point]) -> Polygons {
     let mut polygons = Polygons { start: vec![0], points: Vec::new() };
-    for points in loops {
-        polygons.points.extend_from_slice(points);
+    for range in loops {
+        polygons.points.extend_from_slice(&points[range.clone()]);
         polygons.start.push(polygons.points.len() as u32);
     }
     polygons

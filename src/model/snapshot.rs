@@ -93,4 +93,6 @@ pub struct Boundary {
     pub displacement: Vector,
     /// Loops (outer counter-clockwise, holes clockwise).
     pub loops: Polygons,
+    /// Where each point of `loops` was before the block moved (m).
+    pub reference: Vec<Point>,
 }

@@ -51,7 +51,13 @@ pub fn sample(spacing: f64, mesh: f64) -> Sample {
         let mut loops = empty();
         push(&mut loops, &block);
         let fixed = block.iter().any(|corner| corner.y < 1e-6);
-        reference.boundaries.push(Boundary { block: id, fixed, displacement: Vector::zeros(), loops });
+        reference.boundaries.push(Boundary {
+            block: id,
+            fixed,
+            displacement: Vector::zeros(),
+            reference: loops.points.clone(),
+            loops,
+        });
     }
     complete(&mut reference);
     let stars = covers.iter().map(|(node, blocks)| (lattice(*node, mesh), blocks.len() as u32)).collect();
