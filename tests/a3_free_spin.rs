@@ -4,6 +4,7 @@ mod common;
 
 use common::claims::{Corners, assert_ledger, block_at, dynamic, motion, polygon_moments, rock, turn};
 use common::simulation;
+use enmm::contact::EdgeId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 
@@ -46,7 +47,7 @@ fn case(spinner: &Spinner, moment: f64) -> String {
 }
 
 /// Current place of boundary point `k`.
-fn place(simulation: &Simulation, k: usize) -> Point {
+fn place(simulation: &Simulation, k: EdgeId) -> Point {
     let (slope, u) = (simulation.model(), &simulation.state().displacement);
     let boundary = &slope.boundary;
     (0..3)
@@ -60,8 +61,9 @@ fn place(simulation: &Simulation, k: usize) -> Point {
 /// Area of the current boundary loop of the only block.
 fn area(simulation: &Simulation) -> f64 {
     let boundary = &simulation.model().boundary;
-    let origin = place(simulation, 0);
-    (0..boundary.len())
+    let origin = place(simulation, EdgeId::new(0));
+    boundary
+        .edges()
         .map(|k| (place(simulation, k) - origin).perp(&(place(simulation, boundary.after(k)) - origin)) / 2.0)
         .sum()
 }
@@ -69,7 +71,7 @@ fn area(simulation: &Simulation) -> f64 {
 /// Runs ten turns; returns the angle turned since the push ended, unwrapped, and the time it took.
 fn ten_turns(simulation: &mut Simulation, spin: f64) -> (f64, f64) {
     let boundary = simulation.model().boundary.len();
-    let arm = |s: &Simulation| -> Vector { place(s, boundary / 2) - place(s, 0) };
+    let arm = |s: &Simulation| -> Vector { place(s, EdgeId::new(boundary / 2)) - place(s, EdgeId::new(0)) };
     let steps = simulation.steps_in(10.0 * std::f64::consts::TAU / spin);
     let (mut angle, mut before) = (0.0, arm(simulation));
     for k in 0..steps {

@@ -156,7 +156,7 @@ impl Cosimulation {
         let boundary = &model.boundary;
         let mut mean = PortState::default();
         let mut total = 0.0;
-        for edge in port.edges.iter().map(|&e| e as usize) {
+        for &edge in &port.edges {
             let ends = [edge, boundary.after(edge)];
             let length = (boundary.reference[ends[1]] - boundary.reference[ends[0]]).norm();
             let sample = |field: &[Vector]| ends.map(|k| boundary.sample(k, field)).iter().sum::<Vector>() * 0.5;
@@ -175,7 +175,7 @@ impl Cosimulation {
     fn joint_port(&self, port: &Port) -> PortState {
         let boundary = &self.simulation.model().boundary;
         let of_port = |contact: &&ContactHistory| {
-            let [before, after] = boundary.edges_of_node(contact.node as usize);
+            let [before, after] = boundary.edges_of_node(contact.node);
             [contact.edge, before, after].iter().any(|edge| port.edges.binary_search(edge).is_ok())
         };
         let mut sum = PortState::default();
@@ -190,13 +190,13 @@ impl Cosimulation {
 
 /// Blocks of node and edge of a contact.
 fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [u32; 2] {
-    let node = boundary.node_point[contact.node as usize] as usize;
-    [boundary.block[node], boundary.block[contact.edge as usize]]
+    let node = boundary.node_point[contact.node];
+    [boundary.block[node], boundary.block[contact.edge]]
 }
 
 /// Force of a contact on its node (N/m); its edge feels the opposite.
 fn force_on_node(boundary: &Boundary, positions: &[Point], contact: &ContactHistory) -> Vector {
-    let edge = contact.edge as usize;
+    let edge = contact.edge;
     let along = (positions[boundary.after(edge)] - positions[edge]).normalize();
     let normal = Vector::new(along.y, -along.x);
     normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force

@@ -7,6 +7,7 @@ mod arrangement;
 mod error;
 mod faces;
 pub(crate) mod grid;
+mod id;
 pub mod joint_set;
 pub mod loops;
 mod noder;
@@ -17,6 +18,7 @@ pub use arrangement::{
     Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange, arrange_within,
 };
 pub use error::GeometryError;
+pub(crate) use id::id;
 
 /// A position in the plane (m).
 pub type Point = nalgebra::Vector2<f64>;

@@ -1,5 +1,6 @@
 //! What a picture of a model shows beside its blocks.
 
+use crate::contact::EdgeId;
 use crate::geometry::{NONE, Point};
 use crate::model::Simulation;
 use crate::model::case::Port;
@@ -17,8 +18,8 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
     let mut fixed: Vec<Point> = supports.collect();
     fixed.dedup();
     let boundary = &model.boundary;
-    let ends = |k: usize| [boundary.reference[k], boundary.reference[boundary.after(k)]];
-    let joints = (0..boundary.len()).filter(|&k| boundary.trace[k] != NONE);
+    let ends = |k: EdgeId| [boundary.reference[k], boundary.reference[boundary.after(k)]];
+    let joints = boundary.edges().filter(|&k| boundary.trace[k] != NONE);
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
     let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
     ModelAnnotations {

@@ -2,7 +2,7 @@
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 
-use crate::contact::{ContactHistory, ContactState, VertexEdge};
+use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
 use crate::state::{Model, State};
@@ -87,7 +87,7 @@ impl Simulation {
         let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
         let mut k = 0;
         while k < model.boundary.len() {
-            let end = loop_end(model, k);
+            let end = loop_end(model, EdgeId::new(k));
             let (block, points) = (model.boundary.block[k], positions[k..end].to_vec());
             match by_block.last_mut() {
                 Some((last, loops)) if *last == block => loops.push(points),
@@ -116,9 +116,9 @@ impl Simulation {
             (0..self.model().covers.block_count()).map(|block| self.motion_of(block)).collect();
         let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
-            let node = boundary.node_point[contact.node as usize] as usize;
+            let node = boundary.node_point[contact.node];
             let depth = penetration(self.model(), &positions, contact);
-            for block in [boundary.block[node], boundary.block[contact.edge as usize]] {
+            for block in [boundary.block[node], boundary.block[contact.edge]] {
                 let state = &mut states[block as usize];
                 state.contact_count += u32::from(contact.state != ContactState::Open);
                 state.penetration_max = state.penetration_max.max(depth);
@@ -189,12 +189,12 @@ impl Simulation {
 }
 
 /// One past the last point of the boundary loop that begins with point `first`.
-fn loop_end(model: &Model, first: usize) -> usize {
+fn loop_end(model: &Model, first: EdgeId) -> usize {
     let mut k = first;
     while model.boundary.after(k) != first {
         k = model.boundary.after(k);
     }
-    k + 1
+    k.index() + 1
 }
 
 fn polygons(loops: &[Vec<Point>]) -> Polygons {
@@ -238,7 +238,7 @@ fn rotation(model: &Model, state: &State, block: usize) -> f64 {
 fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> JointPoint {
     let history = &contact.history;
     JointPoint {
-        position: positions[model.boundary.node_point[history.node as usize] as usize],
+        position: positions[model.boundary.node_point[history.node]],
         normal: contact.normal,
         length: contact.length,
         normal_stress: -history.normal_force / contact.length,
@@ -250,8 +250,8 @@ fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> Join
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
 fn penetration(model: &Model, positions: &[Point], contact: &ContactHistory) -> f64 {
-    let edge = contact.edge as usize;
+    let edge = contact.edge;
     let (a, b) = (positions[edge], positions[model.boundary.after(edge)]);
-    let node = positions[model.boundary.node_point[contact.node as usize] as usize];
+    let node = positions[model.boundary.node_point[contact.node]];
     ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

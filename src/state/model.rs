@@ -1,6 +1,6 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, EntranceRule, JointLaw, Support};
+use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, Support};
 use crate::cover::{self, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
@@ -41,7 +41,7 @@ pub struct Port {
     /// The block, or the block of the first edge.
     pub block: u32,
     /// Boundary edges; none for a block.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeId>,
     /// Force on the block (N/m) or traction on the boundary (Pa) at the start.
     pub force: Vector,
     /// Moment on the block (N·m/m) or pressure on the faces (Pa) at the start.
@@ -58,7 +58,7 @@ pub struct Water {
     /// Points of a sloping surface at the start (m), from left to right; empty for a level one.
     pub table: Vec<Point>,
     /// Boundary edges that it reaches.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeId>,
 }
 
 /// What the rows of a motion of the base give.

@@ -1,5 +1,6 @@
 //! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
 
+use crate::contact::EdgeId;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
 use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
@@ -117,19 +118,19 @@ impl Faces<'_> {
         }
         let reference = &self.model.boundary.reference;
         for &edge in &port.edges {
-            let length = (reference[self.model.boundary.after(edge as usize)] - reference[edge as usize]).norm();
+            let length = (reference[self.model.boundary.after(edge)] - reference[edge]).norm();
             let dead = traction * (0.5 * length);
             self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
         }
     }
 
     /// Spreads the forces at both ends of an edge over their covers.
-    fn push(&self, edge: u32, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
+    fn push(&self, edge: EdgeId, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
         let boundary = &self.model.boundary;
-        if self.state.removed[boundary.block[edge as usize] as usize] {
+        if self.state.removed[boundary.block[edge] as usize] {
             return;
         }
-        let ends = [edge as usize, boundary.after(edge as usize)];
+        let ends = [edge, boundary.after(edge)];
         let stars = &self.model.covers.star_position;
         let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
         for (k, f) in ends.into_iter().zip(forces(a, b)) {

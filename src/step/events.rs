@@ -15,9 +15,9 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
     touching.clear();
     touching.resize(model.covers.block_count(), false);
     for contact in &state.contacts {
-        let node = model.boundary.node_point[contact.node as usize] as usize;
+        let node = model.boundary.node_point[contact.node];
         touching[model.boundary.block[node] as usize] = true;
-        touching[model.boundary.block[contact.edge as usize] as usize] = true;
+        touching[model.boundary.block[contact.edge] as usize] = true;
     }
     if let Regime::Dynamic { .. } = regime {
         note_detached(state, workspace, time);
@@ -44,7 +44,7 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
     let events = &mut state.events;
     let none = events.slipped.len() - 1;
     for contact in state.contacts.iter().filter(|c| c.state == ContactState::Slip && c.slip > least) {
-        let trace = model.boundary.trace[contact.edge as usize];
+        let trace = model.boundary.trace[contact.edge];
         let joint = (trace as usize).min(none);
         if !events.slipped[joint] {
             events.slipped[joint] = true;

@@ -69,7 +69,7 @@ impl Step<'_> {
         }
         match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let position = workspace.position[model.boundary.node_point[contact.history.node as usize] as usize];
+                let position = workspace.position[model.boundary.node_point[contact.history.node]];
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
                 Err(self.failed(contact.pair.blocks[0], position, failure))
             }

@@ -38,7 +38,7 @@ pub(super) fn unbalanced(net: f64, applied: f64) -> f64 {
 /// blocks.
 pub(super) fn speed_max(model: &Model, state: &State) -> f64 {
     let boundary = &model.boundary;
-    (0..boundary.len()).map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
+    boundary.edges().map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Kinetic energy (J/m) by lumped masses of all blocks that can move.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use enmm_lanes::{Kernel, LANES, Lanes};
 
-use crate::contact::Boundary;
+use crate::contact::{Boundary, EdgeId, NodeId};
 
 use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
@@ -53,7 +53,7 @@ impl Kernel for Find<'_> {
             let (few, block, span) = self.next_few();
             if !self.view.removed[block as usize] {
                 self.look_round(&within, block, span);
-                for node in few {
+                for node in NodeId::range(few) {
                     self.near_edges(&within, node, block);
                 }
             }
@@ -67,7 +67,7 @@ impl Find<'_> {
     fn next_few(&mut self) -> (Range<usize>, u32, Span) {
         let (boundary, position) = (self.view.boundary, self.view.position);
         let Range { start, end } = self.nodes;
-        let point = |node: usize| boundary.node_point[node] as usize;
+        let point = |node: usize| boundary.node_point[node];
         let block = boundary.block[point(start)];
         let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
         let (mut span, mut last) = (Span::at(position[point(start)]), start);
@@ -109,10 +109,10 @@ impl Find<'_> {
 
     /// Appends the near edges of a node.
     #[inline(always)]
-    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
+    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: u32) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
-        let p = self.view.position[boundary.node_point[node] as usize];
+        let p = self.view.position[boundary.node_point[node]];
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);
@@ -121,8 +121,8 @@ impl Find<'_> {
         }
         marks.see(&mut list);
         let mut add = |edge: u32, k: usize| {
-            let edge = edge + k as u32;
-            near_pairs.push(NearPair { node: node as u32, side: boundary.side[edge as usize], edge });
+            let edge = EdgeId::new(edge as usize + k);
+            near_pairs.push(NearPair { node, side: boundary.side[edge], edge });
         };
         for &stretch in near.iter() {
             let stretch = &grid.stretches[stretch as usize];
@@ -130,7 +130,7 @@ impl Find<'_> {
             if stretch.block == block {
                 edges &= may_meet(boundary, node, stretch.edge);
             }
-            marks.push(stretch.edge, edges, &mut add);
+            marks.push(stretch.edge.number(), edges, &mut add);
         }
         marks.see(&mut add);
     }
@@ -153,9 +153,9 @@ fn sort(list: &mut [u32]) {
 }
 
 /// Which of eight consecutive edges a node of their own block can touch.
-fn may_meet(boundary: &Boundary, node: usize, first: u32) -> u8 {
-    let sides = [boundary.side[boundary.node_point[node] as usize], boundary.side_of_node_before(node)];
-    let edges = (first as usize..boundary.len()).take(LANES).enumerate();
+fn may_meet(boundary: &Boundary, node: NodeId, first: EdgeId) -> u8 {
+    let sides = [boundary.side[boundary.node_point[node]], boundary.side_of_node_before(node)];
+    let edges = (first.index()..boundary.len()).take(LANES).enumerate();
     let may = |edge: usize| boundary.partial[edge] && !sides.contains(&boundary.side[edge]);
     if boundary.node_partial(node) { edges.fold(0, |bits, (k, edge)| bits | u8::from(may(edge)) << k) } else { 0 }
 }

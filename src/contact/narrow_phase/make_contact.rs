@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{Closure, ContactHistory, ContactState, Pair, Spring, VertexEdge};
+use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, NodeId, Pair, Spring, VertexEdge};
 use crate::cover::Weights;
 use crate::geometry::{Point, Vector};
 
@@ -45,8 +45,8 @@ impl NarrowPhase<'_> {
 
     #[inline(always)]
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
-        let (boundary, node) = (self.boundary, candidate.node as usize);
-        let (point, edge) = (boundary.node_point[node] as usize, candidate.edge as usize);
+        let (boundary, node) = (self.boundary, candidate.node);
+        let (point, edge) = (boundary.node_point[node], candidate.edge);
         let p = self.position[point];
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
@@ -133,7 +133,7 @@ impl NarrowPhase<'_> {
     /// decides there which of two edges is nearer.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
-        let (boundary, edge, band) = (self.boundary, candidate.edge as usize, CORNER_TOLERANCE * self.size);
+        let (boundary, edge, band) = (self.boundary, candidate.edge, CORNER_TOLERANCE * self.size);
         if candidate.along.abs() < band {
             boundary.covers[edge]
         } else if (candidate.length - candidate.along).abs() < band {
@@ -156,7 +156,7 @@ impl NarrowPhase<'_> {
 
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
     #[inline(always)]
-    fn law(&self, node: usize, edge: usize) -> u32 {
+    fn law(&self, node: NodeId, edge: EdgeId) -> u32 {
         let law = |trace: u32| self.trace_law.get(trace as usize).copied();
         law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
     }
@@ -165,7 +165,7 @@ impl NarrowPhase<'_> {
     #[inline(never)]
     fn first_sight(
         &self,
-        node: usize,
+        node: NodeId,
         candidate: &ContactCandidate,
         length: f64,
         closure: Closure,
@@ -173,7 +173,7 @@ impl NarrowPhase<'_> {
         normal: Vector,
     ) -> ContactHistory {
         let mut history = ContactHistory {
-            node: node as u32,
+            node,
             side: candidate.side,
             edge: candidate.edge,
             normal_force: 0.0,
@@ -191,7 +191,7 @@ impl NarrowPhase<'_> {
             history.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
-            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
+            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node]]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);

@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use enmm_lanes::{LANES, prefetch};
 
-use crate::contact::{Boundary, NearPair, VertexEdge};
+use crate::contact::{Boundary, EdgeId, NearPair, NodeId, SideId, VertexEdge};
 
 use super::SolverView;
 use super::wide_contact::AHEAD;
@@ -120,9 +120,9 @@ impl SolverOrder {
         self.first_near_pair.clear();
         self.entries.clear();
         let mut first = 0;
-        for run in near_pairs.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
-            let point = boundary.node_point[run[0].node as usize] as usize;
-            let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
+        for run in near_pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side)) {
+            let point = boundary.node_point[run[0].node];
+            let (own, other) = (boundary.block[point], boundary.block[run[0].edge]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
             self.first_near_pair.push(first);
@@ -271,12 +271,12 @@ impl Colours {
 
     /// Covers of held blocks that a node and the near edges of a side may push.
     fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SolverView) {
-        let is_held = |point: usize| !view.mass_matrix.is_free(boundary.block[point] as usize);
-        let node = boundary.node_point[edges[0].node as usize] as usize;
+        let is_held = |point: EdgeId| !view.mass_matrix.is_free(boundary.block[point] as usize);
+        let node = boundary.node_point[edges[0].node];
         if is_held(node) {
             self.covers.extend(boundary.covers[node]);
         }
-        for edge in edges.iter().map(|near_pair| near_pair.edge as usize).filter(|&edge| is_held(edge)) {
+        for edge in edges.iter().map(|near_pair| near_pair.edge).filter(|&edge| is_held(edge)) {
             self.covers.extend(boundary.covers_on(edge));
         }
     }
@@ -296,8 +296,8 @@ impl Colours {
 }
 
 /// What near nodes and sides are sorted by.
-fn key_of(node: u32, side: u32) -> u64 {
-    u64::from(node) << u32::BITS | u64::from(side)
+fn key_of(node: NodeId, side: SideId) -> u64 {
+    u64::from(node.number()) << u32::BITS | u64::from(side.number())
 }
 
 /// The smallest part of the tree that holds two leaves, by its slot in the order in which parts are swept: both halves

@@ -161,8 +161,8 @@ impl Base {
         let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
         let mut before = self.simulation.state().contacts.iter().peekable();
         let counts = |contact: &&ContactHistory| {
-            let points = [boundary.node_point[contact.node as usize], contact.edge];
-            let blocks = points.map(|point| boundary.block[point as usize]);
+            let points = [boundary.node_point[contact.node], contact.edge];
+            let blocks = points.map(|point| boundary.block[point]);
             !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
         };
         let slipped = state.contacts.iter().filter(counts).map(|contact| {

@@ -43,9 +43,9 @@ impl Step<'_> {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
         for near in &self.state.neighbours.pairs {
-            let node = boundary.covers[boundary.node_point[near.node as usize] as usize];
+            let node = boundary.covers[boundary.node_point[near.node]];
             for a in node {
-                boundary.covers_on(near.edge as usize).for_each(|b| couple(a, b));
+                boundary.covers_on(near.edge).for_each(|b| couple(a, b));
             }
         }
         pairs.sort_unstable();

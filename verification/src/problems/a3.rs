@@ -1,5 +1,6 @@
 //! A3: free spin.
 
+use enmm::contact::EdgeId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::block_motion;
@@ -63,8 +64,8 @@ fn shape(setup: &Setup) -> Vec<[f64; 2]> {
 /// Area (m²) of the boundary loop now, and the way from its first point to the one opposite.
 fn now(simulation: &Simulation) -> (f64, Vector) {
     let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
-    let corner = |k: usize| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
-    ((0..places.len()).map(corner).sum(), places[places.len() / 2] - places[0])
+    let corner = |k: EdgeId| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
+    (boundary.edges().map(corner).sum(), places[places.len() / 2] - places[0])
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

@@ -1,6 +1,6 @@
 //! What hosts read, in the structures of C.
 
-use engine::contact::ContactState;
+use engine::contact::{ContactState, EdgeId};
 use engine::cosimulation::{EventKind, PortKind, Totals};
 use engine::geometry::{Point, polygon};
 use engine::model::BlockState;
@@ -35,7 +35,7 @@ impl Model {
         let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
             let history = &contact.history;
-            let position = places[boundary.node_point[history.node as usize] as usize];
+            let position = places[boundary.node_point[history.node]];
             enmm_contact {
                 struct_size: size_of::<enmm_contact>(),
                 state: match history.state {
@@ -126,13 +126,15 @@ impl Model {
         let mut loops = Vec::new();
         let mut k = 0;
         while k < boundary.len() {
-            let first = k;
-            while boundary.after(k) != first {
-                k = boundary.after(k);
+            let first = EdgeId::new(k);
+            let mut last = first;
+            while boundary.after(last) != first {
+                last = boundary.after(last);
             }
-            k += 1;
+            let points = k..last.index() + 1;
+            k = points.end;
             if wanted(boundary.block[first]) {
-                loops.push((boundary.block[first], places[first..k].to_vec()));
+                loops.push((boundary.block[first], places[points].to_vec()));
             }
         }
         loops
