@@ -5,6 +5,7 @@ mod common;
 use common::claims::{Corners, assert_ledger, block_at, dynamic, motion, polygon_moments, rock, turn};
 use common::simulation;
 use enmm::contact::EdgeId;
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 
@@ -99,7 +100,7 @@ fn spin_has_the_true_inertia_and_keeps_momentum_energy_and_area() {
         let spin = (2e-7 * YOUNG / DENSITY).sqrt() / radius;
         let inertia = DENSITY * polar;
         let mut simulation = simulation(&case(&spinner, spin * inertia / 1e-3));
-        assert_eq!(block_at(&simulation, spinner.inside), 0);
+        assert_eq!(block_at(&simulation, spinner.inside), BlockId::new(0));
         // The push shakes the block a little; its deformation is damped within some 0.05 s.
         let push = simulation.steps_in(0.1);
         common::claims::advance(&mut simulation, push);

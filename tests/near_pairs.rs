@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use enmm::contact::{Boundary, EdgeId, NeighbourList, NodeId, SearchGrid, SearchView, SideId};
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector, segment};
 use enmm::model::Simulation;
 
 /// Whether a node and an edge can touch: not two fixed blocks, and in one block only both sides of a partial cut.
 fn may_meet(boundary: &Boundary, fixed: &[bool], node: NodeId, edge: EdgeId) -> bool {
     let [before, after] = boundary.edges_of_node(node);
-    let (own, other) = (boundary.block[after] as usize, boundary.block[edge] as usize);
+    let (own, other) = (boundary.block[after], boundary.block[edge]);
     let partial = |edge: EdgeId| boundary.partial[edge];
     let is_own = own == other;
     !(fixed[own] && fixed[other])
@@ -20,7 +21,7 @@ fn may_meet(boundary: &Boundary, fixed: &[bool], node: NodeId, edge: EdgeId) -> 
 /// Nodes and edges that are near, by all against all.
 fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
     let boundary = view.boundary;
-    let counts = |point: EdgeId| !view.removed[boundary.block[point] as usize];
+    let counts = |point: EdgeId| !view.removed[boundary.block[point]];
     let edges: Vec<_> = boundary.edges().filter(|&edge| counts(edge)).collect();
     let mut pairs = Vec::new();
     for node in NodeId::all(boundary.node_count()).filter(|&node| counts(boundary.node_point[node])) {
@@ -38,9 +39,9 @@ fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
 /// Blocks pushed their own ways, some of them far off.
 fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
     let slope = simulation.model();
-    let away = |block: u32| {
-        let angle = 0.7 * f64::from(block);
-        let far = if block % 50 == 7 { 30.0 } else { 1.0 };
+    let away = |block: BlockId| {
+        let angle = 0.7 * f64::from(block.number());
+        let far = if block.index() % 50 == 7 { 30.0 } else { 1.0 };
         Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
     };
     let position = simulation.workspace().position.iter().zip(&slope.boundary.block);

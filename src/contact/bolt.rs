@@ -1,6 +1,6 @@
 //! Rock bolts: elastic–plastic bars between two material points, solved in the open–close iteration (Eqs. 40–44).
 
-use crate::cover::Weights;
+use crate::cover::{BlockId, Weights};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::MassMatrix;
 
@@ -15,7 +15,7 @@ pub struct BoltSegment {
     /// Bolt of the case that it belongs to.
     pub bolt: u32,
     /// Blocks of both points.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Covers of both points.
     pub covers: [[u32; 3]; 2],
     /// Weights of those covers at the points.
@@ -105,7 +105,7 @@ impl BoltSegment {
         let span = positions[0] - positions[1];
         let length = span.norm();
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
-        let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k] as usize].centre);
+        let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k]].centre);
         let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
         let [compliance] = pair.weigh(view.mass_matrix, [direction]);
         BoltRow {
@@ -165,7 +165,7 @@ mod tests {
     fn bar() -> BoltSegment {
         BoltSegment {
             bolt: 0,
-            blocks: [0; 2],
+            blocks: [BlockId::default(); 2],
             covers: [[0; 3]; 2],
             weights: [[1.0, 0.0, 0.0]; 2],
             points: [Point::zeros(), Point::new(1.0, 0.0)],

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::cover::{self, BoundaryPiece, Covers, Outlines, Weights};
+use crate::cover::{self, BlockId, BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector, id};
 
 id! {
@@ -61,7 +61,7 @@ pub struct Boundary {
     /// The point after `k` on its loop.
     pub next: Vec<EdgeId>,
     /// Block of edge and point `k`.
-    pub block: Vec<u32>,
+    pub block: Vec<BlockId>,
     /// Side that edge `k` is part of.
     pub side: Vec<SideId>,
     /// Node at or before point `k`.
@@ -196,13 +196,20 @@ impl Boundary {
     fn measure_blocks(&mut self, covers: &Covers) {
         let mut perimeter = vec![0.0; covers.block_count()];
         for (k, &block) in self.edges().zip(&self.block) {
-            perimeter[block as usize] += (self.reference[self.after(k)] - self.reference[k]).norm();
+            perimeter[block] += (self.reference[self.after(k)] - self.reference[k]).norm();
         }
-        let area = |block: usize| covers.elements_of(block).map(|e| covers.element_area[e]).sum::<f64>();
-        self.block_thickness = perimeter.iter().enumerate().map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
+        let area = |block: BlockId| covers.elements_of(block).map(|e| covers.element_area[e]).sum::<f64>();
+        self.block_thickness =
+            covers.blocks().zip(&perimeter).map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
     }
 
-    fn push_loop(&mut self, covers: &Covers, carrier: &impl Fn(u32, u32) -> usize, block: u32, stations: &[Station]) {
+    fn push_loop(
+        &mut self,
+        covers: &Covers,
+        carrier: &impl Fn(u32, u32) -> usize,
+        block: BlockId,
+        stations: &[Station],
+    ) {
         let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_first.len());
         let last = first + stations.len() - 1;
         for (k, station) in stations.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Two material points that act on each other: a node and an edge, or the ends of a bolt. Contacts and bolts share it.
 
-use crate::cover::{self, Weights};
+use crate::cover::{self, BlockId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
@@ -10,7 +10,7 @@ use crate::mechanics::MassMatrix;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pair {
     /// Blocks of both points.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Covers of both points.
     pub covers: [[u32; 3]; 2],
     /// Weights of those covers at the points' current positions.
@@ -34,7 +34,7 @@ impl Pair {
     pub fn weigh<const N: usize>(&mut self, mass_matrix: &MassMatrix, axes: [Vector; N]) -> [f64; N] {
         let mut compliance = [0.0; N];
         for body in 0..2 {
-            let block = self.blocks[body] as usize;
+            let block = self.blocks[body];
             let share = mass_matrix.inverse_total[block];
             let mut own = Vector::zeros();
             let mut z = 0.0;

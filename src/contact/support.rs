@@ -1,7 +1,7 @@
 //! Supports: springs that fix a material point along one direction, and dashpots of quiet boundaries. The open–close
 //! iteration solves them together with the contacts (Eqs. 23, 47).
 
-use crate::cover::{self, Weights};
+use crate::cover::{self, BlockId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
@@ -23,7 +23,7 @@ pub struct Support {
     /// Fixity of the case that it belongs to.
     pub fix: u32,
     /// Block.
-    pub block: u32,
+    pub block: BlockId,
     /// Covers of the point.
     pub covers: [u32; 3],
     /// Their weights at the point.

@@ -1,6 +1,7 @@
 //! What a host can read: ports and totals. All of it follows from the state alone.
 
 use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 use crate::model::Simulation;
 use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
@@ -128,8 +129,8 @@ impl Cosimulation {
         self.look(|simulation, serial| simulation.look_ahead_on(serial).1.contacts)
     }
 
-    fn block_port(&self, block: u32) -> PortState {
-        let state = self.simulation.motion_of(block as usize);
+    fn block_port(&self, block: BlockId) -> PortState {
+        let state = self.simulation.motion_of(block);
         let boundary = &self.simulation.model().boundary;
         let positions = self.simulation.positions();
         let mut contact_force = Vector::zeros();
@@ -162,7 +163,7 @@ impl Cosimulation {
             let sample = |field: &[Vector]| ends.map(|k| boundary.sample(k, field)).iter().sum::<Vector>() * 0.5;
             mean.displacement += sample(&state.displacement) * length;
             mean.velocity += sample(&state.velocity) * length;
-            let (stress, _) = self.simulation.stress_of(boundary.block[edge] as usize);
+            let (stress, _) = self.simulation.stress_of(boundary.block[edge]);
             (0..3).for_each(|k| mean.stress[k] += stress[k] * length);
             total += length;
         }
@@ -189,7 +190,7 @@ impl Cosimulation {
 }
 
 /// Blocks of node and edge of a contact.
-fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [u32; 2] {
+fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [BlockId; 2] {
     let node = boundary.node_point[contact.node];
     [boundary.block[node], boundary.block[contact.edge]]
 }

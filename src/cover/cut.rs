@@ -2,11 +2,11 @@
 
 use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
 
-use super::Weights;
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::{self, hilbert};
 use super::outlines::{Outlines, mesh_only};
+use super::{BlockId, Weights};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub struct Covers {
     /// Polar second moment of area of each element about its centroid (m⁴).
     pub element_polar: Vec<f64>,
     /// Block of each element.
-    pub element_block: Vec<u32>,
+    pub element_block: Vec<BlockId>,
     /// First point of each element's polygon in `polygon_points`, and their number at the end.
     pub polygon_start: Vec<u32>,
     /// Corners of the elements (m), counter-clockwise; holes are joined by bridges.
@@ -36,7 +36,7 @@ pub struct Covers {
     /// Position of that node (m).
     pub star_position: Vec<Point>,
     /// Block of each physical cover.
-    pub cover_block: Vec<u32>,
+    pub cover_block: Vec<BlockId>,
     /// First element of each block, and the number of elements at the end.
     pub block_elements: Vec<u32>,
     /// First physical cover of each block, and the number of covers at the end.
@@ -53,6 +53,11 @@ impl Covers {
         self.block_elements.len() - 1
     }
 
+    /// All blocks.
+    pub fn blocks(&self) -> impl ExactSizeIterator<Item = BlockId> + Clone {
+        BlockId::all(self.block_count())
+    }
+
     /// Number of elements.
     pub fn element_count(&self) -> usize {
         self.element_covers.len()
@@ -64,13 +69,13 @@ impl Covers {
     }
 
     /// Elements of a block.
-    pub fn elements_of(&self, block: usize) -> std::ops::Range<usize> {
-        self.block_elements[block] as usize..self.block_elements[block + 1] as usize
+    pub fn elements_of(&self, block: BlockId) -> std::ops::Range<usize> {
+        self.block_elements[block] as usize..self.block_elements[block.index() + 1] as usize
     }
 
     /// Physical covers of a block.
-    pub fn covers_of(&self, block: usize) -> std::ops::Range<usize> {
-        self.block_covers[block] as usize..self.block_covers[block + 1] as usize
+    pub fn covers_of(&self, block: BlockId) -> std::ops::Range<usize> {
+        self.block_covers[block] as usize..self.block_covers[block.index() + 1] as usize
     }
 
     /// Reference polygon of an element.
@@ -84,18 +89,18 @@ impl Covers {
     }
 
     /// Area of a block (m²).
-    pub fn block_area(&self, block: usize) -> f64 {
+    pub fn block_area(&self, block: BlockId) -> f64 {
         self.element_area[self.elements_of(block)].iter().sum()
     }
 
     /// Area centroid of a block in the reference configuration (m).
-    pub fn block_centroid(&self, block: usize) -> Point {
+    pub fn block_centroid(&self, block: BlockId) -> Point {
         let first: Point = self.elements_of(block).map(|e| self.element_centroid[e] * self.element_area[e]).sum();
         first / self.block_area(block)
     }
 
     /// A reference point inside a block: the centre of the largest triangle of its largest element.
-    pub fn point_inside(&self, block: usize) -> Point {
+    pub fn point_inside(&self, block: BlockId) -> Point {
         let largest = |a: &usize, b: &usize| self.element_area[*a].total_cmp(&self.element_area[*b]);
         let triangles = self.elements_of(block).max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
         let area = |t: &[Point; 3]| polygon::area(t);
@@ -147,7 +152,7 @@ impl Covers {
     pub const TILE: usize = order::TILE;
 
     /// Whether the covers of a block go tile by tile, and row by row within each.
-    pub fn is_tiled(&self, block: usize) -> bool {
+    pub fn is_tiled(&self, block: BlockId) -> bool {
         self.covers_of(block).len() >= order::TILED
     }
 
@@ -364,7 +369,7 @@ impl Joined {
 /// Order of the elements: by block, blocks and elements along a Hilbert curve.
 struct BlockOrder {
     order: Vec<u32>,
-    block: Vec<u32>,
+    block: Vec<BlockId>,
     count: usize,
     low: Point,
     high: Point,
@@ -383,11 +388,11 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
     }
     let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
     roots.sort_by_cached_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
-    let mut block_of_root = vec![NONE; n];
-    for (k, &r) in roots.iter().enumerate() {
-        block_of_root[r as usize] = k as u32;
+    let mut block_of_root = vec![BlockId::default(); n];
+    for (block, &r) in BlockId::all(roots.len()).zip(&roots) {
+        block_of_root[r as usize] = block;
     }
-    let block: Vec<u32> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
+    let block: Vec<BlockId> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_by_cached_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
     BlockOrder { order, block, count: roots.len(), low, high }
@@ -402,7 +407,7 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
         polygon_points.extend_from_slice(raw.polygon(take(k)));
         polygon_start.push(polygon_points.len() as u32);
     }
-    let element_block: Vec<u32> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
+    let element_block: Vec<BlockId> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
     Covers {
         gradients: mesh.gradients(),
         mesh,
@@ -430,10 +435,10 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
     let mut roots: Vec<u32> =
         (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
     let mut counts = vec![0; blocks.count];
-    roots.iter().for_each(|&s| counts[blocks.block[s as usize / 3] as usize] += 1);
+    roots.iter().for_each(|&s| counts[blocks.block[s as usize / 3]] += 1);
     roots.sort_by_cached_key(|&s| {
         let (block, [i, j]) = (blocks.block[s as usize / 3], star_of(s));
-        let tile = (counts[block as usize] >= order::TILED).then(|| order::tile([i, j]));
+        let tile = (counts[block] >= order::TILED).then(|| order::tile([i, j]));
         let node = tile.map_or([i, j], order::tile_centre);
         let position = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
         (block, position, tile, [j, i], s)
@@ -449,7 +454,7 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
     joined.slot_root.iter().map(|&r| cover_of_root[r as usize]).collect()
 }
 
-/// First index of each group in a sorted list of group numbers, and the length at the end.
-fn starts(groups: &[u32], count: usize) -> Vec<u32> {
-    (0..=count as u32).map(|g| groups.partition_point(|&x| x < g) as u32).collect()
+/// First index of each block in a sorted list of blocks, and the length at the end.
+fn starts(blocks: &[BlockId], count: usize) -> Vec<u32> {
+    (0..=count).map(|end| blocks.partition_point(|block| block.index() < end) as u32).collect()
 }

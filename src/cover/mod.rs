@@ -11,7 +11,12 @@ pub use cut::{Covers, cut};
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
 
-use crate::geometry::Vector;
+use crate::geometry::{Vector, id};
+
+id! {
+    /// A block: rock that no joint cuts through.
+    BlockId
+}
 
 /// Weights of the three physical covers of an element at a point.
 pub type Weights = [f64; 3];

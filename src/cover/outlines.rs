@@ -1,5 +1,6 @@
 //! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
 
+use super::BlockId;
 use crate::geometry::{Arrangement, Label, NONE, Point};
 
 /// A straight piece of a block's boundary inside one element; rock lies to its left.
@@ -27,7 +28,7 @@ pub struct Outlines {
     /// First piece of each loop, and the number of pieces at the end.
     pub loop_start: Vec<u32>,
     /// Block of each loop.
-    pub loop_block: Vec<u32>,
+    pub loop_block: Vec<BlockId>,
 }
 
 /// Whether an edge carries the mesh and nothing that cuts.
@@ -52,9 +53,9 @@ impl Outlines {
     }
 
     /// Walks all boundary loops of the elements that `element_of_face` names.
-    pub(super) fn trace(arrangement: &Arrangement, element_of_face: &[u32], element_block: &[u32]) -> Self {
+    pub(super) fn trace(arrangement: &Arrangement, element_of_face: &[u32], element_block: &[BlockId]) -> Self {
         let element = |h: u32| element_of_face[arrangement.face[h as usize] as usize];
-        let block = |e: u32| if e == NONE { NONE } else { element_block[e as usize] };
+        let block = |e: u32| (e != NONE).then(|| element_block[e as usize]);
         let bounds = |h: u32| element(h) != NONE && !mesh_only(&arrangement.label_of(h));
         let mut starts: Vec<u32> = (0..arrangement.next.len() as u32).filter(|&h| bounds(h)).collect();
         starts.sort_by_key(|&h| (block(element(h)), h));
@@ -75,7 +76,7 @@ impl Outlines {
                 h = next_boundary(arrangement, h);
             }
             outlines.loop_start.push(outlines.pieces.len() as u32);
-            outlines.loop_block.push(block(element(start)));
+            outlines.loop_block.extend(block(element(start)));
         }
         outlines
     }

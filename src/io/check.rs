@@ -61,7 +61,7 @@ pub struct Check {
 pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     let (model, built) = (simulation.model(), simulation.built());
     let covers = &model.covers;
-    let block_areas = sorted((0..covers.block_count()).map(|b| covers.block_area(b)).collect());
+    let block_areas = sorted(covers.blocks().map(|b| covers.block_area(b)).collect());
     let mut stars_by_cover_count = BTreeMap::new();
     for (_, count) in covers.covers_by_star() {
         *stars_by_cover_count.entry(count).or_default() += 1;

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use enmm_lanes::{LANES, SLOTS, Slot};
 
-use crate::cover::Covers;
+use crate::cover::{BlockId, Covers};
 use crate::geometry::Vector;
 
 use super::PreStress;
@@ -34,7 +34,7 @@ pub struct Chunk {
     /// Blocks: those that begin here.
     pub blocks: Range<usize>,
     /// The large block of which this is a part.
-    pub part_of: Option<u32>,
+    pub part_of: Option<BlockId>,
     /// Covers whose forces this chunk computes.
     pub covers: Range<usize>,
     halo: Range<usize>,
@@ -137,8 +137,9 @@ impl Chunks {
         };
         let (mut first, count) = (0, covers.block_count());
         while first < count {
-            if covers.covers_of(first).len() > PART {
-                cutter.push_large(first);
+            let block = BlockId::new(first);
+            if covers.covers_of(block).len() > PART {
+                cutter.push_large(block);
                 first += 1;
                 continue;
             }
@@ -246,15 +247,16 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     fn push_blocks(&mut self, blocks: Range<usize>) {
-        let elements = self.covers.elements_of(blocks.start).start..self.covers.elements_of(blocks.end - 1).end;
-        let own = self.covers.covers_of(blocks.start).start..self.covers.covers_of(blocks.end - 1).end;
+        let [first, last] = [blocks.start, blocks.end - 1].map(BlockId::new);
+        let elements = self.covers.elements_of(first).start..self.covers.elements_of(last).end;
+        let own = self.covers.covers_of(first).start..self.covers.covers_of(last).end;
         let ids = elements.map(|e| e as u32).collect();
         self.push(Chunk { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
     }
 
     /// Cuts a block into runs of whole tiles, in the order of the covers; a tile with too many covers is cut as well. A
     /// block without tiles is cut into equal parts.
-    fn parts_of(&self, block: usize) -> Vec<Range<usize>> {
+    fn parts_of(&self, block: BlockId) -> Vec<Range<usize>> {
         let own = self.covers.covers_of(block);
         if !self.covers.is_tiled(block) {
             let count = own.len().div_ceil(PART);
@@ -274,7 +276,7 @@ impl Cutter<'_> {
         parts
     }
 
-    fn push_large(&mut self, block: usize) {
+    fn push_large(&mut self, block: BlockId) {
         let parts = self.parts_of(block);
         let first = self.covers.covers_of(block).start;
         let part_of_cover: Vec<usize> =
@@ -287,8 +289,8 @@ impl Cutter<'_> {
             (1..3).filter(|&k| touched[k] != touched[k - 1]).for_each(|k| elements[touched[k]].push(e as u32));
         }
         for (part, (covers, elements)) in parts.into_iter().zip(elements).enumerate() {
-            let blocks = if part == 0 { block..block + 1 } else { block + 1..block + 1 };
-            let chunk = Chunk { blocks, part_of: Some(block as u32), covers, halo: 0..0, batches: 0..0 };
+            let blocks = block.index() + usize::from(part > 0)..block.index() + 1;
+            let chunk = Chunk { blocks, part_of: Some(block), covers, halo: 0..0, batches: 0..0 };
             self.push(chunk, elements);
         }
     }
@@ -316,7 +318,7 @@ impl Cutter<'_> {
         let (covers, element_rock) = (self.covers, self.element_rock);
         let kind = |e: u32| (covers.element_triangle[e as usize].set, element_rock[e as usize]);
         elements.sort_by_key(|&e| (kind(e), e));
-        let in_rows = chunk.part_of.is_some_and(|block| covers.is_tiled(block as usize));
+        let in_rows = chunk.part_of.is_some_and(|block| covers.is_tiled(block));
         for batch in elements.chunk_by(|&a, &b| kind(a) == kind(b)) {
             self.push_batch(kind(batch[0]), batch, in_rows);
         }

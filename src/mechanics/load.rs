@@ -1,6 +1,6 @@
 //! External loads and their time tables: forces on covers from points, faces, blocks and all rock.
 
-use crate::cover::Weights;
+use crate::cover::{BlockId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::MassMatrix;
@@ -50,7 +50,7 @@ pub enum LoadAction {
     /// Acceleration (m/s²) of all rock.
     Body(Vector),
     /// Force (N/m) and moment (N·m/m) about the centroid of a block.
-    Block(u32, Vector, f64),
+    Block(BlockId, Vector, f64),
 }
 
 /// A load with its time table.
@@ -78,7 +78,7 @@ impl Load {
         &self,
         t: f64,
         position: impl Fn(usize) -> Point,
-        block: impl Fn(u32) -> std::ops::Range<usize>,
+        block: impl Fn(BlockId) -> std::ops::Range<usize>,
         mass_matrix: &MassMatrix,
         force: &mut [Vector],
     ) {
@@ -152,7 +152,8 @@ mod tests {
     #[test]
     fn a_block_moment_has_no_resultant_force() {
         let positions = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
-        let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
+        let load =
+            Load { action: LoadAction::Block(BlockId::new(0), Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
         let mass_matrix = MassMatrix { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..MassMatrix::default() };
         load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force);

@@ -14,7 +14,7 @@ mod warnings;
 use std::collections::BTreeMap;
 
 use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, Covers, Outlines};
+use crate::cover::{self, BlockId, Covers, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
@@ -250,12 +250,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
 
 /// Angular frequency of each block's deformation (Eq. 11); a block smaller than an element deforms like one.
 fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
-    let of_block = |b: usize| {
+    let of_block = |b: BlockId| {
         let speed =
             covers.elements_of(b).map(|e| rocks[element_rock[e] as usize].shear_wave_speed()).fold(0.0, f64::max);
         2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt().max(covers.mesh.size)
     };
-    (0..covers.block_count()).map(of_block).collect()
+    covers.blocks().map(of_block).collect()
 }
 
 fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
@@ -337,7 +337,7 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
             LoadKind::Joint => LoadAction::Faces(faces.loaded(&key, load)?),
             LoadKind::Block => {
                 let block = positions.block(&point().0, point().1)?;
-                LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
+                LoadAction::Block(block, vector(load.force), load.moment.unwrap_or_default())
             }
         };
         loads.push(Load { action, table: TimeTable(load.table.clone().unwrap_or_default()) });
@@ -360,11 +360,11 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         let blocks = match start.block {
             Some(point) => {
                 let block = positions.block(&format!("initial_velocity[{k}].block"), point)?;
-                block..block + 1
+                block.index()..block.index() + 1
             }
             None => 0..model.covers.block_count(),
         };
-        for block in blocks {
+        for block in BlockId::range(blocks) {
             let centre = model.covers.block_centroid(block);
             for i in model.covers.covers_of(block) {
                 let arm = model.covers.star_position[i] - centre;

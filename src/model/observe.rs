@@ -3,6 +3,7 @@
 //! All of it follows from the state alone, so that a restored model shows the same.
 
 use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
 use crate::state::{Model, State};
@@ -60,7 +61,7 @@ impl Simulation {
             ..Snapshot::default()
         };
         snapshot.elements.start.push(0);
-        for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]) {
+        for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e]]) {
             for &p in covers.polygon(e) {
                 let displacement = model.sample(e, p, &state.displacement);
                 snapshot.elements.points.push(p + displacement);
@@ -72,7 +73,7 @@ impl Simulation {
             if !state.plastic.is_empty() {
                 snapshot.plastic_strain.push(equivalent_strain(&model.plastic_strain(state, e)));
             }
-            snapshot.block.push(covers.element_block[e]);
+            snapshot.block.push(covers.element_block[e].number());
             snapshot.rock.push(u32::from(model.element_rock[e]));
         }
         let positions = positions(model, state);
@@ -84,7 +85,7 @@ impl Simulation {
     /// Loops of all blocks that are there, at the current `positions` of the boundary points.
     fn boundaries(&self, positions: &[Point]) -> Vec<Boundary> {
         let (model, state) = (self.model(), self.state());
-        let mut by_block: Vec<(u32, Vec<Vec<Point>>)> = Vec::new();
+        let mut by_block: Vec<(BlockId, Vec<Vec<Point>>)> = Vec::new();
         let mut k = 0;
         while k < model.boundary.len() {
             let end = loop_end(model, EdgeId::new(k));
@@ -95,14 +96,14 @@ impl Simulation {
             }
             k = end;
         }
-        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block as usize]);
+        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block]);
         there
             .map(|(block, mut loops)| {
                 loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
                 Boundary {
-                    block,
-                    fixed: self.workspace().mass_matrix.fixed[block as usize],
-                    displacement: mean(model, &state.displacement, block as usize),
+                    block: block.number(),
+                    fixed: self.workspace().mass_matrix.fixed[block],
+                    displacement: mean(model, &state.displacement, block),
                     loops: polygons(&loops),
                 }
             })
@@ -112,14 +113,13 @@ impl Simulation {
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
         let positions = positions(self.model(), self.state());
-        let mut states: Vec<BlockState> =
-            (0..self.model().covers.block_count()).map(|block| self.motion_of(block)).collect();
+        let mut states: Vec<BlockState> = self.model().covers.blocks().map(|block| self.motion_of(block)).collect();
         let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
             let node = boundary.node_point[contact.node];
             let depth = penetration(self.model(), &positions, contact);
             for block in [boundary.block[node], boundary.block[contact.edge]] {
-                let state = &mut states[block as usize];
+                let state = &mut states[block];
                 state.contact_count += u32::from(contact.state != ContactState::Open);
                 state.penetration_max = state.penetration_max.max(depth);
             }
@@ -131,7 +131,7 @@ impl Simulation {
     }
 
     /// The state of one block without what its contacts tell.
-    pub fn motion_of(&self, block: usize) -> BlockState {
+    pub fn motion_of(&self, block: BlockId) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
         let mass_matrix = &self.workspace().mass_matrix;
@@ -141,7 +141,7 @@ impl Simulation {
         let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
         BlockState {
-            id: block as u32,
+            id: block.number(),
             fixed: mass_matrix.fixed[block],
             removed,
             centroid: mean(model, &covers.star_position, block) + displacement,
@@ -161,7 +161,7 @@ impl Simulation {
 
 impl Simulation {
     /// Area mean of the stress xx, yy, xy (Pa, tension positive) and the strain energy (J/m) of a block.
-    pub fn stress_of(&self, block: usize) -> ([f64; 3], f64) {
+    pub fn stress_of(&self, block: BlockId) -> ([f64; 3], f64) {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
         let area = covers.block_area(block);
@@ -178,7 +178,7 @@ impl Simulation {
     pub fn yielded_elements(&self) -> usize {
         let state = self.state();
         let blocks = &self.model().covers.element_block;
-        let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block as usize]);
+        let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block]);
         there.filter(|(plastic, _)| **plastic != [0.0; 4]).count()
     }
 
@@ -216,13 +216,13 @@ fn positions(model: &Model, state: &State) -> Vec<Point> {
 }
 
 /// Mean of a cover field over a block's mass.
-fn mean(model: &Model, field: &[Vector], block: usize) -> Vector {
+fn mean(model: &Model, field: &[Vector], block: BlockId) -> Vector {
     let sum: Vector = model.covers.covers_of(block).map(|i| field[i] * model.mass_matrix.row_sum[i]).sum();
     sum / model.mass_matrix.total[block]
 }
 
 /// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
-fn rotation(model: &Model, state: &State, block: usize) -> f64 {
+fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
     let centre = mean(model, &model.covers.star_position, block);
     let shift = mean(model, &state.displacement, block);
     let (mut cosine, mut sine) = (0.0, 0.0);

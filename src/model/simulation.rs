@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
@@ -306,7 +307,7 @@ impl Simulation {
         let stage_case = &self.case.stages[stage];
         for (k, &point) in stage_case.excavate.iter().enumerate() {
             let element = covers.element_near(Point::from(point), self.built.noding.tolerance);
-            let block = element.map(|e| covers.element_block[e] as usize).ok_or_else(|| Invalid {
+            let block = element.map(|e| covers.element_block[e]).ok_or_else(|| Invalid {
                 key: format!("stage[{stage}].excavate[{k}]"),
                 message: format!("there is no block at ({}, {}): choose a point inside one", point[0], point[1]),
             })?;
@@ -314,8 +315,8 @@ impl Simulation {
         }
         if let Some(region) = &stage_case.excavate_region {
             let region: Vec<Point> = region.iter().map(|p| Point::from(*p)).collect();
-            let inside = |b: &usize| polygon::contains(&region, covers.block_centroid(*b));
-            let blocks: Vec<usize> = (0..covers.block_count()).filter(inside).collect();
+            let inside = |b: &BlockId| polygon::contains(&region, covers.block_centroid(*b));
+            let blocks: Vec<BlockId> = covers.blocks().filter(inside).collect();
             if blocks.is_empty() {
                 return Err(Invalid {
                     key: format!("stage[{stage}].excavate_region"),
@@ -360,7 +361,7 @@ impl Simulation {
         for (segment, bolt) in model.bolts.iter().zip(&mut state.bolts) {
             let name = self.case.bolts[segment.bolt as usize].name.as_ref();
             let position = install.iter().position(|wanted| Some(wanted) == name);
-            let gone = segment.blocks.iter().any(|&b| state.removed[b as usize]);
+            let gone = segment.blocks.iter().any(|&b| state.removed[b]);
             if let (Some(k), true) = (position, gone) {
                 let message =
                     format!("an end of bolt {:?} is in a block that has been removed: leave it out", install[k]);

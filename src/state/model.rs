@@ -1,7 +1,7 @@
 //! The built model: nothing in it changes in time.
 
 use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, Support};
-use crate::cover::{self, Covers};
+use crate::cover::{self, BlockId, Covers};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
@@ -39,7 +39,7 @@ pub struct Port {
     /// Kind.
     pub kind: PortKind,
     /// The block, or the block of the first edge.
-    pub block: u32,
+    pub block: BlockId,
     /// Boundary edges; none for a block.
     pub edges: Vec<EdgeId>,
     /// Force on the block (N/m) or traction on the boundary (Pa) at the start.

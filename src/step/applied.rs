@@ -1,6 +1,7 @@
 //! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
 
 use crate::contact::EdgeId;
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
 use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
@@ -64,7 +65,7 @@ pub fn pushes(model: &Model, state: &State) -> bool {
 pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
     for load in &model.loads {
         let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
-        let covers = |b: u32| model.covers.covers_of(b as usize);
+        let covers = |b: BlockId| model.covers.covers_of(b);
         load.push(t, position, covers, &model.mass_matrix, force);
     }
     let faces = Faces { model, state };
@@ -81,7 +82,7 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
 }
 
 fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
-    for block in (0..model.covers.block_count()).filter(|&b| !state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
             let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
@@ -127,7 +128,7 @@ impl Faces<'_> {
     /// Spreads the forces at both ends of an edge over their covers.
     fn push(&self, edge: EdgeId, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
         let boundary = &self.model.boundary;
-        if self.state.removed[boundary.block[edge] as usize] {
+        if self.state.removed[boundary.block[edge]] {
             return;
         }
         let ends = [edge, boundary.after(edge)];

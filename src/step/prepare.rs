@@ -47,18 +47,18 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
     let mass_matrix = &mut workspace.mass_matrix;
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
-            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize] as usize);
+            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize]);
             mass_matrix.hold_cover(cover as usize, axes);
         }
     }
-    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| state.removed[b]) {
         mass_matrix.hold_block(&model.covers, block);
         model.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
     workspace.rows.clear();
-    let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
+    let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block];
     for (_, support) in model.supports.iter().enumerate().filter(holds) {
-        mass_matrix.hold_block(&model.covers, support.block as usize);
+        mass_matrix.hold_block(&model.covers, support.block);
     }
     workspace.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
@@ -109,7 +109,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32,
         applied::push_forces(model, state, start, 1.0, &mut force);
         state.stage_force = force;
     }
-    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| state.removed[b]) {
         state.velocity[model.covers.covers_of(block)].fill(Vector::zeros());
     }
 }

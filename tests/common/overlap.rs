@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use enmm::contact::{Boundary, EdgeId, VertexEdge};
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector, polygon, segment};
 use enmm::model::Simulation;
 
@@ -15,7 +16,7 @@ pub struct Overlap {
     /// Depth (m).
     pub depth: f64,
     /// Blocks.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
 }
 
 impl Overlap {
@@ -52,7 +53,7 @@ impl Audit {
         let (boundary, blocks) = (&simulation.model().boundary, simulation.model().covers.block_count());
         let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
         for k in boundary.edges() {
-            let block = boundary.block[k] as usize;
+            let block = boundary.block[k];
             points[block].push(k);
             cracked[block] |= boundary.partial[k];
         }
@@ -77,7 +78,7 @@ impl Audit {
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
         let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().position);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
-        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut pairs: Vec<[BlockId; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {
             let [a, b] = [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]);
             let pair = [a.min(b), a.max(b)];
@@ -87,8 +88,7 @@ impl Audit {
         }
         pairs.sort_unstable();
         pairs.dedup();
-        let depth = |&[p, q]: &[u32; 2]| {
-            let [p, q] = [p as usize, q as usize];
+        let depth = |&[p, q]: &[BlockId; 2]| {
             if placed[p].is_apart(placed[q].low, placed[q].high) {
                 return 0.0;
             }

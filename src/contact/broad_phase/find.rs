@@ -5,6 +5,7 @@ use std::ops::Range;
 use enmm_lanes::{Kernel, LANES, Lanes};
 
 use crate::contact::{Boundary, EdgeId, NodeId};
+use crate::cover::BlockId;
 
 use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
@@ -51,7 +52,7 @@ impl Kernel for Find<'_> {
         self.run.near_pairs.clear();
         while !self.nodes.is_empty() {
             let (few, block, span) = self.next_few();
-            if !self.view.removed[block as usize] {
+            if !self.view.removed[block] {
                 self.look_round(&within, block, span);
                 for node in NodeId::range(few) {
                     self.near_edges(&within, node, block);
@@ -64,7 +65,7 @@ impl Kernel for Find<'_> {
 impl Find<'_> {
     /// The next few nodes of one block: indices, block and bounding box.
     #[inline(always)]
-    fn next_few(&mut self) -> (Range<usize>, u32, Span) {
+    fn next_few(&mut self) -> (Range<usize>, BlockId, Span) {
         let (boundary, position) = (self.view.boundary, self.view.position);
         let Range { start, end } = self.nodes;
         let point = |node: usize| boundary.node_point[node];
@@ -80,7 +81,7 @@ impl Find<'_> {
 
     /// Lists the stretches that a box of a block may meet, with their boxes.
     #[inline(always)]
-    fn look_round<L: Lanes>(&mut self, within: &Within<L>, block: u32, span: Span) {
+    fn look_round<L: Lanes>(&mut self, within: &Within<L>, block: BlockId, span: Span) {
         let (grid, fixed) = (self.grid, self.view.fixed);
         let Run { around, boxes, .. } = &mut *self.run;
         around.clear();
@@ -88,7 +89,7 @@ impl Find<'_> {
         let mut list = |eight: u32, lane: usize| {
             let stretch = grid.stretch_at[eight as usize * LANES + lane];
             let Stretch { block: other, partial, .. } = grid.stretches[stretch as usize];
-            if (other != block || partial) && !(fixed[block as usize] && fixed[other as usize]) {
+            if (other != block || partial) && !(fixed[block] && fixed[other]) {
                 around.push(stretch);
             }
         };
@@ -109,7 +110,7 @@ impl Find<'_> {
 
     /// Appends the near edges of a node.
     #[inline(always)]
-    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: u32) {
+    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: BlockId) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
         let p = self.view.position[boundary.node_point[node]];

@@ -5,6 +5,7 @@ use std::ops::Range;
 use enmm_lanes::{LANES, Lanes};
 
 use crate::contact::EdgeId;
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 
 use super::SearchView;
@@ -25,7 +26,7 @@ pub struct Stretch {
     pub edge: EdgeId,
     /// Start of that edge among the points of the grid.
     point: u32,
-    pub block: u32,
+    pub block: BlockId,
     count: u8,
     /// Whether one of the edges lies on a partial cut.
     pub partial: bool,
@@ -121,7 +122,7 @@ impl Grid {
         while let Some(length) = boundary.next[first..].iter().position(|next| next.index() == first) {
             let edges = first..first + length + 1;
             first = edges.end;
-            if !view.removed[boundary.block[edges.start] as usize] {
+            if !view.removed[boundary.block[edges.start]] {
                 self.divide_loop(view, edges);
             }
         }

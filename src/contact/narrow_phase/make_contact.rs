@@ -52,7 +52,7 @@ impl NarrowPhase<'_> {
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
-        let arms = blocks.map(|b| p - self.motion[b as usize].centre);
+        let arms = blocks.map(|b| p - self.motion[b].centre);
         let Tributary { length, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law as usize].stiffness(length, penalty);
@@ -114,7 +114,7 @@ impl NarrowPhase<'_> {
             && physical != [false; 2]
         {
             let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
-            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b as usize]).iter().sum();
+            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b]).iter().sum();
             let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
             let centre =
                 |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };

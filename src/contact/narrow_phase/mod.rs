@@ -356,7 +356,7 @@ impl NarrowPhase<'_> {
     /// Whether the gap (m) of a candidate is deeper than a node moves in one step.
     fn is_deep(&self, node: NodeId, candidate: &ContactCandidate, gap: f64) -> bool {
         let Boundary { block, block_thickness, node_point, .. } = self.boundary;
-        let blocks = [node_point[node], candidate.edge].map(|point| block[point] as usize);
+        let blocks = [node_point[node], candidate.edge].map(|point| block[point]);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
         -gap > (self.rule.deep * self.size).min(self.rule.deep_share * thin)
     }

@@ -1,6 +1,6 @@
 //! Positions that a case names, found on the built covers.
 
-use crate::cover::{BoundaryPiece, Covers, Outlines, Weights};
+use crate::cover::{BlockId, BoundaryPiece, Covers, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector, segment};
 use crate::model::case::Invalid;
 
@@ -14,14 +14,14 @@ pub(super) struct Locator<'a> {
 
 /// A material point.
 pub(super) struct MaterialPoint {
-    pub block: u32,
+    pub block: BlockId,
     pub covers: [u32; 3],
     pub weights: Weights,
 }
 
 /// A piece of outer boundary.
 pub(super) struct OuterPiece {
-    pub block: u32,
+    pub block: BlockId,
     pub covers: [u32; 3],
     pub weights: [Weights; 2],
     pub piece: BoundaryPiece,
@@ -29,7 +29,7 @@ pub(super) struct OuterPiece {
 
 /// A material point with a support's stiffness (N/m per metre) and the force (N/m) that it bears from the start.
 pub(super) struct Hold {
-    pub block: u32,
+    pub block: BlockId,
     pub covers: [u32; 3],
     pub weights: Weights,
     pub stiffness: f64,
@@ -74,8 +74,8 @@ impl Locator<'_> {
     }
 
     /// The block at a point.
-    pub fn block(&self, key: &str, point: [f64; 2]) -> Result<usize, Invalid> {
-        self.element(key, point).map(|e| self.covers.element_block[e] as usize)
+    pub fn block(&self, key: &str, point: [f64; 2]) -> Result<BlockId, Invalid> {
+        self.element(key, point).map(|e| self.covers.element_block[e])
     }
 
     /// The material point at a position.

@@ -89,7 +89,7 @@ pub(super) fn ports(case: &Case, positions: &Locator, faces: &Faces) -> Result<V
         };
         let block = match edges.first() {
             Some(&edge) => faces.boundary.block[edge],
-            None => positions.block(&key("block"), port.block.unwrap_or_default())? as u32,
+            None => positions.block(&key("block"), port.block.unwrap_or_default())?,
         };
         ports.push(Port { name: port.name.clone(), kind, block, edges, force: Vector::from(force), scalar });
     }

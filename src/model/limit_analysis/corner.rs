@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::cover::Outlines;
+use crate::cover::{BlockId, Outlines};
 use crate::geometry::{Point, Vector};
 
 use super::contact::{Contact, block_of, outward};
@@ -23,7 +23,7 @@ pub struct Corner {
 #[derive(Debug, Clone, Copy)]
 struct Sector {
     at: Point,
-    block: u32,
+    block: BlockId,
     /// Ends of the face that leaves the point and of the one that comes to it, rock on their left.
     far: [Point; 2],
     /// Joint traces of both.
@@ -33,7 +33,7 @@ struct Sector {
 }
 
 /// Point contacts that act in any case, and pairs of facing corners of which one facet acts.
-pub fn corners(outlines: &Outlines, element_block: &[u32], strengths: &Strengths) -> (Vec<Contact>, Vec<Corner>) {
+pub fn corners(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths) -> (Vec<Contact>, Vec<Corner>) {
     let (mut points, mut corners) = (Vec::new(), Vec::new());
     let sectors = sectors(outlines, element_block, strengths);
     for group in sectors.chunk_by(|a, b| a.at == b.at).filter(|group| group.len() > 2 || lie_apart(group)) {
@@ -56,15 +56,13 @@ fn lie_apart(group: &[Sector]) -> bool {
 }
 
 /// All sectors of blocks that are there, those about the same point one after the other.
-fn sectors(outlines: &Outlines, element_block: &[u32], strengths: &Strengths) -> Vec<Sector> {
+fn sectors(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths) -> Vec<Sector> {
     let mut sectors = Vec::new();
     for k in 0..outlines.len() {
         let pieces = outlines.of_loop(k);
         for (before, after) in pieces.iter().cycle().skip(pieces.len() - 1).zip(pieces) {
-            let block = block_of(element_block, after.element);
-            if strengths.is_gone(block) {
-                continue;
-            }
+            let block = block_of(element_block, after.element).filter(|&block| !strengths.is_gone(block));
+            let Some(block) = block else { continue };
             let far = [after.b, before.a];
             let angle = angle(after.b - after.a, before.a - after.a);
             sectors.push(Sector { at: after.a, block, far, traces: [after.trace, before.trace], angle });

@@ -49,7 +49,7 @@ impl Pass<'_> {
         let mut energy = 0.0;
         for (element, plastic) in (first..).zip(plastic) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
-            if self.removed[covers.element_block[element] as usize] {
+            if self.removed[covers.element_block[element]] {
                 continue;
             }
             let (at, pre) =

@@ -124,7 +124,7 @@ pub fn stress_at(simulation: &Simulation, point: Point) -> [f64; 3] {
     for e in 0..covers.element_count() {
         let d = (covers.element_centroid[e] - point) / reach;
         let nearness = 1.0 - d.norm_squared();
-        if nearness <= 0.0 || state.removed[covers.element_block[e] as usize] {
+        if nearness <= 0.0 || state.removed[covers.element_block[e]] {
             continue;
         }
         let weight = covers.element_area[e] * nearness * nearness;
