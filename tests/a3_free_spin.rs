@@ -53,7 +53,7 @@ fn place(simulation: &Simulation, k: EdgeId) -> Point {
     let boundary = &slope.boundary;
     (0..3)
         .map(|c| {
-            let i = boundary.covers[k][c] as usize;
+            let i = boundary.covers[k][c];
             (slope.covers.star_position[i] + u[i]) * boundary.weights[k][c]
         })
         .sum()

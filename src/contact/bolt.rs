@@ -1,6 +1,6 @@
 //! Rock bolts: elastic–plastic bars between two material points, solved in the open–close iteration (Eqs. 40–44).
 
-use crate::cover::{BlockId, Weights};
+use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::MassMatrix;
 
@@ -17,7 +17,7 @@ pub struct BoltSegment {
     /// Blocks of both points.
     pub blocks: [BlockId; 2],
     /// Covers of both points.
-    pub covers: [[u32; 3]; 2],
+    pub covers: [[CoverId; 3]; 2],
     /// Weights of those covers at the points.
     pub weights: [Weights; 2],
     /// Reference positions of both points (m).
@@ -82,7 +82,7 @@ impl BoltSegment {
     }
 
     fn position(&self, k: usize, star: &[Point], displacement: &[Vector]) -> Point {
-        let position = |i: u32| star[i as usize] + displacement[i as usize];
+        let position = |i: CoverId| star[i] + displacement[i];
         self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| position(i) * w).sum()
     }
 
@@ -166,7 +166,7 @@ mod tests {
         BoltSegment {
             bolt: 0,
             blocks: [BlockId::default(); 2],
-            covers: [[0; 3]; 2],
+            covers: [[CoverId::default(); 3]; 2],
             weights: [[1.0, 0.0, 0.0]; 2],
             points: [Point::zeros(), Point::new(1.0, 0.0)],
             stiffness: 100.0,

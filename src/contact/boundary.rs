@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::cover::{self, BlockId, BoundaryPiece, Covers, Outlines, Weights};
+use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
 use crate::geometry::{NONE, Point, Vector, id};
 
 id! {
@@ -51,9 +51,9 @@ impl Default for BoundaryOptions {
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Covers of the element that carries point `k`.
-    pub covers: Vec<[u32; 3]>,
+    pub covers: Vec<[CoverId; 3]>,
     /// Covers of the element that carries edge `k`.
-    pub edge_covers: Vec<[u32; 3]>,
+    pub edge_covers: Vec<[CoverId; 3]>,
     /// Weights of the covers of point `k` there.
     pub weights: Vec<Weights>,
     /// Reference position of point `k` (m).
@@ -168,7 +168,7 @@ impl Boundary {
     }
 
     /// Covers that may carry positions on an edge: its own and those of both of its ends.
-    pub fn covers_on(&self, edge: EdgeId) -> impl Iterator<Item = u32> {
+    pub fn covers_on(&self, edge: EdgeId) -> impl Iterator<Item = CoverId> {
         [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
     }
 
@@ -206,7 +206,7 @@ impl Boundary {
     fn push_loop(
         &mut self,
         covers: &Covers,
-        carrier: &impl Fn(u32, u32) -> usize,
+        carrier: &impl Fn(ElementId, ElementId) -> ElementId,
         block: BlockId,
         stations: &[Station],
     ) {
@@ -228,7 +228,7 @@ impl Boundary {
             let [before, after] = [before, station].map(|station| station.piece.element);
             let element = carrier(before, after);
             self.covers.push(covers.element_covers[element]);
-            self.edge_covers.push(covers.element_covers[covers.host[after as usize] as usize]);
+            self.edge_covers.push(covers.element_covers[covers.host[after]]);
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);
             self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));

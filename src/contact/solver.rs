@@ -14,7 +14,7 @@ pub use anchor::BlockImpulse;
 use enmm_lanes::LANES;
 use rayon::prelude::*;
 
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
@@ -90,7 +90,7 @@ pub struct OpenClose {
     /// Impulse sums of the blocks.
     block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
-    cuts: Vec<(BlockId, u32)>,
+    cuts: Vec<(BlockId, CoverId)>,
     /// 1/√m of the covers along each axis.
     roots: Vec<Vector>,
 }
@@ -140,7 +140,9 @@ impl OpenClose {
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, &view);
             self.cuts.clear();
-            self.cuts.extend(self.order.leaf_block().iter().map(|&block| (block, block_covers[block])));
+            self.cuts.extend(
+                self.order.leaf_block().iter().map(|&block| (block, CoverId::new(block_covers[block] as usize))),
+            );
         }
         self.order.arrange(contacts, &view, &mut self.sequence);
     }
@@ -300,5 +302,5 @@ fn apply_to_bolt(anchors: &[Anchor; 2], impulse: Vector, accumulators: &mut Accu
 
 /// All blocks.
 fn all_blocks<'a>(cover_impulse: &'a mut [Vector], block_impulse: &'a mut [PackedImpulse]) -> Accumulators<'a> {
-    Accumulators { cover_impulse, first_cover: 0, block_impulse, first_block: BlockId::new(0) }
+    Accumulators { cover_impulse, first_cover: CoverId::new(0), block_impulse, first_block: BlockId::new(0) }
 }

@@ -6,7 +6,7 @@ use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::{self, hilbert};
 use super::outlines::{Outlines, mesh_only};
-use super::{BlockId, Weights};
+use super::{BlockId, CoverId, ElementId, Weights};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
 #[derive(Debug, Clone)]
@@ -16,7 +16,7 @@ pub struct Covers {
     /// Weight gradients (1/m) of the up and the down triangle.
     pub gradients: [[Vector; 3]; 2],
     /// Three physical covers of each element, counter-clockwise.
-    pub element_covers: Vec<[u32; 3]>,
+    pub element_covers: Vec<[CoverId; 3]>,
     /// Lattice triangle of each element.
     pub element_triangle: Vec<Triangle>,
     /// Cut area of each element (m²).
@@ -42,9 +42,9 @@ pub struct Covers {
     /// First physical cover of each block, and the number of covers at the end.
     pub block_covers: Vec<u32>,
     /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
-    pub host: Vec<u32>,
+    pub host: Vec<ElementId>,
     /// Elements in the order of their lattice triangles, row by row, for finding them by position.
-    by_triangle: Vec<u32>,
+    by_triangle: Vec<ElementId>,
 }
 
 impl Covers {
@@ -63,28 +63,33 @@ impl Covers {
         self.element_covers.len()
     }
 
+    /// All elements.
+    pub fn elements(&self) -> impl ExactSizeIterator<Item = ElementId> + Clone {
+        ElementId::all(self.element_count())
+    }
+
     /// Number of physical covers.
     pub fn cover_count(&self) -> usize {
         self.star.len()
     }
 
-    /// Elements of a block.
+    /// Elements of a block, by their indices.
     pub fn elements_of(&self, block: BlockId) -> std::ops::Range<usize> {
         self.block_elements[block] as usize..self.block_elements[block.index() + 1] as usize
     }
 
-    /// Physical covers of a block.
+    /// Physical covers of a block, by their indices.
     pub fn covers_of(&self, block: BlockId) -> std::ops::Range<usize> {
         self.block_covers[block] as usize..self.block_covers[block.index() + 1] as usize
     }
 
     /// Reference polygon of an element.
-    pub fn polygon(&self, element: usize) -> &[Point] {
-        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element + 1] as usize]
+    pub fn polygon(&self, element: ElementId) -> &[Point] {
+        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element.index() + 1] as usize]
     }
 
     /// Weights of an element's covers at a reference point (Eq. 1).
-    pub fn weights(&self, element: usize, p: Point) -> Weights {
+    pub fn weights(&self, element: ElementId, p: Point) -> Weights {
         self.mesh.weights(self.element_triangle[element], p)
     }
 
@@ -101,15 +106,16 @@ impl Covers {
 
     /// A reference point inside a block: the centre of the largest triangle of its largest element.
     pub fn point_inside(&self, block: BlockId) -> Point {
-        let largest = |a: &usize, b: &usize| self.element_area[*a].total_cmp(&self.element_area[*b]);
-        let triangles = self.elements_of(block).max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
+        let largest = |a: &ElementId, b: &ElementId| self.element_area[*a].total_cmp(&self.element_area[*b]);
+        let elements = ElementId::range(self.elements_of(block));
+        let triangles = elements.max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
         let area = |t: &[Point; 3]| polygon::area(t);
         let triangle = triangles.into_iter().flatten().max_by(|a, b| area(a).total_cmp(&area(b)));
         triangle.map_or_else(|| self.block_centroid(block), |t| t.iter().sum::<Point>() / 3.0)
     }
 
     /// The element that holds a reference point, on its boundary included; the lowest when several do.
-    pub fn element_at(&self, p: Point) -> Option<usize> {
+    pub fn element_at(&self, p: Point) -> Option<ElementId> {
         self.around(p, 0.0).filter(|&e| polygon::contains(self.polygon(e), p)).min()
     }
 
@@ -119,29 +125,29 @@ impl Covers {
     }
 
     /// Elements that come within `reach` (m) of a point, and some more.
-    fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = usize> {
+    fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = ElementId> {
         let Triangle { i, j, .. } = self.mesh.locate(p);
         // A lattice row is 0.866 of the mesh size high.
         let rings = 1 + (1.2 * reach / self.mesh.size).min(1e6) as i32;
         let before = move |row: i32, column: i32| {
             self.by_triangle.partition_point(|&e| {
-                let triangle = &self.element_triangle[e as usize];
+                let triangle = &self.element_triangle[e];
                 (triangle.j, triangle.i) < (row, column)
             })
         };
         let rows = j.saturating_sub(rings)..=j.saturating_add(rings);
         let (first, end) = (i.saturating_sub(2 * rings), i.saturating_add(2 * rings + 1));
-        rows.flat_map(move |row| self.by_triangle[before(row, first)..before(row, end)].iter().map(|&e| e as usize))
+        rows.flat_map(move |row| self.by_triangle[before(row, first)..before(row, end)].iter().copied())
     }
 
     /// The element that holds a reference point, or else the nearest one within `reach` (m).
-    pub fn element_near(&self, p: Point, reach: f64) -> Option<usize> {
-        let distance = |e: usize| -> f64 {
+    pub fn element_near(&self, p: Point, reach: f64) -> Option<ElementId> {
+        let distance = |e: ElementId| -> f64 {
             let points = self.polygon(e);
             let sides = points.iter().zip(points.iter().cycle().skip(1));
             sides.map(|(a, b)| segment::distance(p, *a, *b)).fold(f64::INFINITY, f64::min)
         };
-        let nearest = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let nearest = |a: &(f64, ElementId), b: &(f64, ElementId)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         self.element_at(p).or_else(|| {
             let near = self.around(p, reach).map(|e| (distance(e), e)).min_by(nearest)?;
             (near.0 <= reach).then_some(near.1)
@@ -157,7 +163,7 @@ impl Covers {
     }
 
     /// Tile of the lattice that a cover stands in.
-    pub fn tile(&self, cover: usize) -> [i32; 2] {
+    pub fn tile(&self, cover: CoverId) -> [i32; 2] {
         order::tile(self.star[cover])
     }
 
@@ -187,9 +193,9 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
     for (new, &old) in blocks.order.iter().enumerate() {
         covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[3 * old as usize + k]);
     }
-    let mut element_of_face = vec![NONE; arrangement.faces.len()];
-    for (new, &old) in blocks.order.iter().enumerate() {
-        element_of_face[raw.face[old as usize] as usize] = new as u32;
+    let mut element_of_face = vec![None; arrangement.faces.len()];
+    for (new, &old) in covers.elements().zip(&blocks.order) {
+        element_of_face[raw.face[old as usize] as usize] = Some(new);
     }
     drop((raw, joined, blocks, slot_cover));
     let outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
@@ -200,10 +206,10 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
 }
 
 /// See [`Covers::by_triangle`].
-fn by_triangle(covers: &Covers) -> Vec<u32> {
-    let mut elements: Vec<u32> = (0..covers.element_count() as u32).collect();
-    let position = |e: u32| {
-        let triangle = &covers.element_triangle[e as usize];
+fn by_triangle(covers: &Covers) -> Vec<ElementId> {
+    let mut elements: Vec<ElementId> = covers.elements().collect();
+    let position = |e: ElementId| {
+        let triangle = &covers.element_triangle[e];
         (triangle.j, triangle.i)
     };
     elements.sort_unstable_by_key(|&e| (position(e), e));
@@ -411,7 +417,7 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
     Covers {
         gradients: mesh.gradients(),
         mesh,
-        element_covers: vec![[0; 3]; blocks.order.len()],
+        element_covers: vec![[CoverId::default(); 3]; blocks.order.len()],
         element_triangle: blocks.order.iter().map(|k| raw.triangle[take(k)]).collect(),
         element_area: blocks.order.iter().map(|k| raw.area[take(k)]).collect(),
         element_centroid: blocks.order.iter().map(|k| raw.centroid[take(k)]).collect(),
@@ -430,7 +436,7 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
 }
 
 /// Creates the physical covers and returns the cover of each slot (3·raw element + corner).
-fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<u32> {
+fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<CoverId> {
     let star_of = |slot: u32| raw.triangle[slot as usize / 3].nodes()[slot as usize % 3];
     let mut roots: Vec<u32> =
         (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
@@ -443,9 +449,9 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
         let position = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
         (block, position, tile, [j, i], s)
     });
-    let mut cover_of_root = vec![NONE; joined.slot_root.len()];
-    for (k, &s) in roots.iter().enumerate() {
-        cover_of_root[s as usize] = k as u32;
+    let mut cover_of_root = vec![CoverId::default(); joined.slot_root.len()];
+    for (cover, &s) in CoverId::all(roots.len()).zip(&roots) {
+        cover_of_root[s as usize] = cover;
         covers.star.push(star_of(s));
         covers.star_position.push(covers.mesh.node(star_of(s)));
         covers.cover_block.push(blocks.block[s as usize / 3]);

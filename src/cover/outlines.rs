@@ -1,6 +1,6 @@
 //! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
 
-use super::BlockId;
+use super::{BlockId, ElementId};
 use crate::geometry::{Arrangement, Label, NONE, Point};
 
 /// A straight piece of a block's boundary inside one element; rock lies to its left.
@@ -11,11 +11,11 @@ pub struct BoundaryPiece {
     /// End (m).
     pub b: Point,
     /// Element on the left.
-    pub element: u32,
+    pub element: ElementId,
     /// Joint trace that made it, `NONE` on an outline.
     pub trace: u32,
-    /// Element on the right, `NONE` outside the rock.
-    pub opposite: u32,
+    /// Element on the right; none outside the rock.
+    pub opposite: Option<ElementId>,
     /// Whether both sides belong to one block.
     pub partial: bool,
 }
@@ -53,30 +53,34 @@ impl Outlines {
     }
 
     /// Walks all boundary loops of the elements that `element_of_face` names.
-    pub(super) fn trace(arrangement: &Arrangement, element_of_face: &[u32], element_block: &[BlockId]) -> Self {
+    pub(super) fn trace(
+        arrangement: &Arrangement,
+        element_of_face: &[Option<ElementId>],
+        element_block: &[BlockId],
+    ) -> Self {
         let element = |h: u32| element_of_face[arrangement.face[h as usize] as usize];
-        let block = |e: u32| (e != NONE).then(|| element_block[e as usize]);
-        let bounds = |h: u32| element(h) != NONE && !mesh_only(&arrangement.label_of(h));
-        let mut starts: Vec<u32> = (0..arrangement.next.len() as u32).filter(|&h| bounds(h)).collect();
-        starts.sort_by_key(|&h| (block(element(h)), h));
+        let block = |e: ElementId| element_block[e];
+        let bounds = |h: u32| Some((block(element(h)?), h)).filter(|_| !mesh_only(&arrangement.label_of(h)));
+        let mut starts: Vec<(BlockId, u32)> = (0..arrangement.next.len() as u32).filter_map(bounds).collect();
+        starts.sort();
         let mut seen = vec![false; arrangement.next.len()];
         let mut outlines = Self { loop_start: vec![0], ..Self::default() };
-        for start in starts {
+        for (loop_block, start) in starts {
             if seen[start as usize] {
                 continue;
             }
             let mut h = start;
-            while !seen[h as usize] {
+            while let (false, Some(own)) = (seen[h as usize], element(h)) {
                 seen[h as usize] = true;
                 let [a, b] = [h, h ^ 1].map(|h| arrangement.points[arrangement.origin(h) as usize]);
-                let (own, opposite) = (element(h), element(h ^ 1));
-                let partial = block(own) == block(opposite);
+                let opposite = element(h ^ 1);
+                let partial = opposite.is_some_and(|other| block(other) == block(own));
                 let trace = arrangement.label_of(h).trace;
                 outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
                 h = next_boundary(arrangement, h);
             }
             outlines.loop_start.push(outlines.pieces.len() as u32);
-            outlines.loop_block.extend(block(element(start)));
+            outlines.loop_block.push(loop_block);
         }
         outlines
     }

@@ -1,6 +1,7 @@
 //! What a picture of a model shows beside its blocks.
 
 use crate::contact::EdgeId;
+use crate::cover::CoverId;
 use crate::geometry::{NONE, Point};
 use crate::model::Simulation;
 use crate::model::case::Port;
@@ -12,7 +13,7 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
     let (model, case) = (simulation.model(), simulation.case());
     let covers = &model.covers;
     let supports = model.supports.iter().map(|support| {
-        let position = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
+        let position = |(&i, w): (&CoverId, f64)| covers.star_position[i] * w;
         support.covers.iter().zip(support.weights).map(position).sum()
     });
     let mut fixed: Vec<Point> = supports.collect();

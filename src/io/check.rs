@@ -128,7 +128,7 @@ fn small_covers(simulation: &Simulation, third: f64) -> usize {
     let mut density = vec![0.0f64; covers.cover_count()];
     for (e, ids) in covers.element_covers.iter().enumerate() {
         let of_element = model.rocks[model.element_rock[e] as usize].density;
-        ids.iter().for_each(|&i| density[i as usize] = density[i as usize].max(of_element));
+        ids.iter().for_each(|&i| density[i] = density[i].max(of_element));
     }
     let masses = model.mass_matrix.row_sum.iter().zip(density);
     masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()

@@ -1,6 +1,6 @@
 //! Mass matrix: equal-thirds lumped mass of the covers with the rigid-exact correction of free blocks (Eqs. 2–4).
 
-use crate::cover::{BlockId, Covers};
+use crate::cover::{BlockId, CoverId, Covers};
 use crate::geometry::{Point, Vector};
 
 use super::Elasticity;
@@ -46,12 +46,12 @@ impl MassMatrix {
     pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
         let mut mass_matrix =
             Self { mass: vec![0.0; covers.cover_count()], row_sum: vec![0.0; covers.cover_count()], ..Self::default() };
-        for e in 0..covers.element_count() {
+        for e in covers.elements() {
             let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
             let weights = covers.weights(e, covers.element_centroid[e]);
             for (k, &cover) in covers.element_covers[e].iter().enumerate() {
-                mass_matrix.mass[cover as usize] += mass / 3.0;
-                mass_matrix.row_sum[cover as usize] += mass * weights[k];
+                mass_matrix.mass[cover] += mass / 3.0;
+                mass_matrix.row_sum[cover] += mass * weights[k];
             }
         }
         mass_matrix.lightness = 1.0;
@@ -104,7 +104,7 @@ impl MassMatrix {
     }
 
     /// Fixes a cover along the axes whose flag is set.
-    pub fn hold_cover(&mut self, cover: usize, axes: [bool; 2]) {
+    pub fn hold_cover(&mut self, cover: CoverId, axes: [bool; 2]) {
         for (axis, held) in axes.into_iter().enumerate() {
             if held {
                 self.inverse[cover][axis] = 0.0;

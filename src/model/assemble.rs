@@ -14,7 +14,7 @@ mod warnings;
 use std::collections::BTreeMap;
 
 use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, BlockId, Covers, Outlines};
+use crate::cover::{self, BlockId, CoverId, Covers, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
@@ -35,7 +35,7 @@ pub struct Built {
     /// State at the start.
     pub state: State,
     /// Element and reference point of each monitor.
-    pub monitors: Vec<(usize, Point)>,
+    pub monitors: Vec<(ElementId, Point)>,
     /// What the noder did.
     pub noding: NodingReport,
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
@@ -281,7 +281,7 @@ fn fixities(case: &Case, positions: &Locator, stiffness: f64) -> Result<(Vec<Fix
             fixity.covers.extend(covers.into_iter().map(|i| (i, axes)));
         } else if let Some(point) = fix.block {
             let block = positions.block(&format!("{key}.block"), point)?;
-            fixity.covers.extend(positions.covers.covers_of(block).map(|i| (i as u32, axes)));
+            fixity.covers.extend(CoverId::range(positions.covers.covers_of(block)).map(|i| (i, axes)));
         }
         for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| axes[*axis]) {
             supports.extend(held.iter().map(|h: &locator::Hold| Support {
@@ -345,7 +345,7 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
     Ok(loads)
 }
 
-fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(usize, Point)>, Invalid> {
+fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(ElementId, Point)>, Invalid> {
     let of = |(k, monitor): (usize, &case::Monitor)| {
         let element = positions.element(&format!("monitor[{k}].point"), monitor.point)?;
         Ok((element, Point::from(monitor.point)))

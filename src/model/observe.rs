@@ -3,7 +3,7 @@
 //! All of it follows from the state alone, so that a restored model shows the same.
 
 use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
 use crate::state::{Model, State};
@@ -61,7 +61,7 @@ impl Simulation {
             ..Snapshot::default()
         };
         snapshot.elements.start.push(0);
-        for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e]]) {
+        for e in covers.elements().filter(|&e| !state.removed[covers.element_block[e]]) {
             for &p in covers.polygon(e) {
                 let displacement = model.sample(e, p, &state.displacement);
                 snapshot.elements.points.push(p + displacement);
@@ -166,7 +166,7 @@ impl Simulation {
         let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
-        for e in covers.elements_of(block) {
+        for e in ElementId::range(covers.elements_of(block)) {
             let of_element = model.stress(state, e);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
             strain_energy += model.strain_energy(state, e) * covers.element_area[e];
@@ -209,9 +209,10 @@ fn polygons(loops: &[Vec<Point>]) -> Polygons {
 /// Current positions of the boundary points (m).
 fn positions(model: &Model, state: &State) -> Vec<Point> {
     let boundary = &model.boundary;
-    let position = |i: u32| model.covers.star_position[i as usize] + state.displacement[i as usize];
-    let sum =
-        |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum();
+    let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
+    let sum = |(covers, weights): (&[CoverId; 3], &[f64; 3])| {
+        covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum()
+    };
     boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
 }
 

@@ -1,7 +1,7 @@
 //! The built model: nothing in it changes in time.
 
 use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, Support};
-use crate::cover::{self, BlockId, Covers};
+use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
@@ -15,7 +15,7 @@ pub struct Fixity {
     /// Name.
     pub name: Option<String>,
     /// Covers that it holds, and along which axes.
-    pub covers: Vec<(u32, [bool; 2])>,
+    pub covers: Vec<(CoverId, [bool; 2])>,
     /// Whether it holds from the start.
     pub active: bool,
 }
@@ -198,7 +198,7 @@ pub struct Model {
 
 impl Model {
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
-    pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
+    pub fn sample(&self, element: ElementId, p: Point, field: &[Vector]) -> Vector {
         cover::sample(&self.covers.element_covers[element], &self.covers.weights(element, p), field)
     }
 }

@@ -1,7 +1,7 @@
 //! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
 
 use crate::contact::EdgeId;
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
 use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
@@ -64,7 +64,7 @@ pub fn pushes(model: &Model, state: &State) -> bool {
 /// `ramp`, as gravity does.
 pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
     for load in &model.loads {
-        let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
+        let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
         let covers = |b: BlockId| model.covers.covers_of(b);
         load.push(t, position, covers, &model.mass_matrix, force);
     }
@@ -85,7 +85,7 @@ fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut 
     for block in model.covers.blocks().filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
-            let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
+            let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
             let covers = model.covers.covers_of(block);
             mechanics::push_block(covers, &position, &model.mass_matrix, f * ramp, moment * ramp, force);
         }

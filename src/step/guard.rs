@@ -1,6 +1,6 @@
 //! Checks after every step: a run that has gone wrong stops with block, position and cause.
 
-use crate::cover::{self, BlockId};
+use crate::cover::{self, BlockId, ElementId};
 use crate::geometry::Point;
 use crate::state::Model;
 
@@ -103,7 +103,8 @@ impl Step<'_> {
     /// Position and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
     fn rock_faster_than(&self, limit: f64, block: BlockId) -> Option<(Point, f64)> {
         let (covers, state) = (&self.model.covers, &*self.state);
-        let corners = covers.elements_of(block).flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
+        let corners = ElementId::range(covers.elements_of(block))
+            .flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
         let mut moving = corners.map(|(element, corner)| {
             let weights = covers.weights(element, corner);
             let sample = |field| cover::sample(&covers.element_covers[element], &weights, field);

@@ -1,6 +1,7 @@
 //! What a stage needs before its first step: masses with its fixities, buffers, reference of the static damping.
 
 use crate::contact::{Support, SupportRow};
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::state::{Model, State, Workspace};
 
@@ -37,7 +38,7 @@ fn expose(model: &Model, exposed: &mut Vec<bool>) {
     let of_supports = model.supports.iter().map(|support| &support.covers);
     let of_bolts = model.bolts.iter().flat_map(|bolt| &bolt.covers);
     for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {
-        exposed[cover as usize] = true;
+        exposed[cover] = true;
     }
 }
 
@@ -47,13 +48,13 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
     let mass_matrix = &mut workspace.mass_matrix;
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
-            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize]);
-            mass_matrix.hold_cover(cover as usize, axes);
+            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover]);
+            mass_matrix.hold_cover(cover, axes);
         }
     }
     for block in model.covers.blocks().filter(|&b| state.removed[b]) {
         mass_matrix.hold_block(&model.covers, block);
-        model.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
+        CoverId::range(model.covers.covers_of(block)).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
     workspace.rows.clear();
     let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block];

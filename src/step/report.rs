@@ -1,7 +1,7 @@
 //! Energies, momenta and what a step reports.
 
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
-use crate::cover::BlockId;
+use crate::cover::{BlockId, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, BlockCovers, MassMatrix};
 use crate::state::{Ledger, Model, State, Workspace};
@@ -55,8 +55,8 @@ pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[V
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
 pub(super) fn strain(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
-    let of_element = |e: usize| covers.element_area[e] * model.strain_energy(state, e);
-    (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
+    let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e);
+    covers.elements().filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
 }
 
 /// Potential energy (J/m) of gravity relative to the reference configuration.

@@ -78,7 +78,7 @@ pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
     let covers = &slope.covers;
     (0..covers.element_count())
         .map(|e| {
-            let u = covers.element_covers[e].map(|i| state.displacement[i as usize]);
+            let u = covers.element_covers[e].map(|i| state.displacement[i]);
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &slope.rocks[slope.element_rock[e] as usize];
             Deformation::new(u, gradients).stress(rock, &[0.0; 3])

@@ -4,7 +4,7 @@ use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, NodeId, Pair, Spring, VertexEdge};
-use crate::cover::Weights;
+use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
@@ -132,7 +132,7 @@ impl NarrowPhase<'_> {
     /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off
     /// decides there which of two edges is nearer.
     #[inline(always)]
-    fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
+    fn covers_under(&self, candidate: &ContactCandidate) -> [CoverId; 3] {
         let (boundary, edge, band) = (self.boundary, candidate.edge, CORNER_TOLERANCE * self.size);
         if candidate.along.abs() < band {
             boundary.covers[edge]
@@ -145,8 +145,8 @@ impl NarrowPhase<'_> {
 
     /// Weights of an element's covers at a current position, by barycentric coordinates of its stars.
     #[inline(always)]
-    pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
-        let x = |k: usize| self.star[covers[k] as usize] + self.displacement[covers[k] as usize];
+    pub(super) fn weights_at(&self, covers: &[CoverId; 3], p: Point) -> Weights {
+        let x = |k: usize| self.star[covers[k]] + self.displacement[covers[k]];
         let (x0, x1, x2) = (x(0), x(1), x(2));
         let (d1, d2, d) = (x1 - x0, x2 - x0, p - x0);
         let area = d1.perp(&d2);

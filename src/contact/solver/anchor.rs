@@ -1,7 +1,7 @@
 //! Bodies under impulses: what a material point of a block moves by, and what its block keeps of them (Eq. 17).
 
 use crate::contact::Pair;
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
 
 use super::SolverView;
@@ -27,7 +27,7 @@ pub struct Accumulators<'a> {
     /// √m times the velocity increment of each cover by its own impulses (kg½·m½/s).
     pub cover_impulse: &'a mut [Vector],
     /// First cover of the run.
-    pub first_cover: u32,
+    pub first_cover: CoverId,
     /// Impulse sums of the blocks.
     pub block_impulse: &'a mut [PackedImpulse],
     /// First block of the run.
@@ -41,8 +41,9 @@ impl Accumulators<'_> {
     }
 
     /// The runs before and from a block whose first cover is `cover` on.
-    pub fn split(&mut self, block: BlockId, cover: u32) -> (Accumulators<'_>, Accumulators<'_>) {
-        let (cover_impulse, cover_impulse_rest) = self.cover_impulse.split_at_mut((cover - self.first_cover) as usize);
+    pub fn split(&mut self, block: BlockId, cover: CoverId) -> (Accumulators<'_>, Accumulators<'_>) {
+        let (cover_impulse, cover_impulse_rest) =
+            self.cover_impulse.split_at_mut(cover.index() - self.first_cover.index());
         let (block_impulse, block_impulse_rest) =
             self.block_impulse.split_at_mut(block.index() - self.first_block.index());
         let first =
@@ -65,7 +66,7 @@ impl Accumulators<'_> {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Anchor {
     /// Covers.
-    pub covers: [u32; 3],
+    pub covers: [CoverId; 3],
     /// w/√m along each axis, 0 where held.
     pub weights: [Vector; 3],
     /// Block, or none when it is held: it then moves by its covers alone.
@@ -88,7 +89,7 @@ impl Anchor {
         let (block, covers) = (pair.blocks[k], pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
-            weights[j] = roots[covers[j] as usize] * pair.weights[k][j];
+            weights[j] = roots[covers[j]] * pair.weights[k][j];
         }
         if !mass_matrix.is_free(block) {
             return Self { covers, weights, block: None, ..Self::default() };
@@ -109,7 +110,7 @@ impl Anchor {
     pub fn velocity(&self, accumulators: &Accumulators) -> Vector {
         let cover_impulse = |j: usize| {
             self.weights[j]
-                .component_mul(&accumulators.cover_impulse[(self.covers[j] - accumulators.first_cover) as usize])
+                .component_mul(&accumulators.cover_impulse[self.covers[j].index() - accumulators.first_cover.index()])
         };
         let velocity = cover_impulse(0) + cover_impulse(1) + cover_impulse(2);
         let Some(block) = self.block else { return velocity };
@@ -120,7 +121,8 @@ impl Anchor {
     /// Takes an impulse (N·s/m).
     pub fn push(&self, impulse: Vector, accumulators: &mut Accumulators) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            accumulators.cover_impulse[(cover - accumulators.first_cover) as usize] += weight.component_mul(&impulse);
+            accumulators.cover_impulse[cover.index() - accumulators.first_cover.index()] +=
+                weight.component_mul(&impulse);
         }
         if let Some(block) = self.block {
             let block_impulse = &mut accumulators.block_impulse[block.index() - accumulators.first_block.index()];

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use enmm_lanes::{LANES, prefetch};
 
 use crate::contact::{Boundary, EdgeId, NearPair, NodeId, SideId, VertexEdge};
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 
 use super::SolverView;
 use super::wide_contact::AHEAD;
@@ -69,8 +69,8 @@ struct Colours {
     of_block: Vec<u64>,
     of_cover: Vec<u64>,
     /// Covers of held blocks of the block pair in hand, and all that have a colour.
-    covers: Vec<u32>,
-    seen: Vec<u32>,
+    covers: Vec<CoverId>,
+    seen: Vec<CoverId>,
 }
 
 /// Block pairs of a step in the order in which they are solved.
@@ -269,7 +269,7 @@ impl Colours {
     /// Another part begins after some entries.
     fn forget(&mut self, entries: &[Entry]) {
         entries.iter().flat_map(|entry| entry.blocks).for_each(|block| self.of_block[block] = 0);
-        self.seen.drain(..).for_each(|cover| self.of_cover[cover as usize] = 0);
+        self.seen.drain(..).for_each(|cover| self.of_cover[cover] = 0);
     }
 
     /// Covers of held blocks that a node and the near edges of a side may push.
@@ -288,11 +288,11 @@ impl Colours {
     fn give(&mut self, blocks: [BlockId; 2], view: &SolverView) -> u32 {
         let free = blocks.map(|block| view.mass_matrix.is_free(block));
         let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k]]);
-        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover as usize]);
+        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover]);
         let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);
         let colour = (!used).trailing_zeros().min(OVERFLOW);
         (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k]] |= 1 << colour);
-        self.covers.iter().for_each(|&cover| self.of_cover[cover as usize] |= 1 << colour);
+        self.covers.iter().for_each(|&cover| self.of_cover[cover] |= 1 << colour);
         self.seen.extend_from_slice(&self.covers);
         colour
     }

@@ -48,7 +48,7 @@ impl<'a> Impulses<'a> {
     /// Point `k` of a pair takes an impulse (N·s/m).
     fn push(&mut self, pair: &Pair, k: usize, impulse: Vector) {
         for (&i, weight) in pair.covers[k].iter().zip(pair.weights[k]) {
-            self.increment[i as usize] += self.mass_matrix.inverse[i as usize].component_mul(&impulse) * weight;
+            self.increment[i] += self.mass_matrix.inverse[i].component_mul(&impulse) * weight;
         }
         let block = pair.blocks[k];
         if self.mass_matrix.is_free(block) {

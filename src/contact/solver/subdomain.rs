@@ -2,7 +2,7 @@
 
 use enmm_lanes::{Kernel, LANES, Lanes, dispatch};
 
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 
 use super::anchor::Accumulators;
 use super::wide_contact::{ContactView, WideContact};
@@ -56,7 +56,7 @@ pub struct Subdomain<'a> {
     /// Where the parts within this one end; itself is the last.
     pub ends: &'a [u32],
     /// First block and cover of each run of blocks, and their ends.
-    pub cuts: &'a [(BlockId, u32)],
+    pub cuts: &'a [(BlockId, CoverId)],
     pub accumulators: Accumulators<'a>,
 }
 

@@ -1,6 +1,7 @@
 //! Supports in the iteration: between two sweeps over contacts they answer all together, by a direct solution.
 
 use crate::contact::{Support, SupportRow};
+use crate::cover::CoverId;
 use crate::geometry::{NONE, Vector};
 
 /// A support as the iteration sees it.
@@ -8,7 +9,7 @@ use crate::geometry::{NONE, Vector};
 struct SupportEquation {
     /// Index among the rows of the step.
     row: u32,
-    covers: [u32; 3],
+    covers: [CoverId; 3],
     /// Direction times w/√m of each cover, 0 where held.
     weights: [Vector; 3],
     /// Force (N/m) at no velocity by impulses.
@@ -44,12 +45,12 @@ impl SupportSystem {
 
 impl SupportEquation {
     fn along(&self, cover_impulse: &[Vector]) -> f64 {
-        (0..3).map(|k| self.weights[k].dot(&cover_impulse[self.covers[k] as usize])).sum()
+        (0..3).map(|k| self.weights[k].dot(&cover_impulse[self.covers[k]])).sum()
     }
 
     fn push(&self, impulse: f64, cover_impulse: &mut [Vector]) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            cover_impulse[*cover as usize] += weight * impulse;
+            cover_impulse[*cover] += weight * impulse;
         }
     }
 
@@ -66,7 +67,7 @@ impl SupportSystem {
         self.rows.clear();
         self.rows.extend((0..).zip(rows).map(|(k, row)| {
             let support = &supports[row.support as usize];
-            let along = |j: usize| roots[support.covers[j] as usize].component_mul(&support.direction);
+            let along = |j: usize| roots[support.covers[j]].component_mul(&support.direction);
             let weights = [0, 1, 2].map(|j| along(j) * support.weights[j]);
             SupportEquation { row: k, covers: support.covers, weights, ..SupportEquation::default() }
         }));
@@ -78,8 +79,8 @@ impl SupportSystem {
         self.end.clear();
         let mut end = 0;
         for (k, equation) in (0u32..).zip(&self.rows) {
-            equation.covers.iter().for_each(|&i| seen[i as usize] = seen[i as usize].min(k));
-            let first = equation.covers.iter().map(|&i| seen[i as usize]).min().unwrap_or(k);
+            equation.covers.iter().for_each(|&i| seen[i] = seen[i].min(k));
+            let first = equation.covers.iter().map(|&i| seen[i]).min().unwrap_or(k);
             end += k + 1 - first;
             self.first.push(first);
             self.end.push(end);
@@ -180,7 +181,7 @@ fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<u32> {
     let mut before = vec![[NONE; 3]; rows.len()];
     for (k, row) in (0u32..).zip(rows) {
         for (j, &cover) in row.covers.iter().enumerate() {
-            before[k as usize][j] = std::mem::replace(&mut last[cover as usize], k);
+            before[k as usize][j] = std::mem::replace(&mut last[cover], k);
         }
     }
     let mut order = Vec::with_capacity(rows.len());
@@ -193,7 +194,7 @@ fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<u32> {
         while let Some(&row) = order.get(next) {
             next += 1;
             for &cover in &rows[row as usize].covers {
-                let mut other = last[cover as usize];
+                let mut other = last[cover];
                 while other != NONE {
                     if !std::mem::replace(&mut listed[other as usize], true) {
                         order.push(other);

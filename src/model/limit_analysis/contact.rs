@@ -1,7 +1,7 @@
 //! Where two blocks can press on each other: the shared straight pieces of their faces, and points.
 
 use crate::cover::{BlockId, BoundaryPiece, Outlines};
-use crate::geometry::{NONE, Point, Vector};
+use crate::geometry::{Point, Vector};
 
 use super::model::Strengths;
 
@@ -34,11 +34,6 @@ impl Contact {
     }
 }
 
-/// Block of an element, if it is one of the rock.
-pub fn block_of(element_block: &[BlockId], element: u32) -> Option<BlockId> {
-    (element != NONE).then(|| element_block[element as usize])
-}
-
 /// The straight interfaces of all blocks: pieces that follow each other on one line are one interface, because a
 /// rigid face bears any distribution of pressure by a force at each end (Eq. 77).
 pub fn interfaces(
@@ -51,9 +46,10 @@ pub fn interfaces(
     for k in 0..outlines.len() {
         let mut run: Option<Run> = None;
         for piece in outlines.of_loop(k) {
-            let [own, other] = [piece.element, piece.opposite].map(|e| block_of(element_block, e));
+            let own = element_block[piece.element];
+            let other = piece.opposite.map(|element| element_block[element]);
             // Each face is seen from both sides; the block that comes first speaks.
-            let blocks = own.zip(other).filter(|(own, other)| own < other).map(|(own, other)| [own, other]);
+            let blocks = other.filter(|&other| own < other).map(|other| [own, other]);
             let blocks = blocks.filter(|&blocks| strengths.can_act(blocks));
             let law = strengths.law(piece.trace);
             let goes_on = run.as_ref().zip(blocks);

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::cover::{BlockId, Outlines};
 use crate::geometry::{Point, Vector};
 
-use super::contact::{Contact, block_of, outward};
+use super::contact::{Contact, outward};
 use super::model::Strengths;
 
 /// Angle (rad) within which a corner counts as straight.
@@ -61,8 +61,10 @@ fn sectors(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths
     for k in 0..outlines.len() {
         let pieces = outlines.of_loop(k);
         for (before, after) in pieces.iter().cycle().skip(pieces.len() - 1).zip(pieces) {
-            let block = block_of(element_block, after.element).filter(|&block| !strengths.is_gone(block));
-            let Some(block) = block else { continue };
+            let block = element_block[after.element];
+            if strengths.is_gone(block) {
+                continue;
+            }
             let far = [after.b, before.a];
             let angle = angle(after.b - after.a, before.a - after.a);
             sectors.push(Sector { at: after.a, block, far, traces: [after.trace, before.trace], angle });

@@ -114,13 +114,13 @@ fn hold(simulation: &Simulation, bodies: &mut [Body]) {
     let axes = [Vector::x(), Vector::y()];
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, held) in &fixity.covers {
-            let body = &mut bodies[covers.cover_block[cover as usize]];
-            let at = covers.star_position[cover as usize];
+            let body = &mut bodies[covers.cover_block[cover]];
+            let at = covers.star_position[cover];
             (0..2).filter(|&k| held[k]).for_each(|k| body.hold(at, axes[k]));
         }
     }
     for support in model.supports.iter().filter(|s| state.fix_active[s.fix as usize]) {
-        let at = support.covers.iter().zip(support.weights).map(|(&i, w)| covers.star_position[i as usize] * w).sum();
+        let at = support.covers.iter().zip(support.weights).map(|(&i, w)| covers.star_position[i] * w).sum();
         bodies[support.block].hold(at, support.direction);
     }
 }

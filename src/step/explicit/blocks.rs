@@ -177,7 +177,7 @@ impl Pass<'_> {
         let (local, behind) = local.split_at_mut(own + halo.len());
         local[..own].copy_from_slice(&u[chunk.covers.clone()]);
         for (pair, &cover) in local[own..].iter_mut().zip(halo) {
-            *pair = u[cover as usize];
+            *pair = u[cover];
         }
         // Missing elements of a row may reach beyond the last slot.
         behind.fill(Vector::zeros());

@@ -1,6 +1,6 @@
 //! Velocities with the consistent mass: energy, damping of deformation, the first acceleration of the trapezoidal rule.
 
-use crate::cover::BlockId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{MassMatrix, push_mass};
 use crate::state::{Implicit, Model, State};
@@ -15,7 +15,7 @@ pub fn kinetic_energy(model: &Model, implicit: &Implicit, mass_matrix: &MassMatr
 /// Kinetic energy (J/m) of one block by the consistent mass.
 pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], block: BlockId) -> f64 {
     let of_element = |e: usize| {
-        let [v0, v1, v2] = model.covers.element_covers[e].map(|i| velocity[i as usize]);
+        let [v0, v1, v2] = model.covers.element_covers[e].map(|i| velocity[i]);
         let [m00, m11, m22, m01, m02, m12] = implicit.element_mass[e];
         0.5 * (m00 * v0.norm_squared() + m11 * v1.norm_squared() + m22 * v2.norm_squared())
             + m01 * v0.dot(&v1)
@@ -88,7 +88,7 @@ impl Step<'_> {
         }
         let [spun, inertia] = [&state.velocity, &buffers.field].map(|field| {
             let of_element = |e: usize| {
-                let ids = model.covers.element_covers[e].map(|i| i as usize);
+                let ids = model.covers.element_covers[e];
                 turned_product(&implicit.element_mass[e], ids, &buffers.field, field)
             };
             model.covers.elements_of(block).map(of_element).sum::<f64>()
@@ -108,13 +108,13 @@ impl Step<'_> {
         let buffers = &mut self.workspace.implicit;
         buffers.residual.fill(Vector::zeros());
         for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
-            push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+            push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
     }
 }
 
 /// aᵀ·M·b of one element.
-fn turned_product(mass: &[f64; 6], ids: [usize; 3], a: &[Vector], b: &[Vector]) -> f64 {
+fn turned_product(mass: &[f64; 6], ids: [CoverId; 3], a: &[Vector], b: &[Vector]) -> f64 {
     let [m00, m11, m22, m01, m02, m12] = *mass;
     let product = |p: usize, q: usize| a[ids[p]].dot(&b[ids[q]]);
     m00 * product(0, 0)
