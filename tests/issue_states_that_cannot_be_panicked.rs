@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use common::saved::Whole;
-use enmm::contact::{EdgeId, NodeId, SideId};
+use enmm::contact::{EdgeId, LawId, NodeId, SideId};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm::io::checkpoint::{decode, encode};
@@ -50,7 +50,7 @@ const DAMAGES: [Damage; 30] = [
     ("stage_step", |w| w.state.stage_step = u64::MAX),
     ("support", |w| w.state.support_force.push(0.0)),
     ("laws[0] is another", |w| w.state.laws[0].friction = f64::NAN),
-    ("law_switch[0]", |w| w.state.law_switch[0] = 99),
+    ("law_switch[0]", |w| w.state.law_switch[0] = LawId::new(99)),
     ("drive.to.gravity.y", |w| w.state.drive.to.gravity.y = f64::INFINITY),
     ("drive.from.block_moment[1]", |w| w.state.drive.from.block_moment[1] = f64::NAN),
     ("drive.until", |w| w.state.drive.until = f64::INFINITY),

@@ -3,7 +3,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Closure, EdgeId, Limits, NodeId, Pair, SideId, SoftSpring};
+use super::{Closure, EdgeId, LawId, Limits, NodeId, Pair, SideId, SoftSpring};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -80,7 +80,7 @@ pub struct VertexEdge {
     /// Tributary length (m).
     pub length: f64,
     /// Law of the joint.
-    pub law: u32,
+    pub law: LawId,
     /// Whether the contact failed in tension in this step.
     pub torn: bool,
     /// Whether the contact is new in this step.

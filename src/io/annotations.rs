@@ -35,7 +35,7 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
             format!("mesh size {} m", covers.mesh.size),
         ],
         bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
-        trace_segments: joints.map(|k| (ends(k), model.trace_law[boundary.trace[k] as usize])).collect(),
+        trace_segments: joints.map(|k| (ends(k), model.trace_law[boundary.trace[k] as usize].number())).collect(),
     }
 }
 

@@ -11,9 +11,9 @@ mod rock;
 mod stage;
 mod warnings;
 
-use std::collections::BTreeMap;
-
-use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, Resistance, Roughness, Support};
+use crate::contact::{
+    BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support,
+};
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
@@ -41,7 +41,7 @@ pub struct Built {
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
     pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
-    pub traces: Vec<(Vec<Point>, u32)>,
+    pub traces: Vec<(Vec<Point>, LawId)>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -389,7 +389,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         fix_active: model.fixities.iter().map(|f| f.active).collect(),
         removed: vec![false; model.covers.block_count()],
         laws: model.laws.clone(),
-        law_switch: (0..model.laws.len() as u32).collect(),
+        law_switch: LawId::all(model.laws.len()).collect(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(model)),
@@ -404,7 +404,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
     })
 }
 
-/// Index of each name in the order of a case's table.
-pub(super) fn index_of<T>(table: &BTreeMap<String, T>, name: &str) -> Option<u32> {
-    table.keys().position(|k| k == name).map(|k| k as u32)
+/// The joint law of a name: laws have the order of the case's table.
+pub(super) fn law_of(case: &Case, name: &str) -> Option<LawId> {
+    case.joint_laws.keys().position(|k| k == name).map(LawId::new)
 }

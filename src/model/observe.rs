@@ -245,7 +245,7 @@ fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> Join
         normal_stress: -history.normal_force / contact.length,
         shear_stress: history.shear_force / contact.length,
         state: history.state,
-        law: contact.law,
+        law: contact.law.number(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, Support};
+use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, LawId, Support};
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
@@ -145,9 +145,9 @@ pub struct Model {
     /// Joint laws at the start.
     pub laws: Vec<JointLaw>,
     /// Law of each joint trace.
-    pub trace_law: Vec<u32>,
+    pub trace_law: Vec<LawId>,
     /// Law of contacts between faces that were no joints.
-    pub default_law: u32,
+    pub default_law: LawId,
     /// Fixities.
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.

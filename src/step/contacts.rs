@@ -89,7 +89,7 @@ impl Step<'_> {
             laws: &state.laws,
             trace_law: &workspace.trace_law,
             strength: state.drive.strength_factor(state.drive.share(self.time)),
-            default_law: state.law_switch.get(model.default_law as usize).copied().unwrap_or_default(),
+            default_law: state.law_switch[model.default_law],
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,

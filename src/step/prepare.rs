@@ -23,7 +23,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     workspace.columns.clear();
     workspace.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
     workspace.trace_law.clear();
-    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law as usize]));
+    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
     hold(model, state, workspace);
     expose(model, &mut workspace.exposed);
     workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);

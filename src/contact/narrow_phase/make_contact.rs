@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, NodeId, Pair, Spring, VertexEdge};
+use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, Spring, VertexEdge};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
@@ -55,8 +55,8 @@ impl NarrowPhase<'_> {
         let arms = blocks.map(|b| p - self.motion[b].centre);
         let Tributary { length, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
-        let mut stiffness = self.laws[law as usize].stiffness(length, penalty);
-        let closure_max = self.laws[law as usize].closure_max;
+        let mut stiffness = self.laws[law].stiffness(length, penalty);
+        let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
         let history = match candidate.held {
             Some(known) => self.history[known as usize],
@@ -66,7 +66,7 @@ impl NarrowPhase<'_> {
         let gap = candidate.gap + history.offset;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.mass_matrix, [normal, candidate.tangent]);
-        if self.laws[law as usize].penalty[0] {
+        if self.laws[law].penalty[0] {
             stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
         }
         let gap = gap - history.rest;
@@ -75,7 +75,7 @@ impl NarrowPhase<'_> {
             normal,
             answers: Default::default(),
             expected: [0.0; 2],
-            limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
+            limits: self.laws[law].limits(length, history.intact).times(self.strength),
             closure_max,
             gap,
             history,
@@ -109,7 +109,7 @@ impl NarrowPhase<'_> {
             Spring { stiffness, compliance, approach, forward: self.theta, lag: 0.0, dt, kick }
         };
         let (mut normal, mut shear) = (spring(0), spring(1));
-        let physical = self.laws[contact.law as usize].penalty.map(|penalty| !penalty);
+        let physical = self.laws[contact.law].penalty.map(|penalty| !penalty);
         if let Some(ratio) = damping
             && physical != [false; 2]
         {
@@ -156,7 +156,7 @@ impl NarrowPhase<'_> {
 
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
     #[inline(always)]
-    fn law(&self, node: NodeId, edge: EdgeId) -> u32 {
+    fn law(&self, node: NodeId, edge: EdgeId) -> LawId {
         let law = |trace: u32| self.trace_law.get(trace as usize).copied();
         law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
     }

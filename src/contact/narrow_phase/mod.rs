@@ -15,7 +15,7 @@ use crate::mechanics::{BlockMotion, MassMatrix, StressField};
 
 use frame::{EdgeFrame, Over};
 
-use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, NearPair, NodeId, SideId, VertexEdge};
+use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, LawId, NearPair, NodeId, SideId, VertexEdge};
 
 pub use constants::EntranceRule;
 pub use frame::Frames;
@@ -54,11 +54,11 @@ pub struct NarrowPhase<'a> {
     /// Joint laws.
     pub laws: &'a [JointLaw],
     /// Law of each joint trace, after switches.
-    pub trace_law: &'a [u32],
+    pub trace_law: &'a [LawId],
     /// Factor on the strength of all joints.
     pub strength: f64,
     /// Law of contacts between faces that were no joints.
-    pub default_law: u32,
+    pub default_law: LawId,
     /// Velocities (m/s) of the covers during the last step.
     pub velocity: &'a [Vector],
     /// Last step (s).

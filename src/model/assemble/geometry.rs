@@ -1,5 +1,6 @@
 //! Outline, joints, joint sets and mesh edges in one arrangement.
 
+use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
@@ -7,7 +8,7 @@ use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, a
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::memory::Demand;
-use super::{BuildStage, index_of};
+use super::{BuildStage, law_of};
 
 /// The arranged plane of a case.
 pub(super) struct Plane {
@@ -20,8 +21,8 @@ pub(super) struct Plane {
 pub(super) struct Joints {
     /// Joint traces with their laws: those of the case first, then the loops of islands, so that rock that touches
     /// stays apart.
-    pub traces: Vec<(Vec<Point>, u32)>,
-    pub default_law: u32,
+    pub traces: Vec<(Vec<Point>, LawId)>,
+    pub default_law: LawId,
 }
 
 /// Points of a list of pairs.
@@ -41,7 +42,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let demand = Demand { case, low, high };
     demand.check_mesh()?;
     demand.check_sets()?;
-    let default_law = case.default_joint_law().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(0);
+    let default_law = case.default_joint_law().and_then(|name| law_of(case, name)).unwrap_or_default();
     let mut traces = traces(case, low, high, default_law)?;
     demand.check_traces(&traces)?;
     let user_traces = traces.len();
@@ -113,10 +114,9 @@ impl Loops {
 }
 
 /// Joint traces of the case, then those of its sets, with their laws.
-fn traces(case: &Case, low: Point, high: Point, default_law: u32) -> Result<Vec<(Vec<Point>, u32)>, Invalid> {
-    let law =
-        |name: &Option<String>| name.as_ref().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(default_law);
-    let mut traces: Vec<(Vec<Point>, u32)> =
+fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<Vec<(Vec<Point>, LawId)>, Invalid> {
+    let law = |name: &Option<String>| name.as_ref().and_then(|name| law_of(case, name)).unwrap_or(default_law);
+    let mut traces: Vec<(Vec<Point>, LawId)> =
         case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
     let box_points = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
     for (k, set) in case.joint_sets.iter().enumerate() {

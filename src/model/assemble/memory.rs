@@ -4,6 +4,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
+use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::grid::CellGrid;
 use crate::geometry::{Arrangement, GeometryError, NONE, Point, Vector, polygon};
@@ -220,7 +221,7 @@ impl Demand<'_> {
     }
 
     /// Refuses traces that cross too many mesh edges.
-    pub fn check_traces(&self, traces: &[(Vec<Point>, u32)]) -> Result<(), Invalid> {
+    pub fn check_traces(&self, traces: &[(Vec<Point>, LawId)]) -> Result<(), Invalid> {
         let within = |p: &Point| p.sup(&self.low).inf(&self.high);
         let length =
             |points: &Vec<Point>| -> f64 { points.windows(2).map(|p| (within(&p[1]) - within(&p[0])).norm()).sum() };
@@ -268,7 +269,7 @@ impl Demand<'_> {
 
     /// Refuses traces that lie too close to each other, before they are cut: the pieces into which the mesh alone cuts
     /// them are counted, and traces that become one at this snap tolerance (m) count once.
-    pub fn check_dense(&self, traces: &[(Vec<Point>, u32)], tolerance: f64) -> Result<(), Invalid> {
+    pub fn check_dense(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64) -> Result<(), Invalid> {
         let (step, merged) = (CUTOFF * self.size(), MERGED * tolerance);
         let mut samples = Vec::new();
         for pair in traces.iter().flat_map(|(points, _)| points.windows(2)) {
@@ -283,7 +284,7 @@ impl Demand<'_> {
     /// crossing makes two edges, of which the half is taken, since dead ends are none in the end.
     pub fn check_crossings(
         &self,
-        traces: &[(Vec<Point>, u32)],
+        traces: &[(Vec<Point>, LawId)],
         tolerance: f64,
         is_rock: impl Fn(Point) -> bool,
     ) -> Result<(), Invalid> {

@@ -1,5 +1,6 @@
 //! Where two blocks can press on each other: the shared straight pieces of their faces, and points.
 
+use crate::contact::LawId;
 use crate::cover::{BlockId, BoundaryPiece, Outlines};
 use crate::geometry::{Point, Vector};
 
@@ -68,13 +69,13 @@ pub fn interfaces(
 #[derive(Clone)]
 struct Run {
     blocks: [BlockId; 2],
-    law: u32,
+    law: LawId,
     points: Vec<Point>,
 }
 
 impl Run {
     /// With one piece more, when it goes on straight.
-    fn with(&self, piece: &BoundaryPiece, blocks: [BlockId; 2], law: u32, tolerance: f64) -> Option<Self> {
+    fn with(&self, piece: &BoundaryPiece, blocks: [BlockId; 2], law: LawId, tolerance: f64) -> Option<Self> {
         let (first, last) = (self.points[0], *self.points.last()?);
         let along = piece.b - first;
         let goes_on = along.dot(&(last - first)) > 0.0 && along.dot(&(piece.b - piece.a)) > 0.0;

@@ -1,5 +1,6 @@
 //! Rigid blocks with the forces on them, and what their joints, bolts and fixities can bear.
 
+use crate::contact::LawId;
 use crate::cover::BlockId;
 use crate::geometry::{NONE, Point, Vector};
 use crate::model::Simulation;
@@ -150,10 +151,10 @@ impl<'a> Strengths<'a> {
     }
 
     /// Law of faces that a joint trace has made, after switches.
-    pub fn law(&self, trace: u32) -> u32 {
+    pub fn law(&self, trace: u32) -> LawId {
         let model = self.simulation.model();
         let law = if trace == NONE { model.default_law } else { model.trace_law[trace as usize] };
-        self.simulation.state().law_switch[law as usize]
+        self.simulation.state().law_switch[law]
     }
 
     /// Whether a block has been excavated.
@@ -167,8 +168,8 @@ impl<'a> Strengths<'a> {
     }
 
     /// An interface from one end to the other, the first block on its left.
-    pub fn face(&self, blocks: [BlockId; 2], ends: [Point; 2], law: u32) -> Contact {
-        let law = &self.simulation.state().laws[law as usize];
+    pub fn face(&self, blocks: [BlockId; 2], ends: [Point; 2], law: LawId) -> Contact {
+        let law = &self.simulation.state().laws[law];
         let along = ends[1] - ends[0];
         let length = along.norm();
         let normal = outward(along);
@@ -178,7 +179,7 @@ impl<'a> Strengths<'a> {
 
     /// A corner against a face that some trace has made: it has friction, and no length for cohesion.
     pub fn point(&self, blocks: [BlockId; 2], at: Point, normal: Vector, trace: u32) -> Contact {
-        let law = &self.simulation.state().laws[self.law(trace) as usize];
+        let law = &self.simulation.state().laws[self.law(trace)];
         Contact { blocks, ends: [at; 2], normal, friction: law.friction, cohesion: 0.0, tension: 0.0 }
     }
 }

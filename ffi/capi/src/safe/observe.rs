@@ -44,7 +44,7 @@ impl Model {
                     ContactState::Slip => enmm_contact_state::ENMM_CONTACT_SLIP,
                     ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
                 },
-                law: contact.law,
+                law: contact.law.number(),
                 node_block: contact.pair.blocks[0].number(),
                 edge_block: contact.pair.blocks[1].number(),
                 position_x: position.x,
