@@ -3,7 +3,7 @@
 
 mod geometry_common;
 
-use enmm::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange};
+use enmm::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, TraceId, arrange};
 use geometry_common::{face_at, sanity_check};
 use proptest::prelude::*;
 
@@ -22,8 +22,8 @@ fn square(x: f64, y: f64, side: f64, label: Label) -> Vec<Segment> {
     ring(&[[x, y], [x + side, y], [x + side, y + side], [x, y + side]], label)
 }
 
-fn trace(index: u32, a: [f64; 2], b: [f64; 2]) -> Segment {
-    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(index) }
+fn trace(index: usize, a: [f64; 2], b: [f64; 2]) -> Segment {
+    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(TraceId::new(index)) }
 }
 
 fn reversed(segments: Vec<Segment>) -> Vec<Segment> {
@@ -112,8 +112,8 @@ fn mesh_direction_survives_merging_with_an_opposite_outline() {
 #[test]
 fn closed_trace_inside_is_an_island_of_its_face() {
     let mut segments = square(0.0, 0.0, 4.0, Label::OUTLINE);
-    segments.extend(square(1.0, 1.0, 1.0, Label::trace(0)));
-    segments.extend(square(1.25, 1.25, 0.5, Label::trace(1)));
+    segments.extend(square(1.0, 1.0, 1.0, Label::trace(TraceId::new(0))));
+    segments.extend(square(1.25, 1.25, 0.5, Label::trace(TraceId::new(1))));
     segments.push(trace(2, [-1.0, 3.0], [5.0, 3.0]));
     let arrangement = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&arrangement), [0.25, 0.75, 4.0, 11.0]);
@@ -148,7 +148,7 @@ fn coincident_edges_share_their_labels() {
     let parted = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&parted), [1.0, 1.0]);
     assert_eq!(parted.report.fused_outline_length, 0.0);
-    assert_eq!(parted.report.overlapping_traces, [[1, 3]]);
+    assert_eq!(parted.report.overlapping_traces, [[1, 3].map(TraceId::new)]);
     assert_eq!((parted.report.traces[3].in_rock, parted.report.traces[1].in_rock), (1.0, 0.75));
 }
 
@@ -160,7 +160,7 @@ fn unusable_input_is_refused_with_the_reason() {
     assert!(matches!(arrange(&[line], 1e-9), Err(GeometryError::Tolerance { .. })));
     assert!(matches!(arrange(&[line], f64::NAN), Err(GeometryError::Tolerance { .. })));
     let mut torn = square(0.0, 0.0, 1.0, Label::OUTLINE);
-    torn[0].label = Label::trace(0);
+    torn[0].label = Label::trace(TraceId::new(0));
     assert!(matches!(arrange(&torn, 1e-6), Err(GeometryError::OpenOutline { .. })));
 }
 
@@ -170,7 +170,7 @@ fn endless_joints_cost_no_more_than_their_rock() {
     let mut segments = square(0.0, 0.0, 100.0, Label::OUTLINE);
     for k in 0..2000 {
         let (x, tilt) = (0.05 * f64::from(k), 1e4 * (f64::from(k % 7) - 3.0));
-        segments.push(trace(k as u32, [x - tilt, -1e6], [x + tilt, 1e6]));
+        segments.push(trace(k as usize, [x - tilt, -1e6], [x + tilt, 1e6]));
     }
     let start = std::time::Instant::now();
     let arrangement = arrange(&segments, 1e-4).expect("arranges");
@@ -186,8 +186,12 @@ fn crowded(tolerance: f64) -> BoxedStrategy<f64> {
 
 fn segment(coordinate: impl Strategy<Value = f64> + Clone + 'static) -> impl Strategy<Value = Segment> {
     let point = (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y));
-    let numbers = (0..50u32, point.boxed());
-    (numbers.clone(), numbers).prop_map(|((index, a), (_, b))| Segment { a, b, label: Label::trace(index) })
+    let numbers = (0..50usize, point.boxed());
+    (numbers.clone(), numbers).prop_map(|((index, a), (_, b))| Segment {
+        a,
+        b,
+        label: Label::trace(TraceId::new(index)),
+    })
 }
 
 fn lattice_and_outline() -> Vec<Segment> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use common::shared::shared;
 
-use enmm::geometry::{Arrangement, Label, NONE, Point, Segment, arrange};
+use enmm::geometry::{Arrangement, Label, Point, Segment, TraceId, arrange};
 use serde_json::Value;
 
 fn read(path: &Path) -> Value {
@@ -39,7 +39,7 @@ fn segments(case: &Value) -> Vec<Segment> {
         (0..n).map(|k| Segment { a: outline[k], b: outline[(k + 1) % n], label: Label::OUTLINE }).collect();
     for (trace, joint) in case["joints"].as_array().expect("a list").iter().enumerate() {
         let line = points(joint);
-        let label = Label::trace(trace as u32);
+        let label = Label::trace(TraceId::new(trace));
         all.extend(line.windows(2).map(|piece| Segment { a: piece[0], b: piece[1], label }));
     }
     all
@@ -146,7 +146,7 @@ fn blocks(arrangement: &Arrangement) -> usize {
             for half_edge in arrangement.face_loops(face).flat_map(|h| arrangement.cycle(h)) {
                 let label = arrangement.label_of(half_edge);
                 let other = arrangement.face[arrangement.twin(half_edge) as usize];
-                if label.outline == 0 && label.trace == NONE && !std::mem::replace(&mut seen[other as usize], true) {
+                if label.outline == 0 && label.trace.is_none() && !std::mem::replace(&mut seen[other as usize], true) {
                     stack.push(other);
                 }
             }

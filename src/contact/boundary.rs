@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
-use crate::geometry::{NONE, Point, Vector, id};
+use crate::geometry::{Point, TraceId, Vector, id};
 
 id! {
     /// A node of the boundary: a point of it that may touch edges.
@@ -66,8 +66,8 @@ pub struct Boundary {
     pub side: Vec<SideId>,
     /// Node at or before point `k`.
     pub node_before: Vec<NodeId>,
-    /// Joint trace of edge `k`, `NONE` on an outline.
-    pub trace: Vec<u32>,
+    /// Joint trace of edge `k`; none on an outline.
+    pub trace: Vec<Option<TraceId>>,
     /// Whether both sides of edge `k` belong to one block.
     pub partial: Vec<bool>,
     /// Boundary point of each node.
@@ -162,9 +162,8 @@ impl Boundary {
     }
 
     /// Joint trace of a node: that of the edge after it, or else of the edge before it.
-    pub fn node_trace(&self, node: NodeId) -> u32 {
-        let point = self.node_point[node];
-        if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.node_edge_before[node]] }
+    pub fn node_trace(&self, node: NodeId) -> Option<TraceId> {
+        self.trace[self.node_point[node]].or(self.trace[self.node_edge_before[node]])
     }
 
     /// Covers that may carry positions on an edge: its own and those of both of its ends.

@@ -1,6 +1,6 @@
 //! The regular equilateral lattice that carries the mathematical covers.
 
-use crate::geometry::{Label, NONE, Point, Segment, Vector};
+use crate::geometry::{Label, Point, Segment, Vector};
 
 use super::Weights;
 
@@ -179,7 +179,7 @@ impl RegularMesh {
             for edge in columns.flat_map(|column| (0..3).map(move |side| 3 * (start + column as u32) + side)) {
                 if near(self.triangle_beside(edge, false)) || near(self.triangle_beside(edge, true)) {
                     let [a, b] = self.edge_stars(edge).map(|s| self.node(s));
-                    let label = Label { outline: 0, trace: NONE, mesh: edge, mesh_reversed: false };
+                    let label = Label { outline: 0, trace: None, mesh: edge, mesh_reversed: false };
                     segments.push(Segment { a, b, label });
                 }
             }

@@ -1,7 +1,7 @@
 //! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
 
 use super::{BlockId, ElementId};
-use crate::geometry::{Arrangement, Label, NONE, Point};
+use crate::geometry::{Arrangement, Label, NONE, Point, TraceId};
 
 /// A straight piece of a block's boundary inside one element; rock lies to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,8 +12,8 @@ pub struct BoundaryPiece {
     pub b: Point,
     /// Element on the left.
     pub element: ElementId,
-    /// Joint trace that made it, `NONE` on an outline.
-    pub trace: u32,
+    /// Joint trace that made it; none on an outline.
+    pub trace: Option<TraceId>,
     /// Element on the right; none outside the rock.
     pub opposite: Option<ElementId>,
     /// Whether both sides belong to one block.
@@ -33,7 +33,7 @@ pub struct Outlines {
 
 /// Whether an edge carries the mesh and nothing that cuts.
 pub(super) fn mesh_only(label: &Label) -> bool {
-    label.mesh != NONE && label.trace == NONE && label.outline == 0
+    label.mesh != NONE && label.trace.is_none() && label.outline == 0
 }
 
 impl Outlines {

@@ -5,7 +5,12 @@
 
 use super::grid::Groups;
 use super::noder::{Noder, WorkEdge};
-use super::{GeometryError, Point, faces};
+use super::{GeometryError, Point, faces, id};
+
+id! {
+    /// A joint trace.
+    TraceId
+}
 
 /// The index that stands for nothing.
 pub const NONE: u32 = u32::MAX;
@@ -17,8 +22,8 @@ const EDGES_MAX: usize = 1 << 30;
 pub struct Label {
     /// Change of winding: +1 when rock lies to the left of a→b, -1 to the right, 0 not an outline.
     pub outline: i8,
-    /// Joint trace, [`NONE`] when none; where traces coincide the lowest index.
-    pub trace: u32,
+    /// Joint trace, if any; where traces coincide the lowest index.
+    pub trace: Option<TraceId>,
     /// Mesh edge, [`NONE`] when none.
     pub mesh: u32,
     /// Whether a→b runs against the direction of the mesh edge.
@@ -27,16 +32,16 @@ pub struct Label {
 
 impl Label {
     /// Labels an outline edge with rock on its left.
-    pub const OUTLINE: Self = Self { outline: 1, trace: NONE, mesh: NONE, mesh_reversed: false };
+    pub const OUTLINE: Self = Self { outline: 1, trace: None, mesh: NONE, mesh_reversed: false };
 
     /// Labels a piece of a joint trace.
-    pub const fn trace(trace: u32) -> Self {
-        Self { outline: 0, trace, mesh: NONE, mesh_reversed: false }
+    pub const fn trace(trace: TraceId) -> Self {
+        Self { outline: 0, trace: Some(trace), mesh: NONE, mesh_reversed: false }
     }
 
     /// Labels a mesh edge in its own direction.
     pub const fn mesh(mesh: u32) -> Self {
-        Self { outline: 0, trace: NONE, mesh, mesh_reversed: false }
+        Self { outline: 0, trace: None, mesh, mesh_reversed: false }
     }
 
     /// Returns the label as read from b to a.
@@ -47,13 +52,13 @@ impl Label {
 
     /// Tells whether nothing is left: two outlines that cancel, no trace, no mesh.
     const fn is_empty(self) -> bool {
-        self.outline == 0 && self.trace == NONE && self.mesh == NONE
+        self.outline == 0 && self.trace.is_none() && self.mesh == NONE
     }
 
     /// Adds the label of an edge that coincides and runs the same way.
     fn absorb(&mut self, other: Self) {
         self.outline = self.outline.saturating_add(other.outline);
-        self.trace = self.trace.min(other.trace);
+        self.trace = [self.trace, other.trace].into_iter().flatten().min();
         if other.mesh < self.mesh {
             self.mesh = other.mesh;
             self.mesh_reversed = other.mesh_reversed;
@@ -123,7 +128,7 @@ pub struct NodingReport {
     /// What became of each trace.
     pub traces: Vec<TraceLength>,
     /// Pairs of traces that coincide along an edge, lower index first, sorted; the lower one holds the edge.
-    pub overlapping_traces: Vec<[u32; 2]>,
+    pub overlapping_traces: Vec<[TraceId; 2]>,
 }
 
 /// A planar subdivision with provenance. Half-edge 2e runs along edge e, 2e+1 against it.
@@ -207,11 +212,11 @@ impl Arrangement {
             ranked.0 = edge;
             let length = length(points, &edges[edge]);
             let in_rock = kept[edge] && self.in_rock(ranked.1);
-            let report = &mut self.report.traces[member.trace as usize];
+            let report = &mut self.report.traces[member.trace];
             report.noded += length;
             report.kept += if kept[edge] { length } else { 0.0 };
             report.in_rock += if in_rock { length } else { 0.0 };
-            overlaps.push([edges[edge].label.trace, member.trace]);
+            overlaps.extend(edges[edge].label.trace.map(|holder| [holder, member.trace]));
         }
         overlaps.sort_unstable();
         overlaps.dedup();
@@ -224,50 +229,49 @@ impl Arrangement {
 /// Traces that run through the same points as an earlier one; only the first of each is cut.
 struct Copies {
     /// The first trace like each.
-    first: Vec<u32>,
+    first: Vec<TraceId>,
 }
 
 impl Copies {
     /// Compares all traces; segments that are outline or mesh as well are never copies.
     fn find(segments: &[Segment], traces: usize) -> Self {
         let of_trace = |put: &mut dyn FnMut(usize, u32)| {
-            let labelled = (0u32..).zip(segments).filter(|(_, segment)| segment.label.trace != NONE);
-            labelled.for_each(|(k, segment)| put(segment.label.trace as usize, k));
+            let labelled = (0u32..).zip(segments).filter_map(|(k, segment)| Some((segment.label.trace?, k)));
+            labelled.for_each(|(trace, k)| put(trace.index(), k));
         };
         let groups = Groups::build(traces, of_trace);
-        let compare = |s: u32, t: u32| {
-            let positions = |t: u32| groups.get(t as usize).iter().map(|&k| position(&segments[k as usize]));
+        let compare = |s: TraceId, t: TraceId| {
+            let positions = |t: TraceId| groups.get(t.index()).iter().map(|&k| position(&segments[k as usize]));
             positions(s).cmp(positions(t))
         };
-        let pure = |t: &u32| {
-            let own = groups.get(*t as usize);
+        let pure = |t: &TraceId| {
+            let own = groups.get(t.index());
             own.iter().all(|&k| segments[k as usize].label == Label::trace(*t))
         };
-        let mut order: Vec<u32> = (0..traces as u32).filter(pure).collect();
+        let mut order: Vec<TraceId> = TraceId::all(traces).filter(pure).collect();
         order.sort_unstable_by(|&s, &t| compare(s, t).then(s.cmp(&t)));
-        let mut first: Vec<u32> = (0..traces as u32).collect();
+        let mut first: Vec<TraceId> = TraceId::all(traces).collect();
         for alike in order.chunk_by(|&s, &t| compare(s, t).is_eq()) {
-            alike.iter().for_each(|&t| first[t as usize] = alike[0]);
+            alike.iter().for_each(|&t| first[t] = alike[0]);
         }
         Self { first }
     }
 
     /// Whether a segment is to be cut.
     fn is_first(&self, segment: &Segment) -> bool {
-        let trace = segment.label.trace;
-        trace == NONE || self.first[trace as usize] == trace
+        segment.label.trace.is_none_or(|trace| self.first[trace] == trace)
     }
 
     /// Gives each copy what the first has: its lengths, and its overlaps, sorted as they were.
-    fn report(&self, lengths: &mut [TraceLength], overlaps: &mut Vec<[u32; 2]>) {
-        let copies = || (0u32..).zip(&self.first).filter(|(trace, first)| trace != *first);
+    fn report(&self, lengths: &mut [TraceLength], overlaps: &mut Vec<[TraceId; 2]>) {
+        let copies = || TraceId::all(self.first.len()).zip(&self.first).filter(|(trace, first)| trace != *first);
         if copies().next().is_none() {
             return;
         }
         let mut of_first = overlaps.clone();
         of_first.sort_unstable_by_key(|&[holder, trace]| [trace, holder]);
         for (copy, &first) in copies() {
-            lengths[copy as usize] = lengths[first as usize];
+            lengths[copy] = lengths[first];
             let from = of_first.partition_point(|pair| pair[1] < first);
             let own = of_first[from..].iter().take_while(|pair| pair[1] == first);
             overlaps.extend(own.map(|&[holder, _]| [holder, copy]));
@@ -300,12 +304,12 @@ pub fn arrange(segments: &[Segment], tolerance: f64) -> Result<Arrangement, Geom
 /// # Errors
 /// As [`arrange`], and too many edges.
 pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) -> Result<Arrangement, GeometryError> {
-    let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
-    let copies = Copies::find(segments, traces as usize);
+    let traces = segments.iter().filter_map(|s| s.label.trace).map(|trace| trace.index() + 1).max().unwrap_or(0);
+    let copies = Copies::find(segments, traces);
     let mut noder = Noder::new(segments, |s| copies.is_first(s), tolerance, edges_max.min(EDGES_MAX))?;
     let mut report = noder.run()?;
     let (points, work) = (noder.points, noder.edges);
-    report.traces = vec![TraceLength::default(); traces as usize];
+    report.traces = vec![TraceLength::default(); traces];
     let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
     report.fused_outline_length = fused_length;
     let kept = prune(&points, &edges, &mut report);
@@ -318,7 +322,7 @@ pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) ->
 /// A trace that runs along an edge.
 struct Member {
     edge: u32,
-    trace: u32,
+    trace: TraceId,
 }
 
 /// Edges each of which is the only one between its vertices.
@@ -343,7 +347,7 @@ fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
         group.sort_unstable_by_key(|&k| (far(k), k));
         for run in group.chunk_by(|&i, &j| far(i) == far(j)) {
             let edge = merge_run(edges, run, merged.edges.len() as u32, &mut merged.members);
-            let cancels = edge.label.outline == 0 && edge.label.trace == NONE;
+            let cancels = edge.label.outline == 0 && edge.label.trace.is_none();
             if cancels && run.iter().any(|&k| edges[k as usize].label.outline != 0) {
                 merged.fused_length += length(points, &edge);
             }
@@ -363,7 +367,7 @@ fn merge_run(edges: &[WorkEdge], run: &[u32], id: u32, members: &mut Vec<Member>
         label.absorb(if other.a == a { other.label } else { other.label.reversed() });
     }
     let first = members.len();
-    for trace in run.iter().map(|&k| edges[k as usize].label.trace).filter(|&trace| trace != NONE) {
+    for trace in run.iter().filter_map(|&k| edges[k as usize].label.trace) {
         if members[first..].iter().all(|member| member.trace != trace) {
             members.push(Member { edge: id, trace });
         }

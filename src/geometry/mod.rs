@@ -15,7 +15,7 @@ pub mod polygon;
 pub mod segment;
 
 pub use arrangement::{
-    Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange, arrange_within,
+    Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceId, TraceLength, arrange, arrange_within,
 };
 pub use error::GeometryError;
 pub(crate) use id::id;

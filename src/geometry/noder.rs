@@ -81,7 +81,7 @@ impl Noder {
         for Segment { a, b, label } in cut.filter(counts) {
             let (a, b) = (noder.vertex(a), noder.vertex(b));
             if a != b {
-                let lattice = label.mesh != NONE && label.trace == NONE && label.outline == 0;
+                let lattice = label.mesh != NONE && label.trace.is_none() && label.outline == 0;
                 noder.edges.push(WorkEdge { a, b, label, unsplit: true, uncrossed: true, lattice });
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::contact::EdgeId;
 use crate::cover::CoverId;
-use crate::geometry::{NONE, Point};
+use crate::geometry::Point;
 use crate::model::Simulation;
 use crate::model::case::Port;
 
@@ -20,7 +20,7 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
     fixed.dedup();
     let boundary = &model.boundary;
     let ends = |k: EdgeId| [boundary.reference[k], boundary.reference[boundary.after(k)]];
-    let joints = boundary.edges().filter(|&k| boundary.trace[k] != NONE);
+    let joints = boundary.edges().filter_map(|k| Some((ends(k), model.trace_law[boundary.trace[k]?].number())));
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
     let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
     ModelAnnotations {
@@ -35,7 +35,7 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
             format!("mesh size {} m", covers.mesh.size),
         ],
         bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
-        trace_segments: joints.map(|k| (ends(k), model.trace_law[boundary.trace[k] as usize].number())).collect(),
+        trace_segments: joints.collect(),
     }
 }
 

@@ -46,10 +46,10 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
     let none = events.slipped.len() - 1;
     for contact in state.contacts.iter().filter(|c| c.state == ContactState::Slip && c.slip > least) {
         let trace = model.boundary.trace[contact.edge];
-        let joint = (trace as usize).min(none);
+        let joint = trace.map_or(none, |trace| trace.index());
         if !events.slipped[joint] {
             events.slipped[joint] = true;
-            let subject = if joint == none { u32::MAX } else { trace };
+            let subject = trace.map_or(u32::MAX, |trace| trace.number());
             events.list.push(Event { kind: EventKind::Slipped, subject, time });
         }
     }

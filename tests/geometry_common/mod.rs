@@ -16,7 +16,7 @@ pub fn sanity_check(arrangement: &Arrangement) {
         assert_eq!(arrangement.face[h as usize], arrangement.face[next as usize], "a cycle bounds one face");
         let (label, back) = (arrangement.label_of(h), arrangement.label_of(arrangement.twin(h)));
         assert_eq!((label.outline, label.trace, label.mesh), (-back.outline, back.trace, back.mesh));
-        assert!(label.outline != 0 || label.trace != NONE || label.mesh != NONE, "every edge comes from somewhere");
+        assert!(label.outline != 0 || label.trace.is_some() || label.mesh != NONE, "every edge comes from somewhere");
         let winding = |h: u32| arrangement.faces[arrangement.face[h as usize] as usize].winding;
         assert_eq!(winding(h) - winding(arrangement.twin(h)), i32::from(label.outline));
     }

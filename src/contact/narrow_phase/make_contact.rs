@@ -157,8 +157,8 @@ impl NarrowPhase<'_> {
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
     #[inline(always)]
     fn law(&self, node: NodeId, edge: EdgeId) -> LawId {
-        let law = |trace: u32| self.trace_law.get(trace as usize).copied();
-        law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
+        let trace = self.boundary.trace[edge].or_else(|| self.boundary.node_trace(node));
+        trace.map_or(self.default_law, |trace| self.trace_law[trace])
     }
 
     #[cold]

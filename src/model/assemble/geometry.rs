@@ -4,7 +4,7 @@ use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
-use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange_within, polygon};
+use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::memory::Demand;
@@ -54,8 +54,8 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));
     traces.extend(islands);
     let mut segments = loops.segments();
-    for (k, (points, _)) in traces.iter().enumerate() {
-        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, k as u32)));
+    for (trace, (points, _)) in TraceId::all(traces.len()).zip(&traces) {
+        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))));
     }
     segments.extend(mesh.segments(low, high));
     tell(BuildStage::Arrangement);
@@ -64,11 +64,11 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_edges(&arrangement)?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
-    report.overlapping_traces.retain(|pair| pair.iter().all(|&t| (t as usize) < user_traces));
+    report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));
     Ok(Plane { mesh, arrangement, joints: Joints { traces, default_law } })
 }
 
-fn segment(a: Point, b: Point, outline: i8, trace: u32) -> Segment {
+fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {
     Segment { a, b, label: Label { outline, trace, mesh: NONE, mesh_reversed: false } }
 }
 
@@ -105,7 +105,7 @@ impl Loops {
 
     fn segments(&self) -> Vec<Segment> {
         let directed = |loops: &[Vec<Point>], outline: i8| -> Vec<Segment> {
-            loops.iter().flat_map(|l| polygon::sides(l).map(move |(a, b)| segment(a, b, outline, NONE))).collect()
+            loops.iter().flat_map(|l| polygon::sides(l).map(move |(a, b)| segment(a, b, outline, None))).collect()
         };
         let mut segments = directed(&self.rock, 1);
         segments.extend(directed(&self.holes, -1));

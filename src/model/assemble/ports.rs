@@ -1,7 +1,7 @@
 //! Ports and water of a case, found on the boundary of the blocks.
 
 use crate::contact::{Boundary, EdgeId};
-use crate::geometry::{NONE, Point, Vector, segment};
+use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::LoadedFace;
 use crate::model::case::{Case, Invalid, Load};
 use crate::state::{Port, PortKind, Water};
@@ -24,7 +24,7 @@ impl Faces<'_> {
     /// What a load of kind `joint` presses on: joint faces or the parts of them that lie on its segment.
     pub fn loaded(&self, key: &str, load: &Load) -> Result<Vec<LoadedFace>, Invalid> {
         let segment = load.edge.unwrap_or_default();
-        let joints = self.boundary.edges().filter(|&k| self.boundary.trace[k] != NONE);
+        let joints = self.boundary.edges().filter(|&k| self.boundary.trace[k].is_some());
         let faces: Vec<LoadedFace> = joints.filter_map(|k| self.loaded_face(k, segment, load)).collect();
         if faces.is_empty() {
             return Err(nothing_on(&format!("{key}.edge"), segment, true));
@@ -56,7 +56,7 @@ impl Faces<'_> {
 
     /// Edges on a segment, of joints or of the outer boundary.
     fn on(&self, key: &str, segment: [[f64; 2]; 2], joints: bool) -> Result<Vec<EdgeId>, Invalid> {
-        let wanted = |k: &EdgeId| (self.boundary.trace[*k] != NONE) == joints && self.lies_on(*k, segment);
+        let wanted = |k: &EdgeId| self.boundary.trace[*k].is_some() == joints && self.lies_on(*k, segment);
         let edges: Vec<EdgeId> = self.boundary.edges().filter(wanted).collect();
         if edges.is_empty() {
             return Err(nothing_on(key, segment, joints));
@@ -113,13 +113,13 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
             let held: Vec<[[f64; 2]; 2]> =
                 case.fixes.iter().filter_map(|fix| fix.edge).chain(quiet).chain(beside).collect();
             for (edge, wet) in faces.boundary.edges().zip(&mut wet) {
-                let outer = faces.boundary.trace[edge] == NONE;
+                let outer = faces.boundary.trace[edge].is_none();
                 *wet = outer && !held.iter().any(|&segment| faces.lies_on(edge, segment));
             }
         }
     }
     for (edge, wet) in faces.boundary.edges().zip(&mut wet) {
-        *wet |= water.joints && faces.boundary.trace[edge] != NONE;
+        *wet |= water.joints && faces.boundary.trace[edge].is_some();
     }
     let edges = faces.boundary.edges().filter(|&k| wet[k]).collect();
     let table = super::geometry::points(water.table.as_deref().unwrap_or_default());

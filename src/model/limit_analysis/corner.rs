@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::cover::{BlockId, Outlines};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, TraceId, Vector};
 
 use super::contact::{Contact, outward};
 use super::model::Strengths;
@@ -27,7 +27,7 @@ struct Sector {
     /// Ends of the face that leaves the point and of the one that comes to it, rock on their left.
     far: [Point; 2],
     /// Joint traces of both.
-    traces: [u32; 2],
+    traces: [Option<TraceId>; 2],
     /// Angle of the rock (rad).
     angle: f64,
 }
@@ -142,7 +142,7 @@ impl Sector {
         let pick = |k: usize, sign: f64| {
             if sign * own[k].perp(&across[k]) > 0.0 { (own[k], self.traces[k]) } else { (across[k], other.traces[k]) }
         };
-        let facet = |(ray, trace): (Vector, u32), side: f64| {
+        let facet = |(ray, trace): (Vector, Option<TraceId>), side: f64| {
             strengths.point([self.block, other.block], self.at, outward(ray) * side, trace)
         };
         let facets = [facet(pick(0, 1.0), 1.0), facet(pick(1, -1.0), -1.0)];

@@ -2,7 +2,7 @@
 
 use crate::contact::LawId;
 use crate::cover::BlockId;
-use crate::geometry::{NONE, Point, Vector};
+use crate::geometry::{Point, TraceId, Vector};
 use crate::model::Simulation;
 use crate::step;
 
@@ -151,9 +151,9 @@ impl<'a> Strengths<'a> {
     }
 
     /// Law of faces that a joint trace has made, after switches.
-    pub fn law(&self, trace: u32) -> LawId {
+    pub fn law(&self, trace: Option<TraceId>) -> LawId {
         let model = self.simulation.model();
-        let law = if trace == NONE { model.default_law } else { model.trace_law[trace as usize] };
+        let law = trace.map_or(model.default_law, |trace| model.trace_law[trace]);
         self.simulation.state().law_switch[law]
     }
 
@@ -178,7 +178,7 @@ impl<'a> Strengths<'a> {
     }
 
     /// A corner against a face that some trace has made: it has friction, and no length for cohesion.
-    pub fn point(&self, blocks: [BlockId; 2], at: Point, normal: Vector, trace: u32) -> Contact {
+    pub fn point(&self, blocks: [BlockId; 2], at: Point, normal: Vector, trace: Option<TraceId>) -> Contact {
         let law = &self.simulation.state().laws[self.law(trace)];
         Contact { blocks, ends: [at; 2], normal, friction: law.friction, cohesion: 0.0, tension: 0.0 }
     }
