@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use enmm::geometry::{Label, Point, Segment, TraceId, arrange};
+use enmm::geometry::{Label, MeshEdgeId, Point, Segment, TraceId, arrange};
 
 /// A small generator of numbers in [0, 1).
 struct Random(u64);
@@ -41,7 +41,7 @@ fn mesh(size: f64) -> Vec<Segment> {
             for (a, b) in
                 [(node(i, j), node(i + 1, j)), (node(i, j), node(up, j + 1)), (node(i, j), node(up - 1, j + 1))]
             {
-                edges.push(Segment { a, b, label: Label::mesh(edges.len() as u32) });
+                edges.push(Segment { a, b, label: Label::mesh(MeshEdgeId::new(edges.len())) });
             }
         }
     }

@@ -1,6 +1,8 @@
 //! Cuts mathematical covers into physical covers, manifold elements and blocks.
 
-use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
+use std::ops::IndexMut;
+
+use crate::geometry::{Arrangement, FaceId, HalfEdgeId, Point, Vector, id, polygon, segment};
 
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
@@ -190,12 +192,12 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
     let blocks = order_blocks(&raw, &joined);
     let mut covers = lay_out_elements(mesh, &raw, &blocks);
     let slot_cover = lay_out_covers(&mut covers, &raw, &joined, &blocks);
-    for (new, &old) in blocks.order.iter().enumerate() {
-        covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[3 * old as usize + k]);
+    for (new, old) in blocks.order.iter().enumerate() {
+        covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[old.slot(k)]);
     }
     let mut element_of_face = vec![None; arrangement.faces.len()];
     for (new, &old) in covers.elements().zip(&blocks.order) {
-        element_of_face[raw.face[old as usize] as usize] = Some(new);
+        element_of_face[raw.face[old]] = Some(new);
     }
     drop((raw, joined, blocks, slot_cover));
     let outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
@@ -216,10 +218,36 @@ fn by_triangle(covers: &Covers) -> Vec<ElementId> {
     elements
 }
 
+id! {
+    /// An element in the order of the arrangement's faces.
+    RawId
+}
+id! {
+    /// A corner of such an element.
+    SlotId
+}
+
+impl RawId {
+    /// Its slot for one of three corners.
+    fn slot(self, corner: usize) -> SlotId {
+        SlotId::new(3 * self.index() + corner)
+    }
+}
+
+impl SlotId {
+    fn element(self) -> RawId {
+        RawId::new(self.index() / 3)
+    }
+
+    fn corner(self) -> usize {
+        self.index() % 3
+    }
+}
+
 /// Elements in the order of the arrangement's faces.
 struct RawElements {
-    face: Vec<u32>,
-    of_face: Vec<u32>,
+    face: Vec<FaceId>,
+    of_face: Vec<Option<RawId>>,
     triangle: Vec<Triangle>,
     area: Vec<f64>,
     centroid: Vec<Point>,
@@ -231,11 +259,11 @@ struct RawElements {
 impl RawElements {
     fn collect(mesh: &RegularMesh, arrangement: &Arrangement) -> Self {
         let triangles = triangles_of_faces(mesh, arrangement);
-        let face: Vec<u32> =
-            (0..arrangement.faces.len() as u32).filter(|&f| arrangement.faces[f as usize].winding == 1).collect();
-        let mut of_face = vec![NONE; arrangement.faces.len()];
+        let face: Vec<FaceId> =
+            FaceId::all(arrangement.faces.len()).filter(|&f| arrangement.faces[f].winding == 1).collect();
+        let mut of_face = vec![None; arrangement.faces.len()];
         let mut raw = Self {
-            triangle: face.iter().map(|&f| triangles[f as usize]).collect(),
+            triangle: face.iter().map(|&f| triangles[f]).collect(),
             area: Vec::with_capacity(face.len()),
             centroid: Vec::with_capacity(face.len()),
             polar: Vec::with_capacity(face.len()),
@@ -244,8 +272,8 @@ impl RawElements {
             face: Vec::new(),
             of_face: Vec::new(),
         };
-        for (k, &f) in face.iter().enumerate() {
-            of_face[f as usize] = k as u32;
+        for (raw_id, &f) in RawId::all(face.len()).zip(&face) {
+            of_face[f] = Some(raw_id);
             let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
             raw.integrate(&loops);
         }
@@ -270,8 +298,8 @@ impl RawElements {
         self.polygon_points.extend(bridge(loops));
     }
 
-    fn polygon(&self, k: usize) -> &[Point] {
-        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k + 1] as usize]
+    fn polygon(&self, k: RawId) -> &[Point] {
+        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k.index() + 1] as usize]
     }
 }
 
@@ -296,20 +324,23 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
     let nowhere = Triangle { i: i32::MIN, j: i32::MIN, set: 0 };
     let mut triangles = vec![nowhere; arrangement.faces.len()];
     let mut open = Vec::new();
-    for h in 0..arrangement.next.len() as u32 {
+    for h in arrangement.half_edges() {
         let label = arrangement.label_of(h);
-        let face = arrangement.face[h as usize];
-        if label.mesh != NONE && face != 0 && triangles[face as usize] == nowhere {
-            triangles[face as usize] = mesh.triangle_beside(label.mesh, label.mesh_reversed);
+        let face = arrangement.face[h];
+        if let Some(edge) = label.mesh
+            && face != FaceId::UNBOUNDED
+            && triangles[face] == nowhere
+        {
+            triangles[face] = mesh.triangle_beside(edge, label.mesh_reversed);
             open.push(face);
         }
     }
     while let Some(face) = open.pop() {
         let sides = arrangement.face_loops(face).flat_map(|h| arrangement.cycle(h));
-        for h in sides.filter(|&h| arrangement.label_of(h).mesh == NONE) {
-            let neighbour = arrangement.face[(h ^ 1) as usize];
-            if neighbour != 0 && triangles[neighbour as usize] == nowhere {
-                triangles[neighbour as usize] = triangles[face as usize];
+        for h in sides.filter(|&h| arrangement.label_of(h).mesh.is_none()) {
+            let neighbour = arrangement.face[h.twin()];
+            if neighbour != FaceId::UNBOUNDED && triangles[neighbour] == nowhere {
+                triangles[neighbour] = triangles[face];
                 open.push(neighbour);
             }
         }
@@ -317,54 +348,52 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
     triangles
 }
 
-/// Disjoint sets of small integers.
-struct UnionFind(Vec<u32>);
+/// Disjoint sets of ids.
+struct UnionFind<I>(Vec<I>);
 
-impl UnionFind {
-    fn new(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    fn root(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
+impl<I: Copy + Ord> UnionFind<I>
+where
+    Vec<I>: IndexMut<I, Output = I>,
+{
+    fn root(&mut self, mut k: I) -> I {
+        while self.0[k] != k {
+            let parent = self.0[k];
+            self.0[k] = self.0[parent];
+            k = self.0[k];
         }
         k
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    fn join(&mut self, a: I, b: I) {
         let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
+        self.0[a.max(b)] = a.min(b);
     }
 
-    fn roots(mut self) -> Vec<u32> {
-        (0..self.0.len() as u32).map(|k| self.root(k)).collect()
+    fn roots(mut self) -> Vec<I> {
+        let parents = self.0.clone();
+        parents.into_iter().map(|k| self.root(k)).collect()
     }
 }
 
-/// Which elements form a block, and which corners of elements (3·element + corner) share a physical cover.
+/// Which elements form a block, and which corners of elements share a physical cover.
 struct Joined {
-    block_root: Vec<u32>,
-    slot_root: Vec<u32>,
+    block_root: Vec<RawId>,
+    slot_root: Vec<SlotId>,
 }
 
 impl Joined {
     /// Joins across every edge that is a mesh edge and nothing else: it is a spoke of both its stars.
     fn new(arrangement: &Arrangement, raw: &RawElements) -> Self {
-        let mut blocks = UnionFind::new(raw.face.len());
-        let mut slots = UnionFind::new(3 * raw.face.len());
-        for e in 0..arrangement.edges.len() as u32 {
-            let label = arrangement.label_of(2 * e);
-            let [a, b] = [2 * e, 2 * e + 1].map(|h| raw.of_face[arrangement.face[h as usize] as usize]);
-            if !mesh_only(&label) || a == NONE || b == NONE {
-                continue;
-            }
+        let mut blocks = UnionFind(RawId::all(raw.face.len()).collect());
+        let mut slots = UnionFind(SlotId::all(3 * raw.face.len()).collect());
+        for (e, edge) in arrangement.edges.iter().enumerate() {
+            let [a, b] = HalfEdgeId::both(e).map(|h| raw.of_face[arrangement.face[h]]);
+            let (true, Some(a), Some(b)) = (mesh_only(&edge.label), a, b) else { continue };
             blocks.join(a, b);
-            let [nodes_a, nodes_b] = [a, b].map(|e| raw.triangle[e as usize].nodes());
+            let [nodes_a, nodes_b] = [a, b].map(|e| raw.triangle[e].nodes());
             for (k, star) in nodes_a.iter().enumerate() {
                 if let Some(l) = nodes_b.iter().position(|s| s == star) {
-                    slots.join(3 * a + k as u32, 3 * b + l as u32);
+                    slots.join(a.slot(k), b.slot(l));
                 }
             }
         }
@@ -374,7 +403,7 @@ impl Joined {
 
 /// Order of the elements: by block, blocks and elements along a Hilbert curve.
 struct BlockOrder {
-    order: Vec<u32>,
+    order: Vec<RawId>,
     block: Vec<BlockId>,
     count: usize,
     low: Point,
@@ -387,41 +416,40 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
     let n = raw.face.len();
     let mut first = vec![Vector::zeros(); n];
     let mut area = vec![0.0; n];
-    for e in 0..n {
-        let root = joined.block_root[e] as usize;
+    for e in RawId::all(n) {
+        let root = joined.block_root[e];
         first[root] += raw.centroid[e] * raw.area[e];
         area[root] += raw.area[e];
     }
-    let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
-    roots.sort_by_cached_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
+    let mut roots: Vec<RawId> = RawId::all(n).filter(|&e| joined.block_root[e] == e).collect();
+    roots.sort_by_cached_key(|&r| (hilbert(first[r] / area[r], low, high), r));
     let mut block_of_root = vec![BlockId::default(); n];
     for (block, &r) in BlockId::all(roots.len()).zip(&roots) {
-        block_of_root[r as usize] = block;
+        block_of_root[r] = block;
     }
-    let block: Vec<BlockId> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
-    let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_by_cached_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
+    let block: Vec<BlockId> = joined.block_root.iter().map(|&r| block_of_root[r]).collect();
+    let mut order: Vec<RawId> = RawId::all(n).collect();
+    order.sort_by_cached_key(|&e| (block[e], hilbert(raw.centroid[e], low, high), e));
     BlockOrder { order, block, count: roots.len(), low, high }
 }
 
 fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -> Covers {
-    let take = |k: &u32| *k as usize;
     let mut polygon_start = Vec::with_capacity(blocks.order.len() + 1);
     let mut polygon_points = Vec::with_capacity(raw.polygon_points.len());
     polygon_start.push(0);
-    for k in &blocks.order {
-        polygon_points.extend_from_slice(raw.polygon(take(k)));
+    for &k in &blocks.order {
+        polygon_points.extend_from_slice(raw.polygon(k));
         polygon_start.push(polygon_points.len() as u32);
     }
-    let element_block: Vec<BlockId> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
+    let element_block: Vec<BlockId> = blocks.order.iter().map(|&k| blocks.block[k]).collect();
     Covers {
         gradients: mesh.gradients(),
         mesh,
         element_covers: vec![[CoverId::default(); 3]; blocks.order.len()],
-        element_triangle: blocks.order.iter().map(|k| raw.triangle[take(k)]).collect(),
-        element_area: blocks.order.iter().map(|k| raw.area[take(k)]).collect(),
-        element_centroid: blocks.order.iter().map(|k| raw.centroid[take(k)]).collect(),
-        element_polar: blocks.order.iter().map(|k| raw.polar[take(k)]).collect(),
+        element_triangle: blocks.order.iter().map(|&k| raw.triangle[k]).collect(),
+        element_area: blocks.order.iter().map(|&k| raw.area[k]).collect(),
+        element_centroid: blocks.order.iter().map(|&k| raw.centroid[k]).collect(),
+        element_polar: blocks.order.iter().map(|&k| raw.polar[k]).collect(),
         block_elements: starts(&element_block, blocks.count),
         element_block,
         polygon_start,
@@ -435,15 +463,14 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
     }
 }
 
-/// Creates the physical covers and returns the cover of each slot (3·raw element + corner).
+/// Creates the physical covers and returns the cover of each slot.
 fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<CoverId> {
-    let star_of = |slot: u32| raw.triangle[slot as usize / 3].nodes()[slot as usize % 3];
-    let mut roots: Vec<u32> =
-        (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
+    let star_of = |slot: SlotId| raw.triangle[slot.element()].nodes()[slot.corner()];
+    let mut roots: Vec<SlotId> = SlotId::all(joined.slot_root.len()).filter(|&s| joined.slot_root[s] == s).collect();
     let mut counts = vec![0; blocks.count];
-    roots.iter().for_each(|&s| counts[blocks.block[s as usize / 3]] += 1);
+    roots.iter().for_each(|&s| counts[blocks.block[s.element()]] += 1);
     roots.sort_by_cached_key(|&s| {
-        let (block, [i, j]) = (blocks.block[s as usize / 3], star_of(s));
+        let (block, [i, j]) = (blocks.block[s.element()], star_of(s));
         let tile = (counts[block] >= order::TILED).then(|| order::tile([i, j]));
         let node = tile.map_or([i, j], order::tile_centre);
         let position = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
@@ -451,13 +478,13 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
     });
     let mut cover_of_root = vec![CoverId::default(); joined.slot_root.len()];
     for (cover, &s) in CoverId::all(roots.len()).zip(&roots) {
-        cover_of_root[s as usize] = cover;
+        cover_of_root[s] = cover;
         covers.star.push(star_of(s));
         covers.star_position.push(covers.mesh.node(star_of(s)));
-        covers.cover_block.push(blocks.block[s as usize / 3]);
+        covers.cover_block.push(blocks.block[s.element()]);
     }
     covers.block_covers = starts(&covers.cover_block, blocks.count);
-    joined.slot_root.iter().map(|&r| cover_of_root[r as usize]).collect()
+    joined.slot_root.iter().map(|&r| cover_of_root[r]).collect()
 }
 
 /// First index of each block in a sorted list of blocks, and the length at the end.

@@ -1,7 +1,7 @@
 //! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
 
 use super::{BlockId, ElementId};
-use crate::geometry::{Arrangement, Label, NONE, Point, TraceId};
+use crate::geometry::{Arrangement, HalfEdgeId, Label, Point, TraceId};
 
 /// A straight piece of a block's boundary inside one element; rock lies to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Outlines {
 
 /// Whether an edge carries the mesh and nothing that cuts.
 pub(super) fn mesh_only(label: &Label) -> bool {
-    label.mesh != NONE && label.trace.is_none() && label.outline == 0
+    label.mesh.is_some() && label.trace.is_none() && label.outline == 0
 }
 
 impl Outlines {
@@ -58,22 +58,22 @@ impl Outlines {
         element_of_face: &[Option<ElementId>],
         element_block: &[BlockId],
     ) -> Self {
-        let element = |h: u32| element_of_face[arrangement.face[h as usize] as usize];
+        let element = |h: HalfEdgeId| element_of_face[arrangement.face[h]];
         let block = |e: ElementId| element_block[e];
-        let bounds = |h: u32| Some((block(element(h)?), h)).filter(|_| !mesh_only(&arrangement.label_of(h)));
-        let mut starts: Vec<(BlockId, u32)> = (0..arrangement.next.len() as u32).filter_map(bounds).collect();
+        let bounds = |h: HalfEdgeId| Some((block(element(h)?), h)).filter(|_| !mesh_only(&arrangement.label_of(h)));
+        let mut starts: Vec<(BlockId, HalfEdgeId)> = arrangement.half_edges().filter_map(bounds).collect();
         starts.sort();
         let mut seen = vec![false; arrangement.next.len()];
         let mut outlines = Self { loop_start: vec![0], ..Self::default() };
         for (loop_block, start) in starts {
-            if seen[start as usize] {
+            if seen[start] {
                 continue;
             }
             let mut h = start;
-            while let (false, Some(own)) = (seen[h as usize], element(h)) {
-                seen[h as usize] = true;
-                let [a, b] = [h, h ^ 1].map(|h| arrangement.points[arrangement.origin(h) as usize]);
-                let opposite = element(h ^ 1);
+            while let (false, Some(own)) = (seen[h], element(h)) {
+                seen[h] = true;
+                let [a, b] = [h, h.twin()].map(|h| arrangement.points[arrangement.origin(h)]);
+                let opposite = element(h.twin());
                 let partial = opposite.is_some_and(|other| block(other) == block(own));
                 let trace = arrangement.label_of(h).trace;
                 outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
@@ -87,10 +87,10 @@ impl Outlines {
 }
 
 /// The boundary half-edge after `h`, turning across mesh-only edges.
-fn next_boundary(arrangement: &Arrangement, h: u32) -> u32 {
-    let mut next = arrangement.next[h as usize];
+fn next_boundary(arrangement: &Arrangement, h: HalfEdgeId) -> HalfEdgeId {
+    let mut next = arrangement.next[h];
     while mesh_only(&arrangement.label_of(next)) {
-        next = arrangement.next[(next ^ 1) as usize];
+        next = arrangement.next[next.twin()];
     }
     next
 }

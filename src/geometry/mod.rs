@@ -15,7 +15,8 @@ pub mod polygon;
 pub mod segment;
 
 pub use arrangement::{
-    Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceId, TraceLength, arrange, arrange_within,
+    Arrangement, Edge, Face, FaceId, HalfEdgeId, Label, MeshEdgeId, NodingReport, Segment, TraceId, TraceLength,
+    VertexId, arrange, arrange_within,
 };
 pub use error::GeometryError;
 pub(crate) use id::id;

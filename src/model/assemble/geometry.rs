@@ -4,7 +4,7 @@ use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
-use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, TraceId, arrange_within, polygon};
+use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::memory::Demand;
@@ -69,7 +69,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {
-    Segment { a, b, label: Label { outline, trace, mesh: NONE, mesh_reversed: false } }
+    Segment { a, b, label: Label { outline, trace, mesh: None, mesh_reversed: false } }
 }
 
 /// Validated loops of rock (counter-clockwise) and holes.

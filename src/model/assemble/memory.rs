@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 use crate::contact::LawId;
 use crate::cover::RegularMesh;
-use crate::geometry::grid::CellGrid;
 use crate::geometry::{Arrangement, GeometryError, Point, Vector, polygon};
+use crate::geometry::{VertexId, grid::CellGrid};
 use crate::model::case::{Case, Invalid, JointSet};
 use crate::step::CUTOFF;
 
@@ -303,7 +303,7 @@ impl Demand<'_> {
 
     /// Refuses edges of an arrangement that lie too close to each other.
     pub fn check_edges(&self, arrangement: &Arrangement) -> Result<(), Invalid> {
-        let point = |vertex: u32| arrangement.points[vertex as usize];
+        let point = |vertex: VertexId| arrangement.points[vertex];
         let edges = arrangement.edges.iter().filter(|edge| edge.label.trace.is_some() || edge.label.outline != 0);
         let positions: Vec<Point> = edges.map(|edge| (point(edge.a) + point(edge.b)) * 0.5).collect();
         self.check_near(&positions, 1.0)
