@@ -62,7 +62,7 @@ impl Outlines {
         let block = |e: ElementId| element_block[e];
         let bounds = |h: HalfEdgeId| Some((block(element(h)?), h)).filter(|_| !mesh_only(&arrangement.label_of(h)));
         let mut starts: Vec<(BlockId, HalfEdgeId)> = arrangement.half_edges().filter_map(bounds).collect();
-        starts.sort();
+        starts.sort_unstable();
         let mut seen = vec![false; arrangement.next.len()];
         let mut outlines = Self { loop_start: vec![0], ..Self::default() };
         for (loop_block, start) in starts {

@@ -1,7 +1,7 @@
 //! The planar arrangement: segments with provenance in, half-edges and faces out.
 //!
-//! Knows where an edge comes from only as plain indices (outline, joint trace, mesh edge). `noder` makes edges that
-//! meet in common vertices only, this file merges and prunes them, `faces` walks round them.
+//! Knows where an edge comes from only as ids (outline, joint trace, mesh edge). `noder` makes edges that meet in
+//! common vertices only, this file merges and prunes them, `faces` walks round them.
 
 use super::grid::Groups;
 use super::noder::{Noder, WorkEdge};

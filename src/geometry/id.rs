@@ -1,7 +1,8 @@
-//! Ids: the index of an entry in the tables of one kind of thing, as a type of its own, so that a block is never taken
-//! for an edge. Each room makes those of its own things by `id!`.
+//! Ids: the number of a thing as a type of its own, so that a block is never taken for an edge. Each room makes the ids
+//! of its own things by `id!`.
 //!
-//! An id holds its index plus one, so that zero is free for `None`: an `Option` of an id has the size of the id.
+//! Any id indexes any vector or slice; the name of a table says whose it is. An id holds its index plus one, so that
+//! zero is free for `None`: an `Option` of an id has the size of the id.
 
 /// Makes a type of ids that index vectors and slices; saved data hold the bare index.
 macro_rules! id {

@@ -1,7 +1,7 @@
 //! Points, exact predicates, loops, planar arrangement and the joint sets that cut it.
 //!
 //! Knows the plane: coordinates in metres, angles in radians, tolerances in metres. Must not know rock, covers, stress,
-//! time or files; a label carries plain indices whose meaning belongs to the caller.
+//! time or files; a label carries ids whose meaning belongs to the caller.
 
 mod arrangement;
 mod error;
