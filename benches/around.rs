@@ -7,6 +7,7 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 use enmm::contact::{NeighbourList, SearchGrid, SearchView};
+use enmm::cover::ElementId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::bytes::encode;
@@ -55,7 +56,7 @@ fn elements(criterion: &mut Criterion) {
     let simulation = moving();
     let (slope, state) = (simulation.model(), simulation.state());
     let covers = &slope.covers;
-    let forces = |e: usize| -> Vector {
+    let forces = |e: ElementId| -> Vector {
         let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
         let at = slope.deformation(e, &state.displacement);
         at.forces(gradients, covers.element_area[e], slope.rock_of(e), &slope.pre_stress_of(e))[0]
@@ -63,7 +64,7 @@ fn elements(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("elements");
     group.throughput(Throughput::Elements(covers.element_count() as u64));
     group.bench_function("one by one", |bencher| {
-        bencher.iter(|| (0..covers.element_count()).map(forces).sum::<Vector>());
+        bencher.iter(|| covers.elements().map(forces).sum::<Vector>());
     });
 }
 

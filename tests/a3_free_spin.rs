@@ -4,6 +4,8 @@ mod common;
 
 use common::claims::{Corners, assert_ledger, block_at, dynamic, motion, polygon_moments, rock, turn};
 use common::simulation;
+use enmm::contact::EdgeId;
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 
@@ -46,12 +48,12 @@ fn case(spinner: &Spinner, moment: f64) -> String {
 }
 
 /// Current place of boundary point `k`.
-fn place(simulation: &Simulation, k: usize) -> Point {
+fn place(simulation: &Simulation, k: EdgeId) -> Point {
     let (slope, u) = (simulation.model(), &simulation.state().displacement);
     let boundary = &slope.boundary;
     (0..3)
         .map(|c| {
-            let i = boundary.covers[k][c] as usize;
+            let i = boundary.covers[k][c];
             (slope.covers.star_position[i] + u[i]) * boundary.weights[k][c]
         })
         .sum()
@@ -60,8 +62,9 @@ fn place(simulation: &Simulation, k: usize) -> Point {
 /// Area of the current boundary loop of the only block.
 fn area(simulation: &Simulation) -> f64 {
     let boundary = &simulation.model().boundary;
-    let origin = place(simulation, 0);
-    (0..boundary.len())
+    let origin = place(simulation, EdgeId::new(0));
+    boundary
+        .edges()
         .map(|k| (place(simulation, k) - origin).perp(&(place(simulation, boundary.after(k)) - origin)) / 2.0)
         .sum()
 }
@@ -69,7 +72,7 @@ fn area(simulation: &Simulation) -> f64 {
 /// Runs ten turns; returns the angle turned since the push ended, unwrapped, and the time it took.
 fn ten_turns(simulation: &mut Simulation, spin: f64) -> (f64, f64) {
     let boundary = simulation.model().boundary.len();
-    let arm = |s: &Simulation| -> Vector { place(s, boundary / 2) - place(s, 0) };
+    let arm = |s: &Simulation| -> Vector { place(s, EdgeId::new(boundary / 2)) - place(s, EdgeId::new(0)) };
     let steps = simulation.steps_in(10.0 * std::f64::consts::TAU / spin);
     let (mut angle, mut before) = (0.0, arm(simulation));
     for k in 0..steps {
@@ -97,7 +100,7 @@ fn spin_has_the_true_inertia_and_keeps_momentum_energy_and_area() {
         let spin = (2e-7 * YOUNG / DENSITY).sqrt() / radius;
         let inertia = DENSITY * polar;
         let mut simulation = simulation(&case(&spinner, spin * inertia / 1e-3));
-        assert_eq!(block_at(&simulation, spinner.inside), 0);
+        assert_eq!(block_at(&simulation, spinner.inside), BlockId::new(0));
         // The push shakes the block a little; its deformation is damped within some 0.05 s.
         let push = simulation.steps_in(0.1);
         common::claims::advance(&mut simulation, push);

@@ -4,6 +4,7 @@
 mod common;
 
 use common::overlap::Audit;
+use enmm::cover::BlockId;
 use enmm::model::Simulation;
 use enmm_bench::{BenchOptions, Model, bench, slope_case};
 
@@ -26,7 +27,7 @@ fn advance(simulation: &mut Simulation, steps: u64) {
 /// Free blocks and their elements.
 fn counts(simulation: &Simulation) -> [f64; 2] {
     let covers = &simulation.model().covers;
-    let free = (0..covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
+    let free = covers.blocks().filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
     let elements: usize = free.clone().map(|b| covers.elements_of(b).len()).sum();
     [free.count() as f64, elements as f64]
 }
@@ -77,9 +78,8 @@ fn blocks_slide_down_the_base() {
     let time = simulation.time();
     let gravity = slope.gravity.norm();
     let way = 0.5 * gravity * (DIP.sin() - DIP.cos() * FRICTION.tan()) * time * time;
-    let free: Vec<usize> =
-        (0..slope.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]).collect();
-    let moved = |&b: &usize| {
+    let free: Vec<BlockId> = slope.covers.blocks().filter(|&b| !simulation.workspace().mass_matrix.fixed[b]).collect();
+    let moved = |&b: &BlockId| {
         let motion = simulation.motion_of(b);
         -motion.displacement.x * DIP.cos() - motion.displacement.y * DIP.sin()
     };

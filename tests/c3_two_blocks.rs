@@ -67,7 +67,7 @@ fn the_upper_block_pushes_the_lower() {
         run_stage(&mut simulation);
         assert!(simulation.next_stage().expect("a stage"));
         let middles = [turn(&[[1.52, 0.31]], -SLOPE)[0], turn(&[[0.51, 0.48]], -SLOPE)[0]];
-        let blocks = middles.map(|p| block_at(&simulation, p) as u32);
+        let blocks = middles.map(|p| block_at(&simulation, p));
         let along = |simulation: &Simulation| middles.map(|p| motion(simulation, p).0.dot(&Vector::new(c, -s)));
         let (mut places, mut pushes) = (Vec::new(), Vec::new());
         let steps = simulation.steps_in(0.15);

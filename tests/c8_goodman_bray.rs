@@ -4,6 +4,7 @@ mod common;
 
 use common::claims::{Corners, advance, assert_ledger, block_at, dynamic, rock, turn};
 use common::{run_stage, simulation};
+use enmm::cover::BlockId;
 use enmm::model::Simulation;
 use enmm::step::block_motion;
 
@@ -94,8 +95,8 @@ fn slope(tangent: f64) -> Simulation {
 fn fate(tangent: f64, seconds: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let mut simulation = slope(tangent);
     let (_, _, middles) = geometry();
-    let blocks: Vec<usize> = middles.iter().map(|p| block_at(&simulation, *p)).collect();
-    let motion = |s: &Simulation, b: usize| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, b);
+    let blocks: Vec<BlockId> = middles.iter().map(|p| block_at(&simulation, *p)).collect();
+    let motion = |s: &Simulation, b: BlockId| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, b);
     let start: Vec<_> = blocks.iter().map(|&b| motion(&simulation, b).0).collect();
     let mut turned = vec![0.0; 16];
     let steps = simulation.steps_in(0.05);

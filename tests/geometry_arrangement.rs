@@ -3,7 +3,7 @@
 
 mod geometry_common;
 
-use enmm::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange};
+use enmm::geometry::{Arrangement, FaceId, GeometryError, Label, MeshEdgeId, Point, Segment, TraceId, arrange};
 use geometry_common::{face_at, sanity_check};
 use proptest::prelude::*;
 
@@ -22,8 +22,8 @@ fn square(x: f64, y: f64, side: f64, label: Label) -> Vec<Segment> {
     ring(&[[x, y], [x + side, y], [x + side, y + side], [x, y + side]], label)
 }
 
-fn trace(index: u32, a: [f64; 2], b: [f64; 2]) -> Segment {
-    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(index) }
+fn trace(index: usize, a: [f64; 2], b: [f64; 2]) -> Segment {
+    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(TraceId::new(index)) }
 }
 
 fn reversed(segments: Vec<Segment>) -> Vec<Segment> {
@@ -31,7 +31,7 @@ fn reversed(segments: Vec<Segment>) -> Vec<Segment> {
 }
 
 fn rock_areas(arrangement: &Arrangement) -> Vec<f64> {
-    let rock = (0..arrangement.faces.len() as u32).filter(|&face| arrangement.faces[face as usize].winding == 1);
+    let rock = FaceId::all(arrangement.faces.len()).filter(|&face| arrangement.faces[face].winding == 1);
     let mut areas: Vec<f64> = rock.map(|face| arrangement.face_area(face)).collect();
     areas.sort_by(f64::total_cmp);
     areas
@@ -76,49 +76,52 @@ fn undershooting_ends_close() {
 fn dangling_tip_is_trimmed_to_the_mesh_edge() {
     // Two triangles of a mesh share the diagonal; the joint ends inside the second.
     let mut segments = square(0.0, 0.0, 1.0, Label::OUTLINE);
-    segments.extend(square(0.0, 0.0, 1.0, Label::mesh(0)));
-    let diagonal = Segment { a: Point::new(0.0, 0.0), b: Point::new(1.0, 1.0), label: Label::mesh(4) };
+    segments.extend(square(0.0, 0.0, 1.0, Label::mesh(MeshEdgeId::new(0))));
+    let diagonal = Segment { a: Point::new(0.0, 0.0), b: Point::new(1.0, 1.0), label: Label::mesh(MeshEdgeId::new(4)) };
     segments.extend([diagonal, trace(0, [-0.5, 0.5], [0.75, 0.5])]);
-    for (k, mesh) in segments.iter_mut().filter(|s| s.label.mesh != NONE).enumerate() {
-        mesh.label.mesh = k as u32;
+    for (k, mesh) in segments.iter_mut().filter(|s| s.label.mesh.is_some()).enumerate() {
+        mesh.label.mesh = Some(MeshEdgeId::new(k));
     }
     let arrangement = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&arrangement), [0.125, 0.375, 0.5]);
     assert_eq!(arrangement.report.traces[0].kept, 0.5);
     assert_eq!(arrangement.report.traces[0].in_rock, 0.5);
-    assert!(arrangement.edges.iter().filter(|edge| edge.label.mesh == 4).count() == 2, "the diagonal is split");
+    assert!(
+        arrangement.edges.iter().filter(|edge| edge.label.mesh == Some(MeshEdgeId::new(4))).count() == 2,
+        "the diagonal is split"
+    );
     let border = arrangement.edges.iter().filter(|edge| edge.label.outline != 0);
-    assert!(border.clone().count() == 5 && border.clone().all(|edge| edge.label.mesh != NONE));
+    assert!(border.clone().count() == 5 && border.clone().all(|edge| edge.label.mesh.is_some()));
 }
 
 #[test]
 fn mesh_direction_survives_merging_with_an_opposite_outline() {
     let mut segments = square(0.0, 0.0, 1.0, Label::OUTLINE);
-    let backwards = reversed(square(0.0, 0.0, 1.0, Label::mesh(0)));
-    segments.extend((0u32..).zip(backwards).map(|(k, s)| Segment { label: Label::mesh(k), ..s }));
+    let backwards = reversed(square(0.0, 0.0, 1.0, Label::mesh(MeshEdgeId::new(0))));
+    segments.extend(MeshEdgeId::all(4).zip(backwards).map(|(k, s)| Segment { label: Label::mesh(k), ..s }));
     let arrangement = checked(&segments, 1e-6);
-    for h in 0..8 {
+    assert_eq!(arrangement.half_edges().len(), 8);
+    for h in arrangement.half_edges() {
         let label = arrangement.label_of(h);
-        let mesh = segments[4 + label.mesh as usize];
-        let runs_with = (arrangement.points[arrangement.target(h) as usize]
-            - arrangement.points[arrangement.origin(h) as usize])
+        let mesh = segments[4 + label.mesh.expect("a mesh edge").index()];
+        let runs_with = (arrangement.points[arrangement.target(h)] - arrangement.points[arrangement.origin(h)])
             .dot(&(mesh.b - mesh.a))
             > 0.0;
         assert_eq!(label.mesh_reversed, !runs_with);
-        assert_eq!(label.outline == 1, arrangement.face[h as usize] != 0);
+        assert_eq!(label.outline == 1, arrangement.face[h] != FaceId::UNBOUNDED);
     }
 }
 
 #[test]
 fn closed_trace_inside_is_an_island_of_its_face() {
     let mut segments = square(0.0, 0.0, 4.0, Label::OUTLINE);
-    segments.extend(square(1.0, 1.0, 1.0, Label::trace(0)));
-    segments.extend(square(1.25, 1.25, 0.5, Label::trace(1)));
+    segments.extend(square(1.0, 1.0, 1.0, Label::trace(TraceId::new(0))));
+    segments.extend(square(1.25, 1.25, 0.5, Label::trace(TraceId::new(1))));
     segments.push(trace(2, [-1.0, 3.0], [5.0, 3.0]));
     let arrangement = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&arrangement), [0.25, 0.75, 4.0, 11.0]);
     let holder = face_at(&arrangement, Point::new(0.5, 0.5));
-    assert_eq!(arrangement.faces[holder as usize].inner.len(), 1);
+    assert_eq!(arrangement.faces[holder].inner.len(), 1);
 }
 
 #[test]
@@ -131,7 +134,7 @@ fn holes_and_islands_wind_right() {
     assert_eq!(rock_areas(&arrangement), [1.0, 4.0, 64.0]);
     assert_eq!(arrangement.faces[0].inner.len(), 2);
     // The whole outline inside one mesh triangle.
-    segments.extend(ring(&[[-50.0, -50.0], [90.0, -50.0], [10.0, 90.0]], Label::mesh(0)));
+    segments.extend(ring(&[[-50.0, -50.0], [90.0, -50.0], [10.0, 90.0]], Label::mesh(MeshEdgeId::new(0))));
     let arrangement = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&arrangement), [1.0, 4.0, 64.0]);
     assert_eq!(arrangement.faces[0].inner.len(), 1);
@@ -148,7 +151,7 @@ fn coincident_edges_share_their_labels() {
     let parted = checked(&segments, 1e-6);
     assert_eq!(rock_areas(&parted), [1.0, 1.0]);
     assert_eq!(parted.report.fused_outline_length, 0.0);
-    assert_eq!(parted.report.overlapping_traces, [[1, 3]]);
+    assert_eq!(parted.report.overlapping_traces, [[1, 3].map(TraceId::new)]);
     assert_eq!((parted.report.traces[3].in_rock, parted.report.traces[1].in_rock), (1.0, 0.75));
 }
 
@@ -160,7 +163,7 @@ fn unusable_input_is_refused_with_the_reason() {
     assert!(matches!(arrange(&[line], 1e-9), Err(GeometryError::Tolerance { .. })));
     assert!(matches!(arrange(&[line], f64::NAN), Err(GeometryError::Tolerance { .. })));
     let mut torn = square(0.0, 0.0, 1.0, Label::OUTLINE);
-    torn[0].label = Label::trace(0);
+    torn[0].label = Label::trace(TraceId::new(0));
     assert!(matches!(arrange(&torn, 1e-6), Err(GeometryError::OpenOutline { .. })));
 }
 
@@ -170,7 +173,7 @@ fn endless_joints_cost_no_more_than_their_rock() {
     let mut segments = square(0.0, 0.0, 100.0, Label::OUTLINE);
     for k in 0..2000 {
         let (x, tilt) = (0.05 * f64::from(k), 1e4 * (f64::from(k % 7) - 3.0));
-        segments.push(trace(k as u32, [x - tilt, -1e6], [x + tilt, 1e6]));
+        segments.push(trace(k as usize, [x - tilt, -1e6], [x + tilt, 1e6]));
     }
     let start = std::time::Instant::now();
     let arrangement = arrange(&segments, 1e-4).expect("arranges");
@@ -186,15 +189,19 @@ fn crowded(tolerance: f64) -> BoxedStrategy<f64> {
 
 fn segment(coordinate: impl Strategy<Value = f64> + Clone + 'static) -> impl Strategy<Value = Segment> {
     let point = (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y));
-    let numbers = (0..50u32, point.boxed());
-    (numbers.clone(), numbers).prop_map(|((index, a), (_, b))| Segment { a, b, label: Label::trace(index) })
+    let numbers = (0..50usize, point.boxed());
+    (numbers.clone(), numbers).prop_map(|((index, a), (_, b))| Segment {
+        a,
+        b,
+        label: Label::trace(TraceId::new(index)),
+    })
 }
 
 fn lattice_and_outline() -> Vec<Segment> {
     let mut segments = ring(&[[0.5, 0.25], [3.5, 0.25], [3.5, 3.75], [2.0, 1.0], [0.5, 3.75]], Label::OUTLINE);
     let mut push = |a: [i32; 2], b: [i32; 2]| {
         let [a, b] = [a, b].map(|p| Point::new(f64::from(p[0]), f64::from(p[1])));
-        segments.push(Segment { a, b, label: Label::mesh(segments.len() as u32) });
+        segments.push(Segment { a, b, label: Label::mesh(MeshEdgeId::new(segments.len())) });
     };
     for i in 0..5 {
         for j in 0..4 {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use common::shared::shared;
 
-use enmm::geometry::{Arrangement, Label, NONE, Point, Segment, arrange};
+use enmm::geometry::{Arrangement, FaceId, Label, MeshEdgeId, Point, Segment, TraceId, arrange};
 use serde_json::Value;
 
 fn read(path: &Path) -> Value {
@@ -39,7 +39,7 @@ fn segments(case: &Value) -> Vec<Segment> {
         (0..n).map(|k| Segment { a: outline[k], b: outline[(k + 1) % n], label: Label::OUTLINE }).collect();
     for (trace, joint) in case["joints"].as_array().expect("a list").iter().enumerate() {
         let line = points(joint);
-        let label = Label::trace(trace as u32);
+        let label = Label::trace(TraceId::new(trace));
         all.extend(line.windows(2).map(|piece| Segment { a: piece[0], b: piece[1], label }));
     }
     all
@@ -68,7 +68,11 @@ fn add_mesh(mesh: &Value, all: &mut Vec<Segment>) {
                 continue;
             }
             for k in 0..3 {
-                all.push(Segment { a: corners[k], b: corners[(k + 1) % 3], label: Label::mesh(count) });
+                all.push(Segment {
+                    a: corners[k],
+                    b: corners[(k + 1) % 3],
+                    label: Label::mesh(MeshEdgeId::new(count)),
+                });
                 count += 1;
             }
         }
@@ -77,9 +81,9 @@ fn add_mesh(mesh: &Value, all: &mut Vec<Segment>) {
 
 /// Number and total area of the faces of rock.
 fn rock(arrangement: &Arrangement) -> (usize, f64) {
-    let faces: Vec<u32> = (0..arrangement.faces.len() as u32)
+    let faces: Vec<FaceId> = FaceId::all(arrangement.faces.len())
         .filter(|&face| {
-            let winding = arrangement.faces[face as usize].winding;
+            let winding = arrangement.faces[face].winding;
             assert!(winding == 0 || winding == 1, "winding {winding}");
             winding == 1
         })
@@ -135,18 +139,18 @@ fn cover_cases_have_the_expected_elements_and_blocks() {
 fn blocks(arrangement: &Arrangement) -> usize {
     let mut seen: Vec<bool> = arrangement.faces.iter().map(|face| face.winding != 1).collect();
     let mut count = 0;
-    for start in 0..seen.len() {
+    for start in FaceId::all(seen.len()) {
         if seen[start] {
             continue;
         }
         count += 1;
         seen[start] = true;
-        let mut stack = vec![start as u32];
+        let mut stack = vec![start];
         while let Some(face) = stack.pop() {
             for half_edge in arrangement.face_loops(face).flat_map(|h| arrangement.cycle(h)) {
                 let label = arrangement.label_of(half_edge);
-                let other = arrangement.face[arrangement.twin(half_edge) as usize];
-                if label.outline == 0 && label.trace == NONE && !std::mem::replace(&mut seen[other as usize], true) {
+                let other = arrangement.face[half_edge.twin()];
+                if label.outline == 0 && label.trace.is_none() && !std::mem::replace(&mut seen[other], true) {
                     stack.push(other);
                 }
             }

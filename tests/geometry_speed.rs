@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use enmm::geometry::{Label, Point, Segment, arrange};
+use enmm::geometry::{Label, MeshEdgeId, Point, Segment, TraceId, arrange};
 
 /// A small generator of numbers in [0, 1).
 struct Random(u64);
@@ -19,13 +19,13 @@ fn square(side: f64) -> Vec<Segment> {
     (0..4).map(|k| Segment { a: corners[k], b: corners[(k + 1) % 4], label: Label::OUTLINE }).collect()
 }
 
-fn joints(count: u32, length: f64, random: &mut Random) -> Vec<Segment> {
+fn joints(count: usize, length: f64, random: &mut Random) -> Vec<Segment> {
     (0..count)
         .map(|k| {
             let middle = Point::new(100.0 * random.next(), 100.0 * random.next());
             let (sine, cosine) = (std::f64::consts::PI * random.next()).sin_cos();
             let half = Point::new(cosine, sine) * (length * 0.5);
-            Segment { a: middle - half, b: middle + half, label: Label::trace(k) }
+            Segment { a: middle - half, b: middle + half, label: Label::trace(TraceId::new(k)) }
         })
         .collect()
 }
@@ -41,7 +41,7 @@ fn mesh(size: f64) -> Vec<Segment> {
             for (a, b) in
                 [(node(i, j), node(i + 1, j)), (node(i, j), node(up, j + 1)), (node(i, j), node(up - 1, j + 1))]
             {
-                edges.push(Segment { a, b, label: Label::mesh(edges.len() as u32) });
+                edges.push(Segment { a, b, label: Label::mesh(MeshEdgeId::new(edges.len())) });
             }
         }
     }

@@ -75,7 +75,7 @@ fn step(model: &mut Cosimulation, h: f64) {
 }
 
 fn push(model: &mut Cosimulation, force: Vector) {
-    let block = model.ports()[0].block;
+    let block = model.ports()[0].block.number();
     model.set_block_force(block, force, 0.0).unwrap();
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use enmm::geometry::{Label, Point, Segment, arrange, arrange_within};
+use enmm::geometry::{Label, Point, Segment, TraceId, arrange, arrange_within};
 use enmm::model::{BuildStage, Simulation};
 use enmm_io::parse_case;
 
@@ -90,8 +90,11 @@ fn joints_that_are_one_within_the_snap_tolerance_cross_nowhere() {
 #[test]
 fn crossings_are_counted_while_they_are_made() {
     // 300 joints one way and 300 another cross 90 000 times: 180 600 edges.
-    let line =
-        |k: u32, a: [f64; 2], b: [f64; 2]| Segment { a: Point::from(a), b: Point::from(b), label: Label::trace(k) };
+    let line = |k: u32, a: [f64; 2], b: [f64; 2]| Segment {
+        a: Point::from(a),
+        b: Point::from(b),
+        label: Label::trace(TraceId::new(k as usize)),
+    };
     let along = |k: u32| line(k, [0.0, f64::from(k) * 0.1], [30.0, f64::from(k) * 0.1]);
     let across = |k: u32| line(300 + k, [f64::from(k) * 0.1, -1.0], [f64::from(k) * 0.1, 31.0]);
     let segments: Vec<Segment> = (0..300).map(along).chain((0..300).map(across)).collect();
@@ -106,9 +109,9 @@ fn copies_of_a_joint_are_reported_and_cost_nothing() {
     let segment = |a: [f64; 2], b: [f64; 2], label| Segment { a: Point::from(a), b: Point::from(b), label };
     let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
     let outline = |k: usize| segment(corners[k], corners[(k + 1) % 4], Label::OUTLINE);
-    let joints = |copies: u32| -> Vec<Segment> {
-        let joint = |k| segment([-1.0, 4.0], [11.0, 4.5], Label::trace(k));
-        let other = segment([3.0, -1.0], [4.0, 11.0], Label::trace(copies));
+    let joints = |copies: usize| -> Vec<Segment> {
+        let joint = |k| segment([-1.0, 4.0], [11.0, 4.5], Label::trace(TraceId::new(k)));
+        let other = segment([3.0, -1.0], [4.0, 11.0], Label::trace(TraceId::new(copies)));
         (0..4).map(outline).chain((0..copies).map(joint)).chain([other]).collect()
     };
     let [one, many] = [1, 20_000].map(|copies| arrange(&joints(copies), 1e-6).expect("arranges"));
@@ -116,7 +119,7 @@ fn copies_of_a_joint_are_reported_and_cost_nothing() {
     let report = &many.report;
     assert!(report.traces[..20_000].iter().all(|&length| length == one.report.traces[0]));
     assert_eq!(report.traces[20_000], one.report.traces[1]);
-    let pairs: Vec<[u32; 2]> = (1..20_000).map(|copy| [0, copy]).collect();
+    let pairs: Vec<[TraceId; 2]> = (1..20_000).map(|copy| [0, copy].map(TraceId::new)).collect();
     assert_eq!(report.overlapping_traces, pairs);
     assert!(clock.elapsed().as_secs_f64() < 5.0, "{:?}", clock.elapsed());
 }

@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use common::saved::Whole;
+use enmm::contact::{EdgeId, LawId, NodeId, SideId};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm::state::bytes::{decode, encode};
@@ -34,12 +35,12 @@ const DAMAGES: [Damage; 30] = [
     ("velocity[1].x", |w| w.state.velocity[1].x = f64::NEG_INFINITY),
     ("the length of velocity", |w| w.state.velocity.truncate(2)),
     ("the length of stage_displacement", |w| w.state.stage_displacement.push(Vector::zeros())),
-    ("contacts[0].node", |w| w.state.contacts[0].node = u32::MAX),
-    ("contacts[0].edge", |w| w.state.contacts[0].edge = 1 << 20),
+    ("contacts[0].node", |w| w.state.contacts[0].node = NodeId::new(1 << 31)),
+    ("contacts[0].edge", |w| w.state.contacts[0].edge = EdgeId::new(1 << 20)),
     ("contacts[1].normal_force", |w| w.state.contacts[1].normal_force = f64::NAN),
     ("contacts[0].trend[1]", |w| w.state.contacts[0].trend[1] = f64::INFINITY),
     ("the order of contacts", |w| w.state.contacts.reverse()),
-    ("neighbours.pairs[0].side", |w| w.state.neighbours.pairs[0].side = u32::MAX),
+    ("neighbours.pairs[0].side", |w| w.state.neighbours.pairs[0].side = SideId::new(1 << 31)),
     ("the order of neighbours.pairs", |w| w.state.neighbours.pairs.reverse()),
     ("stage is", |w| w.state.stage = 2),
     ("stage_starts[1]", |w| w.state.stage_starts[1] = f64::NAN),
@@ -49,7 +50,7 @@ const DAMAGES: [Damage; 30] = [
     ("stage_step", |w| w.state.stage_step = u64::MAX),
     ("support", |w| w.state.support_force.push(0.0)),
     ("laws[0] is another", |w| w.state.laws[0].friction = f64::NAN),
-    ("law_switch[0]", |w| w.state.law_switch[0] = 99),
+    ("law_switch[0]", |w| w.state.law_switch[0] = LawId::new(99)),
     ("drive.to.gravity.y", |w| w.state.drive.to.gravity.y = f64::INFINITY),
     ("drive.from.block_moment[1]", |w| w.state.drive.from.block_moment[1] = f64::NAN),
     ("drive.until", |w| w.state.drive.until = f64::INFINITY),

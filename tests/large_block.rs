@@ -4,6 +4,7 @@
 mod common;
 
 use common::simulation;
+use enmm::cover::CoverId;
 use enmm::geometry::Vector;
 use enmm::state::{Model, State, Workspace};
 use enmm::step::{Regime, advance, prepare};
@@ -19,8 +20,9 @@ fn every_part_has_the_elements_of_its_covers_once() {
     let (covers, chunks) = (&slope.covers, &slope.chunks);
     let (mut in_rows, mut all) = (0, 0);
     for chunk in chunks.iter() {
-        let ids: Vec<u32> = chunk.covers.clone().map(|i| i as u32).chain(chunks.halo(chunk).iter().copied()).collect();
-        let is_own = |i: &u32| chunk.covers.contains(&(*i as usize));
+        let ids: Vec<CoverId> =
+            CoverId::range(chunk.covers.clone()).chain(chunks.halo(chunk).iter().copied()).collect();
+        let is_own = |i: &CoverId| chunk.covers.contains(&i.index());
         let wanted = covers.element_covers.iter().filter(|c| c.iter().any(is_own)).count();
         let mut found = Vec::new();
         for batch in chunks.batches(chunk) {
@@ -64,11 +66,11 @@ fn forces_are_those_of_the_elements_one_by_one() {
     let (still, _) = kicked(slope, simulation.state(), |_| Vector::zeros());
     let (bent, state) = kicked(slope, simulation.state(), moved);
     let mut force = vec![Vector::zeros(); still.len()];
-    for (e, covers) in slope.covers.element_covers.iter().enumerate() {
+    for (e, covers) in slope.covers.elements().zip(&slope.covers.element_covers) {
         let g = &slope.covers.gradients[slope.covers.element_triangle[e].set as usize];
         let deformation = slope.deformation(e, &state.displacement);
         let forces = deformation.forces(g, slope.covers.element_area[e], slope.rock_of(e), &[0.0; 3]);
-        covers.iter().zip(forces).for_each(|(&i, f)| force[i as usize] += f);
+        covers.iter().zip(forces).for_each(|(&i, f)| force[i] += f);
     }
     let kick = 0.5 * slope.dt;
     let largest = force.iter().map(Vector::norm).fold(0.0, f64::max);

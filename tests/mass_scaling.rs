@@ -7,6 +7,7 @@ use std::path::Path;
 
 use common::claims::assert_ledger;
 use common::run_stage;
+use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm_io::parse_case;
@@ -36,7 +37,7 @@ fn lighter_blocks_settle_to_the_same_place_in_fewer_steps() {
     assert!(light.next_stage().unwrap());
     let (own, rock) = (&light.workspace().mass_matrix, &light.model().mass_matrix);
     assert_eq!((own.lightness, rock.lightness), (1.0, 1.0));
-    let free = (0..rock.polar.len()).filter(|&b| own.is_free(b));
+    let free = BlockId::all(rock.polar.len()).filter(|&b| own.is_free(b));
     assert!(free.clone().count() > 1);
     free.for_each(|b| assert_eq!((own.polar[b], own.square[b]), (rock.polar[b], rock.square[b])));
 }

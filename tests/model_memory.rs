@@ -83,13 +83,13 @@ fn a_jointed_model_stays_within_its_bytes_per_element() {
 fn elements_are_found_by_place() {
     let simulation = built(&slope(Some(4.0), 3.0, 1.0));
     let covers = &simulation.model().covers;
-    for e in 0..covers.element_count() {
+    for e in covers.elements() {
         let centroid = covers.element_centroid[e];
         if polygon::contains(covers.polygon(e), centroid) {
             assert_eq!(covers.element_at(centroid), Some(e));
         }
         let corner = covers.polygon(e)[0];
-        let lowest = (0..covers.element_count()).find(|&e| polygon::contains(covers.polygon(e), corner));
+        let lowest = covers.elements().find(|&e| polygon::contains(covers.polygon(e), corner));
         assert_eq!(covers.element_at(corner), lowest);
         let outside = corner + (corner - centroid) * 1e-6;
         assert!(covers.element_near(outside, 1e-5).is_some());

@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use enmm::contact::{Boundary, NeighbourList, SearchGrid, SearchView};
+use enmm::contact::{Boundary, EdgeId, NeighbourList, NodeId, SearchGrid, SearchView, SideId};
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector, segment};
 use enmm::model::Simulation;
 
 /// Whether a node and an edge can touch: not two fixed blocks, and in one block only both sides of a partial cut.
-fn may_meet(boundary: &Boundary, fixed: &[bool], node: usize, edge: usize) -> bool {
-    let [before, after] = boundary.edges_of_node(node).map(|edge| edge as usize);
-    let (own, other) = (boundary.block[after] as usize, boundary.block[edge] as usize);
-    let partial = |edge: usize| boundary.partial[edge];
+fn may_meet(boundary: &Boundary, fixed: &[bool], node: NodeId, edge: EdgeId) -> bool {
+    let [before, after] = boundary.edges_of_node(node);
+    let (own, other) = (boundary.block[after], boundary.block[edge]);
+    let partial = |edge: EdgeId| boundary.partial[edge];
     let is_own = own == other;
     !(fixed[own] && fixed[other])
         && (!is_own || partial(edge) && (partial(before) || partial(after)))
@@ -18,17 +19,17 @@ fn may_meet(boundary: &Boundary, fixed: &[bool], node: usize, edge: usize) -> bo
 }
 
 /// Nodes and edges that are near, by all against all.
-fn all_against_all(view: &SearchView) -> Vec<[u32; 3]> {
+fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
     let boundary = view.boundary;
-    let counts = |point: usize| !view.removed[boundary.block[point] as usize];
-    let edges: Vec<_> = (0..boundary.len()).filter(|&edge| counts(edge)).collect();
+    let counts = |point: EdgeId| !view.removed[boundary.block[point]];
+    let edges: Vec<_> = boundary.edges().filter(|&edge| counts(edge)).collect();
     let mut pairs = Vec::new();
-    for node in (0..boundary.node_count()).filter(|&node| counts(boundary.node_point[node] as usize)) {
-        let p = view.position[boundary.node_point[node] as usize];
+    for node in NodeId::all(boundary.node_count()).filter(|&node| counts(boundary.node_point[node])) {
+        let p = view.position[boundary.node_point[node]];
         for &edge in &edges {
             let (a, b) = (view.position[edge], view.position[boundary.after(edge)]);
             if segment::distance(p, a, b) < view.cutoff && may_meet(boundary, view.fixed, node, edge) {
-                pairs.push([node as u32, boundary.side[edge], edge as u32]);
+                pairs.push((node, boundary.side[edge], edge));
             }
         }
     }
@@ -38,9 +39,9 @@ fn all_against_all(view: &SearchView) -> Vec<[u32; 3]> {
 /// Blocks pushed their own ways, some of them far off.
 fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
     let slope = simulation.model();
-    let away = |block: u32| {
-        let angle = 0.7 * f64::from(block);
-        let far = if block % 50 == 7 { 30.0 } else { 1.0 };
+    let away = |block: BlockId| {
+        let angle = 0.7 * f64::from(block.number());
+        let far = if block.index() % 50 == 7 { 30.0 } else { 1.0 };
         Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
     };
     let position = simulation.workspace().position.iter().zip(&slope.boundary.block);
@@ -66,7 +67,7 @@ fn the_search_finds_what_all_against_all_find() {
         assert!(expected.len() > 5000, "{} pairs", expected.len());
         for (serial, (grid, neighbours)) in [true, false].into_iter().zip(&mut grids) {
             grid.search(&view(serial), neighbours);
-            let found: Vec<_> = neighbours.pairs.iter().map(|c| [c.node, c.side, c.edge]).collect();
+            let found: Vec<_> = neighbours.pairs.iter().map(|c| (c.node, c.side, c.edge)).collect();
             assert!(found == expected, "{} pairs at {share}, not {}", found.len(), expected.len());
         }
         assert!(grids[0].1 == grids[1].1, "a run of all nodes and many runs differ at {share}");

@@ -48,7 +48,7 @@ fn rock_that_outruns_its_waves_stops_the_run() {
     let speed = 1.1 * wave_speed();
     let mut simulation = case(block, &format!("block = [2, 4]\nvelocity = [0, {speed}]"));
     let failed = simulation.advance(false).expect_err("a runaway");
-    assert_eq!(failed.block as usize, block_at(&simulation, [2.0, 4.0]));
+    assert_eq!(failed.block, block_at(&simulation, [2.0, 4.0]).number());
     assert!(failed.position.x > 0.9 && failed.position.x < 3.1 && failed.position.y > 2.9, "{failed}");
     let Failure::Runaway { speed: found, limit } = failed.failure else { panic!("{failed}") };
     assert!((found / speed - 1.0).abs() < 0.01 && (limit / wave_speed() - 1.0).abs() < 1e-9, "{failed}");

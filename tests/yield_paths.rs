@@ -5,6 +5,7 @@
 mod common;
 
 use common::simulation;
+use enmm::cover::ElementId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
@@ -40,8 +41,8 @@ fn strained(simulation: &mut Simulation, strain: [f64; 2], angle: f64) -> [f64; 
         let both = 2.0 * s * c * xy;
         [c * c * xx + s * s * yy + both, s * s * xx + c * c * yy - both, s * c * (yy - xx) + (c * c - s * s) * xy]
     };
-    let first = back(slope.stress(state, 0));
-    for e in 0..slope.covers.element_count() {
+    let first = back(slope.stress(state, ElementId::new(0)));
+    for e in slope.covers.elements() {
         let other = back(slope.stress(state, e));
         // Rounding of displacements of 1 m over cut elements of a mesh of 0.6 m: 1e-15·E.
         assert!((0..3).all(|k| (other[k] - first[k]).abs() < 1e-3), "{e}: {other:?} {first:?}");

@@ -232,7 +232,7 @@ fn first_second(model: &Model) -> Result<f64, BenchError> {
 fn sizes(simulation: &Simulation) -> Measured {
     let (slope, mass_matrix) = (simulation.model(), &simulation.workspace().mass_matrix);
     let covers = &slope.covers;
-    let free = (0..covers.block_count()).filter(|&block| !mass_matrix.fixed[block]);
+    let free = covers.blocks().filter(|&block| !mass_matrix.fixed[block]);
     let (mut blocks, mut elements) = (0, 0);
     free.for_each(|block| (blocks, elements) = (blocks + 1, elements + covers.elements_of(block).len()));
     let moved = covers.cover_count() as f64 * COVER_BYTES / covers.element_count() as f64;

@@ -1,6 +1,8 @@
 //! What a picture of a model shows beside its blocks.
 
-use enmm::geometry::{NONE, Point};
+use enmm::contact::EdgeId;
+use enmm::cover::CoverId;
+use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm::model::case::Port;
 
@@ -11,14 +13,14 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
     let (model, case) = (simulation.model(), simulation.case());
     let covers = &model.covers;
     let supports = model.supports.iter().map(|support| {
-        let position = |(&i, w): (&u32, f64)| covers.star_position[i as usize] * w;
+        let position = |(&i, w): (&CoverId, f64)| covers.star_position[i] * w;
         support.covers.iter().zip(support.weights).map(position).sum()
     });
     let mut fixed: Vec<Point> = supports.collect();
     fixed.dedup();
     let boundary = &model.boundary;
-    let ends = |k: usize| [boundary.reference[k], boundary.reference[boundary.after(k)]];
-    let joints = (0..boundary.len()).filter(|&k| boundary.trace[k] != NONE);
+    let ends = |k: EdgeId| [boundary.reference[k], boundary.reference[boundary.after(k)]];
+    let joints = boundary.edges().filter_map(|k| Some((ends(k), model.trace_law[boundary.trace[k]?].number())));
     let monitors = case.monitors.iter().map(|monitor| (monitor.name.clone(), Point::from(monitor.point)));
     let ports = case.ports.iter().filter_map(|port| Some((port.name.clone(), place_of(port)?)));
     ModelAnnotations {
@@ -33,7 +35,7 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
             format!("mesh size {} m", covers.mesh.size),
         ],
         bolts: case.bolts.iter().map(|bolt| bolt.points.map(Point::from)).collect(),
-        trace_segments: joints.map(|k| (ends(k), model.trace_law[boundary.trace[k] as usize])).collect(),
+        trace_segments: joints.collect(),
     }
 }
 

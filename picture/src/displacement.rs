@@ -197,11 +197,13 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/cases/plane_slide.toml");
         let case = enmm_io::load_case(path.as_ref()).expect("a case").case;
         let mut simulation = enmm::model::Simulation::new(case).expect("a model");
-        (0..40).for_each(|_| drop(simulation.advance(false).expect("a step")));
+        for _ in 0..40 {
+            simulation.advance(false).expect("a step");
+        }
         let shown = exaggerated(&simulation.snapshot(), 1e4);
-        let block_of = simulation.snapshot().block;
+        let block_of = &simulation.snapshot().block;
         let edges_of = |block: u32| {
-            let of_block = (0..shown.elements.len()).filter(|&k| block_of[k] == block);
+            let of_block = (0..shown.elements.len()).filter(move |&k| block_of[k] == block);
             of_block.flat_map(|k| {
                 let corners = shown.elements.get(k);
                 (0..corners.len()).map(move |i| (corners[i], corners[(i + 1) % corners.len()]))

@@ -61,7 +61,7 @@ pub struct Check {
 pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     let (model, built) = (simulation.model(), simulation.built());
     let covers = &model.covers;
-    let block_areas = sorted((0..covers.block_count()).map(|b| covers.block_area(b)).collect());
+    let block_areas = sorted(covers.blocks().map(|b| covers.block_area(b)).collect());
     let mut stars_by_cover_count = BTreeMap::new();
     for (_, count) in covers.covers_by_star() {
         *stars_by_cover_count.entry(count).or_default() += 1;
@@ -128,7 +128,7 @@ fn small_covers(simulation: &Simulation, third: f64) -> usize {
     let mut density = vec![0.0f64; covers.cover_count()];
     for (e, ids) in covers.element_covers.iter().enumerate() {
         let of_element = model.rocks[model.element_rock[e] as usize].density;
-        ids.iter().for_each(|&i| density[i as usize] = density[i as usize].max(of_element));
+        ids.iter().for_each(|&i| density[i] = density[i].max(of_element));
     }
     let masses = model.mass_matrix.row_sum.iter().zip(density);
     masses.filter(|(mass, density)| **mass < SMALL_COVER * third * density).count()

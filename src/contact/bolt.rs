@@ -1,6 +1,6 @@
 //! Rock bolts: elastic–plastic bars between two material points, solved in the open–close iteration (Eqs. 40–44).
 
-use crate::cover::Weights;
+use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::MassMatrix;
 
@@ -15,9 +15,9 @@ pub struct BoltSegment {
     /// Bolt of the case that it belongs to.
     pub bolt: u32,
     /// Blocks of both points.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Covers of both points.
-    pub covers: [[u32; 3]; 2],
+    pub covers: [[CoverId; 3]; 2],
     /// Weights of those covers at the points.
     pub weights: [Weights; 2],
     /// Reference positions of both points (m).
@@ -82,7 +82,7 @@ impl BoltSegment {
     }
 
     fn position(&self, k: usize, star: &[Point], displacement: &[Vector]) -> Point {
-        let position = |i: u32| star[i as usize] + displacement[i as usize];
+        let position = |i: CoverId| star[i] + displacement[i];
         self.covers[k].iter().zip(self.weights[k]).map(|(&i, w)| position(i) * w).sum()
     }
 
@@ -105,7 +105,7 @@ impl BoltSegment {
         let span = positions[0] - positions[1];
         let length = span.norm();
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
-        let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k] as usize].centre);
+        let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k]].centre);
         let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
         let [compliance] = pair.weigh(view.mass_matrix, [direction]);
         BoltRow {
@@ -165,8 +165,8 @@ mod tests {
     fn bar() -> BoltSegment {
         BoltSegment {
             bolt: 0,
-            blocks: [0; 2],
-            covers: [[0; 3]; 2],
+            blocks: [BlockId::default(); 2],
+            covers: [[CoverId::default(); 3]; 2],
             weights: [[1.0, 0.0, 0.0]; 2],
             points: [Point::zeros(), Point::new(1.0, 0.0)],
             stiffness: 100.0,

@@ -1,8 +1,23 @@
 //! Boundary of the blocks for contact: points with weights, edges between them, nodes and sides. It is built once with
 //! the model; broad and narrow phase read it.
 
-use crate::cover::{self, BoundaryPiece, Covers, Outlines, Weights};
-use crate::geometry::{NONE, Point, Vector};
+use std::ops::Range;
+
+use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
+use crate::geometry::{Point, TraceId, Vector, id};
+
+id! {
+    /// A node of the boundary: a point of it that may touch edges.
+    NodeId
+}
+id! {
+    /// An edge of the boundary, and the boundary point at its start.
+    EdgeId
+}
+id! {
+    /// A side: edges between two corners.
+    SideId
+}
 
 /// Kind of the end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,45 +51,45 @@ impl Default for BoundaryOptions {
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Covers of the element that carries point `k`.
-    pub covers: Vec<[u32; 3]>,
+    pub covers: Vec<[CoverId; 3]>,
     /// Covers of the element that carries edge `k`.
-    pub edge_covers: Vec<[u32; 3]>,
+    pub edge_covers: Vec<[CoverId; 3]>,
     /// Weights of the covers of point `k` there.
     pub weights: Vec<Weights>,
     /// Reference position of point `k` (m).
     pub reference: Vec<Point>,
     /// The point after `k` on its loop.
-    pub next: Vec<u32>,
+    pub next: Vec<EdgeId>,
     /// Block of edge and point `k`.
-    pub block: Vec<u32>,
+    pub block: Vec<BlockId>,
     /// Side that edge `k` is part of.
-    pub side: Vec<u32>,
+    pub side: Vec<SideId>,
     /// Node at or before point `k`.
-    pub node_before: Vec<u32>,
-    /// Joint trace of edge `k`, `NONE` on an outline.
-    pub trace: Vec<u32>,
+    pub node_before: Vec<NodeId>,
+    /// Joint trace of edge `k`; none on an outline.
+    pub trace: Vec<Option<TraceId>>,
     /// Whether both sides of edge `k` belong to one block.
     pub partial: Vec<bool>,
     /// Boundary point of each node.
-    pub node_point: Vec<u32>,
+    pub node_point: Vec<EdgeId>,
     /// Whether each node is the convex start of a side.
     pub node_convex: Vec<bool>,
     /// Edge that ends at each node: the last point before it on its loop.
-    pub node_edge_before: Vec<u32>,
+    pub node_edge_before: Vec<EdgeId>,
     /// Node before each node on its loop.
-    pub node_previous: Vec<u32>,
+    pub node_previous: Vec<NodeId>,
     /// Node after each node on its loop.
-    pub node_next: Vec<u32>,
+    pub node_next: Vec<NodeId>,
     /// First edge of each side.
-    pub side_first: Vec<u32>,
+    pub side_first: Vec<EdgeId>,
     /// Last edge of each side.
-    pub side_last: Vec<u32>,
+    pub side_last: Vec<EdgeId>,
     /// Corner at the start of each side.
     pub side_corner: Vec<Corner>,
     /// Side before each side on its loop.
-    pub side_previous: Vec<u32>,
+    pub side_previous: Vec<SideId>,
     /// Side after each side on its loop.
-    pub side_next: Vec<u32>,
+    pub side_next: Vec<SideId>,
     /// Both ends of each side, start and finish.
     pub side_ends: Vec<[SideEnd; 2]>,
     /// Thickness of each block: twice its area over its perimeter (m).
@@ -85,11 +100,11 @@ pub struct Boundary {
 #[derive(Debug, Clone, Copy)]
 pub struct SideEnd {
     /// Edge of the side at this end.
-    pub edge: u32,
+    pub edge: EdgeId,
     /// Edge of the other side that meets it round the corner.
-    pub round: u32,
+    pub round: EdgeId,
     /// Boundary point that is the end.
-    pub point: u32,
+    pub point: EdgeId,
     /// Kind of the end.
     pub corner: Corner,
 }
@@ -121,6 +136,11 @@ impl Boundary {
         self.covers.len()
     }
 
+    /// All edges, and so all points.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = EdgeId> + Clone {
+        EdgeId::all(self.len())
+    }
+
     /// Whether there is no boundary.
     pub fn is_empty(&self) -> bool {
         self.covers.is_empty()
@@ -132,92 +152,98 @@ impl Boundary {
     }
 
     /// A cover field at point `k`.
-    pub fn sample(&self, k: usize, field: &[Vector]) -> Vector {
+    pub fn sample(&self, k: EdgeId, field: &[Vector]) -> Vector {
         cover::sample(&self.covers[k], &self.weights[k], field)
     }
 
     /// Point after point `k`.
-    pub fn after(&self, k: usize) -> usize {
-        self.next[k] as usize
+    pub fn after(&self, k: EdgeId) -> EdgeId {
+        self.next[k]
     }
 
     /// Joint trace of a node: that of the edge after it, or else of the edge before it.
-    pub fn node_trace(&self, node: usize) -> u32 {
-        let point = self.node_point[node] as usize;
-        if self.trace[point] != NONE { self.trace[point] } else { self.trace[self.node_edge_before[node] as usize] }
+    pub fn node_trace(&self, node: NodeId) -> Option<TraceId> {
+        self.trace[self.node_point[node]].or(self.trace[self.node_edge_before[node]])
     }
 
     /// Covers that may carry positions on an edge: its own and those of both of its ends.
-    pub fn covers_on(&self, edge: usize) -> impl Iterator<Item = u32> {
+    pub fn covers_on(&self, edge: EdgeId) -> impl Iterator<Item = CoverId> {
         [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
     }
 
     /// Edges before and after a node on its loop.
-    pub fn edges_of_node(&self, node: usize) -> [u32; 2] {
+    pub fn edges_of_node(&self, node: NodeId) -> [EdgeId; 2] {
         [self.node_edge_before[node], self.node_point[node]]
     }
 
     /// Sides before and after a node: those that lie towards the start and the finish of a side that it faces.
     #[inline(always)]
-    pub fn sides_of_node(&self, node: usize) -> [u32; 2] {
-        self.edges_of_node(node).map(|edge| self.side[edge as usize])
+    pub fn sides_of_node(&self, node: NodeId) -> [SideId; 2] {
+        self.edges_of_node(node).map(|edge| self.side[edge])
     }
 
     /// Whether the node lies on a partial cut.
-    pub fn node_partial(&self, node: usize) -> bool {
-        self.edges_of_node(node).iter().any(|&edge| self.partial[edge as usize])
+    pub fn node_partial(&self, node: NodeId) -> bool {
+        self.edges_of_node(node).iter().any(|&edge| self.partial[edge])
     }
 
     /// Side that ends at or passes through a node.
-    pub fn side_of_node_before(&self, node: usize) -> u32 {
-        self.side[self.node_edge_before[node] as usize]
+    pub fn side_of_node_before(&self, node: NodeId) -> SideId {
+        self.side[self.node_edge_before[node]]
     }
 
     fn measure_blocks(&mut self, covers: &Covers) {
         let mut perimeter = vec![0.0; covers.block_count()];
-        for (k, &block) in self.block.iter().enumerate() {
-            perimeter[block as usize] += (self.reference[self.after(k)] - self.reference[k]).norm();
+        for (k, &block) in self.edges().zip(&self.block) {
+            perimeter[block] += (self.reference[self.after(k)] - self.reference[k]).norm();
         }
-        let area = |block: usize| covers.elements_of(block).map(|e| covers.element_area[e]).sum::<f64>();
-        self.block_thickness = perimeter.iter().enumerate().map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
+        let area = |block: BlockId| covers.elements_of(block).map(|e| covers.element_area[e]).sum::<f64>();
+        self.block_thickness =
+            covers.blocks().zip(&perimeter).map(|(b, perimeter)| 2.0 * area(b) / perimeter).collect();
     }
 
-    fn push_loop(&mut self, covers: &Covers, carrier: &impl Fn(u32, u32) -> usize, block: u32, stations: &[Station]) {
+    fn push_loop(
+        &mut self,
+        covers: &Covers,
+        carrier: &impl Fn(ElementId, ElementId) -> ElementId,
+        block: BlockId,
+        stations: &[Station],
+    ) {
         let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_first.len());
         let last = first + stations.len() - 1;
         for (k, station) in stations.iter().enumerate() {
-            let index = (first + k) as u32;
+            let edge = EdgeId::new(first + k);
             if station.corner {
-                self.side_first.push(index);
-                self.side_last.push(index);
+                self.side_first.push(edge);
+                self.side_last.push(edge);
                 self.side_corner.push(if station.turn > 0.0 { Corner::Convex } else { Corner::Reflex });
             }
             if station.node {
-                self.node_point.push(index);
+                self.node_point.push(edge);
                 self.node_convex.push(station.corner && station.turn > 0.0);
-                self.node_edge_before.push(if k == 0 { last } else { first + k - 1 } as u32);
+                self.node_edge_before.push(EdgeId::new(if k == 0 { last } else { first + k - 1 }));
             }
             let before = &stations[if k == 0 { stations.len() } else { k } - 1];
             let [before, after] = [before, station].map(|station| station.piece.element);
             let element = carrier(before, after);
             self.covers.push(covers.element_covers[element]);
-            self.edge_covers.push(covers.element_covers[covers.host[after as usize] as usize]);
+            self.edge_covers.push(covers.element_covers[covers.host[after]]);
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);
-            self.next.push(if first + k == last { first as u32 } else { index + 1 });
+            self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));
             self.block.push(block);
-            self.side.push(self.side_first.len() as u32 - 1);
-            self.node_before.push(self.node_count() as u32 - 1);
+            self.side.push(SideId::new(self.side_first.len() - 1));
+            self.node_before.push(NodeId::new(self.node_count() - 1));
             self.trace.push(station.piece.trace);
             self.partial.push(station.piece.partial);
             if let Some(end) = self.side_last.last_mut() {
-                *end = index;
+                *end = edge;
             }
         }
-        ring(&mut self.node_previous, &mut self.node_next, first_node, self.node_point.len());
-        ring(&mut self.side_previous, &mut self.side_next, first_side, self.side_first.len());
+        ring(&mut self.node_previous, &mut self.node_next, first_node..self.node_point.len(), NodeId::new);
+        ring(&mut self.side_previous, &mut self.side_next, first_side..self.side_first.len(), SideId::new);
         for side in first_side..self.side_first.len() {
-            let (previous, next) = (self.side_previous[side] as usize, self.side_next[side] as usize);
+            let (previous, next) = (self.side_previous[side], self.side_next[side]);
             let ([first, last], round) = ([self.side_first[side], self.side_last[side]], self.side_first[next]);
             let start =
                 SideEnd { edge: first, round: self.side_last[previous], point: first, corner: self.side_corner[side] };
@@ -226,11 +252,12 @@ impl Boundary {
     }
 }
 
-/// Appends the neighbours of a ring of indices `first..end`.
-fn ring(previous: &mut Vec<u32>, next: &mut Vec<u32>, first: usize, end: usize) {
-    for k in first..end {
-        previous.push(if k == first { end - 1 } else { k - 1 } as u32);
-        next.push(if k + 1 == end { first } else { k + 1 } as u32);
+/// Appends the neighbours of a ring of indices.
+fn ring<I>(previous: &mut Vec<I>, next: &mut Vec<I>, indices: Range<usize>, id: impl Fn(usize) -> I) {
+    let Range { start, end } = indices;
+    for k in indices {
+        previous.push(id(if k == start { end - 1 } else { k - 1 }));
+        next.push(id(if k + 1 == end { start } else { k + 1 }));
     }
 }
 

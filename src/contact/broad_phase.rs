@@ -11,7 +11,7 @@ use enmm_lanes::dispatch;
 
 use crate::geometry::Point;
 
-use super::Boundary;
+use super::{Boundary, EdgeId, NodeId, SideId};
 use find::{Find, Run};
 use grid::Grid;
 
@@ -23,11 +23,11 @@ const RUN: usize = 1024;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct NearPair {
     /// Node.
-    pub node: u32,
+    pub node: NodeId,
     /// Side of the edge.
-    pub side: u32,
+    pub side: SideId,
     /// Edge.
-    pub edge: u32,
+    pub edge: EdgeId,
 }
 
 /// Near pairs of the last search, and the positions of the nodes at that time.
@@ -48,7 +48,7 @@ impl NeighbourList {
                 .node_point
                 .iter()
                 .zip(&self.found_at)
-                .any(|(&p, old)| (position[p as usize] - old).norm_squared() > slack * slack)
+                .any(|(&p, old)| (position[p] - old).norm_squared() > slack * slack)
     }
 
     /// Positions of the nodes at the last search (m); empty when the next step has to search again.
@@ -82,7 +82,7 @@ impl NeighbourList {
             runs.iter().for_each(|run| self.pairs.extend_from_slice(&run.near_pairs));
         }
         self.found_at.clear();
-        self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point as usize]));
+        self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point]));
     }
 }
 

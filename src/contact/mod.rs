@@ -14,9 +14,9 @@ mod support;
 mod vertex_edge;
 
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
-pub use boundary::{Boundary, BoundaryOptions, Corner, SideEnd};
+pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
-pub use law::{Closure, JointLaw, Limits, Roughness};
+pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
 pub use narrow_phase::{
     AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, PenetratingContacts, entrance_edges,
 };

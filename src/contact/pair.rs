@@ -1,6 +1,6 @@
 //! Two material points that act on each other: a node and an edge, or the ends of a bolt. Contacts and bolts share it.
 
-use crate::cover::{self, Weights};
+use crate::cover::{self, BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
@@ -10,9 +10,9 @@ use crate::mechanics::MassMatrix;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pair {
     /// Blocks of both points.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Covers of both points.
-    pub covers: [[u32; 3]; 2],
+    pub covers: [[CoverId; 3]; 2],
     /// Weights of those covers at the points' current positions.
     pub weights: [Weights; 2],
     /// Arms from the blocks' centroids to the points (m).
@@ -34,14 +34,14 @@ impl Pair {
     pub fn weigh<const N: usize>(&mut self, mass_matrix: &MassMatrix, axes: [Vector; N]) -> [f64; N] {
         let mut compliance = [0.0; N];
         for body in 0..2 {
-            let block = self.blocks[body] as usize;
+            let block = self.blocks[body];
             let share = mass_matrix.inverse_total[block];
             let mut own = Vector::zeros();
             let mut z = 0.0;
             for (&i, w) in self.covers[body].iter().zip(self.weights[body]) {
-                let inverse = mass_matrix.inverse[i as usize];
+                let inverse = mass_matrix.inverse[i];
                 own += inverse * (w * w);
-                z += w * mass_matrix.inertial[i as usize] * inverse.x;
+                z += w * mass_matrix.inertial[i] * inverse.x;
             }
             self.z[body] = z;
             let common = share * (1.0 - 2.0 * z + mass_matrix.square[block] * share);

@@ -14,7 +14,8 @@ pub use anchor::BlockImpulse;
 use enmm_lanes::LANES;
 use rayon::prelude::*;
 
-use crate::geometry::{NONE, Vector};
+use crate::cover::{BlockId, CoverId};
+use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
 use self::anchor::{Accumulators, Anchor, PackedImpulse};
@@ -89,7 +90,7 @@ pub struct OpenClose {
     /// Impulse sums of the blocks.
     block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
-    cuts: Vec<[u32; 2]>,
+    cuts: Vec<(BlockId, CoverId)>,
     /// 1/√m of the covers along each axis.
     roots: Vec<Vector>,
 }
@@ -139,7 +140,9 @@ impl OpenClose {
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, &view);
             self.cuts.clear();
-            self.cuts.extend(self.order.leaf_block().iter().map(|&block| [block, block_covers[block as usize]]));
+            self.cuts.extend(
+                self.order.leaf_block().iter().map(|&block| (block, CoverId::new(block_covers[block] as usize))),
+            );
         }
         self.order.arrange(contacts, &view, &mut self.sequence);
     }
@@ -252,7 +255,7 @@ impl OpenClose {
             let step = force - bolt.force;
             if step != 0.0 {
                 apply_to_bolt(anchors, bolt.direction * (-step * kick), &mut accumulators);
-                for block in anchors.iter().map(|anchor| anchor.block).filter(|&block| block != NONE) {
+                for block in anchors.iter().filter_map(|anchor| anchor.block) {
                     accumulators.mark(block, turn);
                 }
                 change = change.max(step.abs() / force.max(floor));
@@ -299,5 +302,5 @@ fn apply_to_bolt(anchors: &[Anchor; 2], impulse: Vector, accumulators: &mut Accu
 
 /// All blocks.
 fn all_blocks<'a>(cover_impulse: &'a mut [Vector], block_impulse: &'a mut [PackedImpulse]) -> Accumulators<'a> {
-    Accumulators { cover_impulse, first_cover: 0, block_impulse, first_block: 0 }
+    Accumulators { cover_impulse, first_cover: CoverId::new(0), block_impulse, first_block: BlockId::new(0) }
 }

@@ -1,7 +1,7 @@
 //! Supports: springs that fix a material point along one direction, and dashpots of quiet boundaries. The open–close
 //! iteration solves them together with the contacts (Eqs. 23, 47).
 
-use crate::cover::{self, Weights};
+use crate::cover::{self, BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
@@ -23,9 +23,9 @@ pub struct Support {
     /// Fixity of the case that it belongs to.
     pub fix: u32,
     /// Block.
-    pub block: u32,
+    pub block: BlockId,
     /// Covers of the point.
-    pub covers: [u32; 3],
+    pub covers: [CoverId; 3],
     /// Their weights at the point.
     pub weights: Weights,
     /// Unit direction of the support.
@@ -71,13 +71,13 @@ impl Support {
     /// Inverse effective mass of the point along the direction (m/kg); its block has the plain lumped metric.
     pub fn compliance(&self, mass_matrix: &MassMatrix) -> f64 {
         let square = self.direction.component_mul(&self.direction);
-        self.covers.iter().zip(self.weights).map(|(&i, w)| mass_matrix.inverse[i as usize].dot(&square) * w * w).sum()
+        self.covers.iter().zip(self.weights).map(|(&i, w)| mass_matrix.inverse[i].dot(&square) * w * w).sum()
     }
 
     /// Adds an impulse (N·s/m) along the direction to the velocity increments of the covers.
     pub fn push(&self, impulse: f64, mass_matrix: &MassMatrix, increment: &mut [Vector]) {
         for (&i, w) in self.covers.iter().zip(self.weights) {
-            increment[i as usize] += mass_matrix.inverse[i as usize].component_mul(&self.direction) * (w * impulse);
+            increment[i] += mass_matrix.inverse[i].component_mul(&self.direction) * (w * impulse);
         }
     }
 }

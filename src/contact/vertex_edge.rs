@@ -3,7 +3,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Closure, Limits, Pair, SoftSpring};
+use super::{Closure, EdgeId, LawId, Limits, NodeId, Pair, SideId, SoftSpring};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -25,11 +25,11 @@ pub enum ContactState {
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactHistory {
     /// Boundary node that may enter.
-    pub node: u32,
+    pub node: NodeId,
     /// Side of the other block (or of a partial cut) that it may enter.
-    pub side: u32,
+    pub side: SideId,
     /// Edge of that side in the last step.
-    pub edge: u32,
+    pub edge: EdgeId,
     /// Normal force at the end of the last step (N/m), compression positive.
     pub normal_force: f64,
     /// Shear force at the end of the last step (N/m), on the node along the edge.
@@ -80,7 +80,7 @@ pub struct VertexEdge {
     /// Tributary length (m).
     pub length: f64,
     /// Law of the joint.
-    pub law: u32,
+    pub law: LawId,
     /// Whether the contact failed in tension in this step.
     pub torn: bool,
     /// Whether the contact is new in this step.

@@ -1,6 +1,7 @@
 //! What a host can read: ports and totals. All of it follows from the state alone.
 
 use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 use crate::model::Simulation;
 use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
@@ -128,8 +129,8 @@ impl Cosimulation {
         self.look(|simulation, serial| simulation.look_ahead_on(serial).1.contacts)
     }
 
-    fn block_port(&self, block: u32) -> PortState {
-        let state = self.simulation.motion_of(block as usize);
+    fn block_port(&self, block: BlockId) -> PortState {
+        let state = self.simulation.motion_of(block);
         let boundary = &self.simulation.model().boundary;
         let positions = self.simulation.positions();
         let mut contact_force = Vector::zeros();
@@ -156,13 +157,13 @@ impl Cosimulation {
         let boundary = &model.boundary;
         let mut mean = PortState::default();
         let mut total = 0.0;
-        for edge in port.edges.iter().map(|&e| e as usize) {
+        for &edge in &port.edges {
             let ends = [edge, boundary.after(edge)];
             let length = (boundary.reference[ends[1]] - boundary.reference[ends[0]]).norm();
             let sample = |field: &[Vector]| ends.map(|k| boundary.sample(k, field)).iter().sum::<Vector>() * 0.5;
             mean.displacement += sample(&state.displacement) * length;
             mean.velocity += sample(&state.velocity) * length;
-            let (stress, _) = self.simulation.stress_of(boundary.block[edge] as usize);
+            let (stress, _) = self.simulation.stress_of(boundary.block[edge]);
             (0..3).for_each(|k| mean.stress[k] += stress[k] * length);
             total += length;
         }
@@ -175,7 +176,7 @@ impl Cosimulation {
     fn joint_port(&self, port: &Port) -> PortState {
         let boundary = &self.simulation.model().boundary;
         let of_port = |contact: &&ContactHistory| {
-            let [before, after] = boundary.edges_of_node(contact.node as usize);
+            let [before, after] = boundary.edges_of_node(contact.node);
             [contact.edge, before, after].iter().any(|edge| port.edges.binary_search(edge).is_ok())
         };
         let mut sum = PortState::default();
@@ -189,14 +190,14 @@ impl Cosimulation {
 }
 
 /// Blocks of node and edge of a contact.
-fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [u32; 2] {
-    let node = boundary.node_point[contact.node as usize] as usize;
-    [boundary.block[node], boundary.block[contact.edge as usize]]
+fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [BlockId; 2] {
+    let node = boundary.node_point[contact.node];
+    [boundary.block[node], boundary.block[contact.edge]]
 }
 
 /// Force of a contact on its node (N/m); its edge feels the opposite.
 fn force_on_node(boundary: &Boundary, positions: &[Point], contact: &ContactHistory) -> Vector {
-    let edge = contact.edge as usize;
+    let edge = contact.edge;
     let along = (positions[boundary.after(edge)] - positions[edge]).normalize();
     let normal = Vector::new(along.y, -along.x);
     normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force

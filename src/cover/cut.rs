@@ -1,12 +1,14 @@
 //! Cuts mathematical covers into physical covers, manifold elements and blocks.
 
-use crate::geometry::{Arrangement, NONE, Point, Vector, polygon, segment};
+use std::ops::IndexMut;
 
-use super::Weights;
+use crate::geometry::{Arrangement, FaceId, HalfEdgeId, Point, Vector, id, polygon, segment};
+
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::{self, hilbert};
 use super::outlines::{Outlines, mesh_only};
+use super::{BlockId, CoverId, ElementId, Weights};
 
 /// All covers, elements and blocks of a model in the reference configuration, ordered by block and in space.
 #[derive(Debug, Clone)]
@@ -16,7 +18,7 @@ pub struct Covers {
     /// Weight gradients (1/m) of the up and the down triangle.
     pub gradients: [[Vector; 3]; 2],
     /// Three physical covers of each element, counter-clockwise.
-    pub element_covers: Vec<[u32; 3]>,
+    pub element_covers: Vec<[CoverId; 3]>,
     /// Lattice triangle of each element.
     pub element_triangle: Vec<Triangle>,
     /// Cut area of each element (m²).
@@ -26,7 +28,7 @@ pub struct Covers {
     /// Polar second moment of area of each element about its centroid (m⁴).
     pub element_polar: Vec<f64>,
     /// Block of each element.
-    pub element_block: Vec<u32>,
+    pub element_block: Vec<BlockId>,
     /// First point of each element's polygon in `polygon_points`, and their number at the end.
     pub polygon_start: Vec<u32>,
     /// Corners of the elements (m), counter-clockwise; holes are joined by bridges.
@@ -36,15 +38,15 @@ pub struct Covers {
     /// Position of that node (m).
     pub star_position: Vec<Point>,
     /// Block of each physical cover.
-    pub cover_block: Vec<u32>,
+    pub cover_block: Vec<BlockId>,
     /// First element of each block, and the number of elements at the end.
     pub block_elements: Vec<u32>,
     /// First physical cover of each block, and the number of covers at the end.
     pub block_covers: Vec<u32>,
     /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
-    pub host: Vec<u32>,
+    pub host: Vec<ElementId>,
     /// Elements in the order of their lattice triangles, row by row, for finding them by position.
-    by_triangle: Vec<u32>,
+    by_triangle: Vec<ElementId>,
 }
 
 impl Covers {
@@ -53,9 +55,19 @@ impl Covers {
         self.block_elements.len() - 1
     }
 
+    /// All blocks.
+    pub fn blocks(&self) -> impl ExactSizeIterator<Item = BlockId> + Clone {
+        BlockId::all(self.block_count())
+    }
+
     /// Number of elements.
     pub fn element_count(&self) -> usize {
         self.element_covers.len()
+    }
+
+    /// All elements.
+    pub fn elements(&self) -> impl ExactSizeIterator<Item = ElementId> + Clone {
+        ElementId::all(self.element_count())
     }
 
     /// Number of physical covers.
@@ -63,48 +75,49 @@ impl Covers {
         self.star.len()
     }
 
-    /// Elements of a block.
-    pub fn elements_of(&self, block: usize) -> std::ops::Range<usize> {
-        self.block_elements[block] as usize..self.block_elements[block + 1] as usize
+    /// Elements of a block, by their indices.
+    pub fn elements_of(&self, block: BlockId) -> std::ops::Range<usize> {
+        self.block_elements[block] as usize..self.block_elements[block.index() + 1] as usize
     }
 
-    /// Physical covers of a block.
-    pub fn covers_of(&self, block: usize) -> std::ops::Range<usize> {
-        self.block_covers[block] as usize..self.block_covers[block + 1] as usize
+    /// Physical covers of a block, by their indices.
+    pub fn covers_of(&self, block: BlockId) -> std::ops::Range<usize> {
+        self.block_covers[block] as usize..self.block_covers[block.index() + 1] as usize
     }
 
     /// Reference polygon of an element.
-    pub fn polygon(&self, element: usize) -> &[Point] {
-        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element + 1] as usize]
+    pub fn polygon(&self, element: ElementId) -> &[Point] {
+        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element.index() + 1] as usize]
     }
 
     /// Weights of an element's covers at a reference point (Eq. 1).
-    pub fn weights(&self, element: usize, p: Point) -> Weights {
+    pub fn weights(&self, element: ElementId, p: Point) -> Weights {
         self.mesh.weights(self.element_triangle[element], p)
     }
 
     /// Area of a block (m²).
-    pub fn block_area(&self, block: usize) -> f64 {
+    pub fn block_area(&self, block: BlockId) -> f64 {
         self.element_area[self.elements_of(block)].iter().sum()
     }
 
     /// Area centroid of a block in the reference configuration (m).
-    pub fn block_centroid(&self, block: usize) -> Point {
+    pub fn block_centroid(&self, block: BlockId) -> Point {
         let first: Point = self.elements_of(block).map(|e| self.element_centroid[e] * self.element_area[e]).sum();
         first / self.block_area(block)
     }
 
     /// A reference point inside a block: the centre of the largest triangle of its largest element.
-    pub fn point_inside(&self, block: usize) -> Point {
-        let largest = |a: &usize, b: &usize| self.element_area[*a].total_cmp(&self.element_area[*b]);
-        let triangles = self.elements_of(block).max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
+    pub fn point_inside(&self, block: BlockId) -> Point {
+        let largest = |a: &ElementId, b: &ElementId| self.element_area[*a].total_cmp(&self.element_area[*b]);
+        let elements = ElementId::range(self.elements_of(block));
+        let triangles = elements.max_by(largest).map(|e| polygon::triangles(self.polygon(e)));
         let area = |t: &[Point; 3]| polygon::area(t);
         let triangle = triangles.into_iter().flatten().max_by(|a, b| area(a).total_cmp(&area(b)));
         triangle.map_or_else(|| self.block_centroid(block), |t| t.iter().sum::<Point>() / 3.0)
     }
 
     /// The element that holds a reference point, on its boundary included; the lowest when several do.
-    pub fn element_at(&self, p: Point) -> Option<usize> {
+    pub fn element_at(&self, p: Point) -> Option<ElementId> {
         self.around(p, 0.0).filter(|&e| polygon::contains(self.polygon(e), p)).min()
     }
 
@@ -114,29 +127,29 @@ impl Covers {
     }
 
     /// Elements that come within `reach` (m) of a point, and some more.
-    fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = usize> {
+    fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = ElementId> {
         let Triangle { i, j, .. } = self.mesh.locate(p);
         // A lattice row is 0.866 of the mesh size high.
         let rings = 1 + (1.2 * reach / self.mesh.size).min(1e6) as i32;
         let before = move |row: i32, column: i32| {
             self.by_triangle.partition_point(|&e| {
-                let triangle = &self.element_triangle[e as usize];
+                let triangle = &self.element_triangle[e];
                 (triangle.j, triangle.i) < (row, column)
             })
         };
         let rows = j.saturating_sub(rings)..=j.saturating_add(rings);
         let (first, end) = (i.saturating_sub(2 * rings), i.saturating_add(2 * rings + 1));
-        rows.flat_map(move |row| self.by_triangle[before(row, first)..before(row, end)].iter().map(|&e| e as usize))
+        rows.flat_map(move |row| self.by_triangle[before(row, first)..before(row, end)].iter().copied())
     }
 
     /// The element that holds a reference point, or else the nearest one within `reach` (m).
-    pub fn element_near(&self, p: Point, reach: f64) -> Option<usize> {
-        let distance = |e: usize| -> f64 {
+    pub fn element_near(&self, p: Point, reach: f64) -> Option<ElementId> {
+        let distance = |e: ElementId| -> f64 {
             let points = self.polygon(e);
             let sides = points.iter().zip(points.iter().cycle().skip(1));
             sides.map(|(a, b)| segment::distance(p, *a, *b)).fold(f64::INFINITY, f64::min)
         };
-        let nearest = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let nearest = |a: &(f64, ElementId), b: &(f64, ElementId)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         self.element_at(p).or_else(|| {
             let near = self.around(p, reach).map(|e| (distance(e), e)).min_by(nearest)?;
             (near.0 <= reach).then_some(near.1)
@@ -147,12 +160,12 @@ impl Covers {
     pub const TILE: usize = order::TILE;
 
     /// Whether the covers of a block go tile by tile, and row by row within each.
-    pub fn is_tiled(&self, block: usize) -> bool {
+    pub fn is_tiled(&self, block: BlockId) -> bool {
         self.covers_of(block).len() >= order::TILED
     }
 
     /// Tile of the lattice that a cover stands in.
-    pub fn tile(&self, cover: usize) -> [i32; 2] {
+    pub fn tile(&self, cover: CoverId) -> [i32; 2] {
         order::tile(self.star[cover])
     }
 
@@ -179,12 +192,12 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
     let blocks = order_blocks(&raw, &joined);
     let mut covers = lay_out_elements(mesh, &raw, &blocks);
     let slot_cover = lay_out_covers(&mut covers, &raw, &joined, &blocks);
-    for (new, &old) in blocks.order.iter().enumerate() {
-        covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[3 * old as usize + k]);
+    for (new, old) in blocks.order.iter().enumerate() {
+        covers.element_covers[new] = [0, 1, 2].map(|k| slot_cover[old.slot(k)]);
     }
-    let mut element_of_face = vec![NONE; arrangement.faces.len()];
-    for (new, &old) in blocks.order.iter().enumerate() {
-        element_of_face[raw.face[old as usize] as usize] = new as u32;
+    let mut element_of_face = vec![None; arrangement.faces.len()];
+    for (new, &old) in covers.elements().zip(&blocks.order) {
+        element_of_face[raw.face[old]] = Some(new);
     }
     drop((raw, joined, blocks, slot_cover));
     let outlines = Outlines::trace(&arrangement, &element_of_face, &covers.element_block);
@@ -195,20 +208,46 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
 }
 
 /// See [`Covers::by_triangle`].
-fn by_triangle(covers: &Covers) -> Vec<u32> {
-    let mut elements: Vec<u32> = (0..covers.element_count() as u32).collect();
-    let position = |e: u32| {
-        let triangle = &covers.element_triangle[e as usize];
+fn by_triangle(covers: &Covers) -> Vec<ElementId> {
+    let mut elements: Vec<ElementId> = covers.elements().collect();
+    let position = |e: ElementId| {
+        let triangle = &covers.element_triangle[e];
         (triangle.j, triangle.i)
     };
     elements.sort_unstable_by_key(|&e| (position(e), e));
     elements
 }
 
+id! {
+    /// An element in the order of the arrangement's faces.
+    RawId
+}
+id! {
+    /// A corner of such an element.
+    SlotId
+}
+
+impl RawId {
+    /// Its slot for one of three corners.
+    fn slot(self, corner: usize) -> SlotId {
+        SlotId::new(3 * self.index() + corner)
+    }
+}
+
+impl SlotId {
+    fn element(self) -> RawId {
+        RawId::new(self.index() / 3)
+    }
+
+    fn corner(self) -> usize {
+        self.index() % 3
+    }
+}
+
 /// Elements in the order of the arrangement's faces.
 struct RawElements {
-    face: Vec<u32>,
-    of_face: Vec<u32>,
+    face: Vec<FaceId>,
+    of_face: Vec<Option<RawId>>,
     triangle: Vec<Triangle>,
     area: Vec<f64>,
     centroid: Vec<Point>,
@@ -220,11 +259,11 @@ struct RawElements {
 impl RawElements {
     fn collect(mesh: &RegularMesh, arrangement: &Arrangement) -> Self {
         let triangles = triangles_of_faces(mesh, arrangement);
-        let face: Vec<u32> =
-            (0..arrangement.faces.len() as u32).filter(|&f| arrangement.faces[f as usize].winding == 1).collect();
-        let mut of_face = vec![NONE; arrangement.faces.len()];
+        let face: Vec<FaceId> =
+            FaceId::all(arrangement.faces.len()).filter(|&f| arrangement.faces[f].winding == 1).collect();
+        let mut of_face = vec![None; arrangement.faces.len()];
         let mut raw = Self {
-            triangle: face.iter().map(|&f| triangles[f as usize]).collect(),
+            triangle: face.iter().map(|&f| triangles[f]).collect(),
             area: Vec::with_capacity(face.len()),
             centroid: Vec::with_capacity(face.len()),
             polar: Vec::with_capacity(face.len()),
@@ -233,8 +272,8 @@ impl RawElements {
             face: Vec::new(),
             of_face: Vec::new(),
         };
-        for (k, &f) in face.iter().enumerate() {
-            of_face[f as usize] = k as u32;
+        for (raw_id, &f) in RawId::all(face.len()).zip(&face) {
+            of_face[f] = Some(raw_id);
             let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
             raw.integrate(&loops);
         }
@@ -259,8 +298,8 @@ impl RawElements {
         self.polygon_points.extend(bridge(loops));
     }
 
-    fn polygon(&self, k: usize) -> &[Point] {
-        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k + 1] as usize]
+    fn polygon(&self, k: RawId) -> &[Point] {
+        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k.index() + 1] as usize]
     }
 }
 
@@ -285,20 +324,23 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
     let nowhere = Triangle { i: i32::MIN, j: i32::MIN, set: 0 };
     let mut triangles = vec![nowhere; arrangement.faces.len()];
     let mut open = Vec::new();
-    for h in 0..arrangement.next.len() as u32 {
+    for h in arrangement.half_edges() {
         let label = arrangement.label_of(h);
-        let face = arrangement.face[h as usize];
-        if label.mesh != NONE && face != 0 && triangles[face as usize] == nowhere {
-            triangles[face as usize] = mesh.triangle_beside(label.mesh, label.mesh_reversed);
+        let face = arrangement.face[h];
+        if let Some(edge) = label.mesh
+            && face != FaceId::UNBOUNDED
+            && triangles[face] == nowhere
+        {
+            triangles[face] = mesh.triangle_beside(edge, label.mesh_reversed);
             open.push(face);
         }
     }
     while let Some(face) = open.pop() {
         let sides = arrangement.face_loops(face).flat_map(|h| arrangement.cycle(h));
-        for h in sides.filter(|&h| arrangement.label_of(h).mesh == NONE) {
-            let neighbour = arrangement.face[(h ^ 1) as usize];
-            if neighbour != 0 && triangles[neighbour as usize] == nowhere {
-                triangles[neighbour as usize] = triangles[face as usize];
+        for h in sides.filter(|&h| arrangement.label_of(h).mesh.is_none()) {
+            let neighbour = arrangement.face[h.twin()];
+            if neighbour != FaceId::UNBOUNDED && triangles[neighbour] == nowhere {
+                triangles[neighbour] = triangles[face];
                 open.push(neighbour);
             }
         }
@@ -306,54 +348,52 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
     triangles
 }
 
-/// Disjoint sets of small integers.
-struct UnionFind(Vec<u32>);
+/// Disjoint sets of ids.
+struct UnionFind<I>(Vec<I>);
 
-impl UnionFind {
-    fn new(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    fn root(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
+impl<I: Copy + Ord> UnionFind<I>
+where
+    Vec<I>: IndexMut<I, Output = I>,
+{
+    fn root(&mut self, mut k: I) -> I {
+        while self.0[k] != k {
+            let parent = self.0[k];
+            self.0[k] = self.0[parent];
+            k = self.0[k];
         }
         k
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    fn join(&mut self, a: I, b: I) {
         let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
+        self.0[a.max(b)] = a.min(b);
     }
 
-    fn roots(mut self) -> Vec<u32> {
-        (0..self.0.len() as u32).map(|k| self.root(k)).collect()
+    fn roots(mut self) -> Vec<I> {
+        let parents = self.0.clone();
+        parents.into_iter().map(|k| self.root(k)).collect()
     }
 }
 
-/// Which elements form a block, and which corners of elements (3·element + corner) share a physical cover.
+/// Which elements form a block, and which corners of elements share a physical cover.
 struct Joined {
-    block_root: Vec<u32>,
-    slot_root: Vec<u32>,
+    block_root: Vec<RawId>,
+    slot_root: Vec<SlotId>,
 }
 
 impl Joined {
     /// Joins across every edge that is a mesh edge and nothing else: it is a spoke of both its stars.
     fn new(arrangement: &Arrangement, raw: &RawElements) -> Self {
-        let mut blocks = UnionFind::new(raw.face.len());
-        let mut slots = UnionFind::new(3 * raw.face.len());
-        for e in 0..arrangement.edges.len() as u32 {
-            let label = arrangement.label_of(2 * e);
-            let [a, b] = [2 * e, 2 * e + 1].map(|h| raw.of_face[arrangement.face[h as usize] as usize]);
-            if !mesh_only(&label) || a == NONE || b == NONE {
-                continue;
-            }
+        let mut blocks = UnionFind(RawId::all(raw.face.len()).collect());
+        let mut slots = UnionFind(SlotId::all(3 * raw.face.len()).collect());
+        for (e, edge) in arrangement.edges.iter().enumerate() {
+            let [a, b] = HalfEdgeId::both(e).map(|h| raw.of_face[arrangement.face[h]]);
+            let (true, Some(a), Some(b)) = (mesh_only(&edge.label), a, b) else { continue };
             blocks.join(a, b);
-            let [nodes_a, nodes_b] = [a, b].map(|e| raw.triangle[e as usize].nodes());
+            let [nodes_a, nodes_b] = [a, b].map(|e| raw.triangle[e].nodes());
             for (k, star) in nodes_a.iter().enumerate() {
                 if let Some(l) = nodes_b.iter().position(|s| s == star) {
-                    slots.join(3 * a + k as u32, 3 * b + l as u32);
+                    slots.join(a.slot(k), b.slot(l));
                 }
             }
         }
@@ -363,8 +403,8 @@ impl Joined {
 
 /// Order of the elements: by block, blocks and elements along a Hilbert curve.
 struct BlockOrder {
-    order: Vec<u32>,
-    block: Vec<u32>,
+    order: Vec<RawId>,
+    block: Vec<BlockId>,
     count: usize,
     low: Point,
     high: Point,
@@ -376,41 +416,40 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
     let n = raw.face.len();
     let mut first = vec![Vector::zeros(); n];
     let mut area = vec![0.0; n];
-    for e in 0..n {
-        let root = joined.block_root[e] as usize;
+    for e in RawId::all(n) {
+        let root = joined.block_root[e];
         first[root] += raw.centroid[e] * raw.area[e];
         area[root] += raw.area[e];
     }
-    let mut roots: Vec<u32> = (0..n as u32).filter(|&e| joined.block_root[e as usize] == e).collect();
-    roots.sort_by_cached_key(|&r| (hilbert(first[r as usize] / area[r as usize], low, high), r));
-    let mut block_of_root = vec![NONE; n];
-    for (k, &r) in roots.iter().enumerate() {
-        block_of_root[r as usize] = k as u32;
+    let mut roots: Vec<RawId> = RawId::all(n).filter(|&e| joined.block_root[e] == e).collect();
+    roots.sort_by_cached_key(|&r| (hilbert(first[r] / area[r], low, high), r));
+    let mut block_of_root = vec![BlockId::default(); n];
+    for (block, &r) in BlockId::all(roots.len()).zip(&roots) {
+        block_of_root[r] = block;
     }
-    let block: Vec<u32> = joined.block_root.iter().map(|&r| block_of_root[r as usize]).collect();
-    let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_by_cached_key(|&e| (block[e as usize], hilbert(raw.centroid[e as usize], low, high), e));
+    let block: Vec<BlockId> = joined.block_root.iter().map(|&r| block_of_root[r]).collect();
+    let mut order: Vec<RawId> = RawId::all(n).collect();
+    order.sort_by_cached_key(|&e| (block[e], hilbert(raw.centroid[e], low, high), e));
     BlockOrder { order, block, count: roots.len(), low, high }
 }
 
 fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -> Covers {
-    let take = |k: &u32| *k as usize;
     let mut polygon_start = Vec::with_capacity(blocks.order.len() + 1);
     let mut polygon_points = Vec::with_capacity(raw.polygon_points.len());
     polygon_start.push(0);
-    for k in &blocks.order {
-        polygon_points.extend_from_slice(raw.polygon(take(k)));
+    for &k in &blocks.order {
+        polygon_points.extend_from_slice(raw.polygon(k));
         polygon_start.push(polygon_points.len() as u32);
     }
-    let element_block: Vec<u32> = blocks.order.iter().map(|k| blocks.block[take(k)]).collect();
+    let element_block: Vec<BlockId> = blocks.order.iter().map(|&k| blocks.block[k]).collect();
     Covers {
         gradients: mesh.gradients(),
         mesh,
-        element_covers: vec![[0; 3]; blocks.order.len()],
-        element_triangle: blocks.order.iter().map(|k| raw.triangle[take(k)]).collect(),
-        element_area: blocks.order.iter().map(|k| raw.area[take(k)]).collect(),
-        element_centroid: blocks.order.iter().map(|k| raw.centroid[take(k)]).collect(),
-        element_polar: blocks.order.iter().map(|k| raw.polar[take(k)]).collect(),
+        element_covers: vec![[CoverId::default(); 3]; blocks.order.len()],
+        element_triangle: blocks.order.iter().map(|&k| raw.triangle[k]).collect(),
+        element_area: blocks.order.iter().map(|&k| raw.area[k]).collect(),
+        element_centroid: blocks.order.iter().map(|&k| raw.centroid[k]).collect(),
+        element_polar: blocks.order.iter().map(|&k| raw.polar[k]).collect(),
         block_elements: starts(&element_block, blocks.count),
         element_block,
         polygon_start,
@@ -424,32 +463,31 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
     }
 }
 
-/// Creates the physical covers and returns the cover of each slot (3·raw element + corner).
-fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<u32> {
-    let star_of = |slot: u32| raw.triangle[slot as usize / 3].nodes()[slot as usize % 3];
-    let mut roots: Vec<u32> =
-        (0..joined.slot_root.len() as u32).filter(|&s| joined.slot_root[s as usize] == s).collect();
+/// Creates the physical covers and returns the cover of each slot.
+fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, blocks: &BlockOrder) -> Vec<CoverId> {
+    let star_of = |slot: SlotId| raw.triangle[slot.element()].nodes()[slot.corner()];
+    let mut roots: Vec<SlotId> = SlotId::all(joined.slot_root.len()).filter(|&s| joined.slot_root[s] == s).collect();
     let mut counts = vec![0; blocks.count];
-    roots.iter().for_each(|&s| counts[blocks.block[s as usize / 3] as usize] += 1);
+    roots.iter().for_each(|&s| counts[blocks.block[s.element()]] += 1);
     roots.sort_by_cached_key(|&s| {
-        let (block, [i, j]) = (blocks.block[s as usize / 3], star_of(s));
-        let tile = (counts[block as usize] >= order::TILED).then(|| order::tile([i, j]));
+        let (block, [i, j]) = (blocks.block[s.element()], star_of(s));
+        let tile = (counts[block] >= order::TILED).then(|| order::tile([i, j]));
         let node = tile.map_or([i, j], order::tile_centre);
         let position = hilbert(covers.mesh.node(node), blocks.low, blocks.high);
         (block, position, tile, [j, i], s)
     });
-    let mut cover_of_root = vec![NONE; joined.slot_root.len()];
-    for (k, &s) in roots.iter().enumerate() {
-        cover_of_root[s as usize] = k as u32;
+    let mut cover_of_root = vec![CoverId::default(); joined.slot_root.len()];
+    for (cover, &s) in CoverId::all(roots.len()).zip(&roots) {
+        cover_of_root[s] = cover;
         covers.star.push(star_of(s));
         covers.star_position.push(covers.mesh.node(star_of(s)));
-        covers.cover_block.push(blocks.block[s as usize / 3]);
+        covers.cover_block.push(blocks.block[s.element()]);
     }
     covers.block_covers = starts(&covers.cover_block, blocks.count);
-    joined.slot_root.iter().map(|&r| cover_of_root[r as usize]).collect()
+    joined.slot_root.iter().map(|&r| cover_of_root[r]).collect()
 }
 
-/// First index of each group in a sorted list of group numbers, and the length at the end.
-fn starts(groups: &[u32], count: usize) -> Vec<u32> {
-    (0..=count as u32).map(|g| groups.partition_point(|&x| x < g) as u32).collect()
+/// First index of each block in a sorted list of blocks, and the length at the end.
+fn starts(blocks: &[BlockId], count: usize) -> Vec<u32> {
+    (0..=count).map(|end| blocks.partition_point(|block| block.index() < end) as u32).collect()
 }

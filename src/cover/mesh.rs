@@ -1,6 +1,6 @@
 //! The regular equilateral lattice that carries the mathematical covers.
 
-use crate::geometry::{Label, NONE, Point, Segment, Vector};
+use crate::geometry::{Label, MeshEdgeId, Point, Segment, Vector};
 
 use super::Weights;
 
@@ -135,12 +135,16 @@ impl RegularMesh {
         Triangle { i: i as i32, j: j as i32, set: u8::from(s - i + t - j > 1.0) }
     }
 
+    /// Direction of a mesh edge, and the lattice cell at its start.
+    fn direction_and_cell(&self, edge: MeshEdgeId) -> (u32, [i32; 2]) {
+        let (cell, direction) = ((edge.number() / 3) as i32, edge.number() % 3);
+        (direction, [self.first[0] + cell % self.count[0], self.first[1] + cell / self.count[0]])
+    }
+
     /// The triangle to the left of mesh edge `edge` (as numbered by [`RegularMesh::segments`]), or to its right when
     /// `reversed`.
-    pub fn triangle_beside(&self, edge: u32, reversed: bool) -> Triangle {
-        let (cell, direction) = (edge / 3, edge % 3);
-        let i = self.first[0] + (cell as i32) % self.count[0];
-        let j = self.first[1] + (cell as i32) / self.count[0];
+    pub fn triangle_beside(&self, edge: MeshEdgeId, reversed: bool) -> Triangle {
+        let (direction, [i, j]) = self.direction_and_cell(edge);
         match (direction, reversed) {
             (0, false) | (2, false) => Triangle { i, j, set: 0 },
             (0, true) => Triangle { i, j: j - 1, set: 1 },
@@ -151,10 +155,8 @@ impl RegularMesh {
     }
 
     /// The two stars at the ends of mesh edge `edge`.
-    pub fn edge_stars(&self, edge: u32) -> [[i32; 2]; 2] {
-        let (cell, direction) = (edge / 3, edge % 3);
-        let i = self.first[0] + (cell as i32) % self.count[0];
-        let j = self.first[1] + (cell as i32) / self.count[0];
+    pub fn edge_stars(&self, edge: MeshEdgeId) -> [[i32; 2]; 2] {
+        let (direction, [i, j]) = self.direction_and_cell(edge);
         match direction {
             0 => [[i, j], [i + 1, j]],
             1 => [[i, j], [i, j + 1]],
@@ -174,12 +176,15 @@ impl RegularMesh {
         };
         let mut segments = Vec::new();
         for row in 0..self.count[1] {
-            let start = row as u32 * self.count[0] as u32;
+            let start = row as usize * self.count[0] as usize;
             let columns = self.columns_near(self.first[1] + row, low, high);
-            for edge in columns.flat_map(|column| (0..3).map(move |side| 3 * (start + column as u32) + side)) {
+            for edge in columns
+                .flat_map(|column| (0..3).map(move |side| 3 * (start + column as usize) + side))
+                .map(MeshEdgeId::new)
+            {
                 if near(self.triangle_beside(edge, false)) || near(self.triangle_beside(edge, true)) {
                     let [a, b] = self.edge_stars(edge).map(|s| self.node(s));
-                    let label = Label { outline: 0, trace: NONE, mesh: edge, mesh_reversed: false };
+                    let label = Label { outline: 0, trace: None, mesh: Some(edge), mesh_reversed: false };
                     segments.push(Segment { a, b, label });
                 }
             }
@@ -211,7 +216,7 @@ mod tests {
     #[test]
     fn triangles_beside_an_edge_hold_both_its_stars() {
         let mesh = RegularMesh::new(1.0, 0.0, Point::zeros(), Point::zeros(), Point::new(3.0, 3.0));
-        for edge in 0..60 {
+        for edge in MeshEdgeId::all(60) {
             let stars = mesh.edge_stars(edge);
             for reversed in [false, true] {
                 let nodes = mesh.triangle_beside(edge, reversed).nodes();

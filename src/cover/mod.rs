@@ -11,14 +11,27 @@ pub use cut::{Covers, cut};
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
 
-use crate::geometry::Vector;
+use crate::geometry::{Vector, id};
+
+id! {
+    /// A block: rock that no joint cuts through.
+    BlockId
+}
+id! {
+    /// A manifold element.
+    ElementId
+}
+id! {
+    /// A physical cover.
+    CoverId
+}
 
 /// Weights of the three physical covers of an element at a point.
 pub type Weights = [f64; 3];
 
 /// A field over all covers at the point where three of them have these weights.
 #[inline(always)]
-pub fn sample(covers: &[u32; 3], weights: &Weights, field: &[Vector]) -> Vector {
-    let part = |k: usize| field[covers[k] as usize] * weights[k];
+pub fn sample(covers: &[CoverId; 3], weights: &Weights, field: &[Vector]) -> Vector {
+    let part = |k: usize| field[covers[k]] * weights[k];
     part(0) + part(1) + part(2)
 }

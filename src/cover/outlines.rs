@@ -1,6 +1,7 @@
 //! Boundary loops of the blocks: joint faces and outline parts, partial cuts included.
 
-use crate::geometry::{Arrangement, Label, NONE, Point};
+use super::{BlockId, ElementId};
+use crate::geometry::{Arrangement, HalfEdgeId, Label, Point, TraceId};
 
 /// A straight piece of a block's boundary inside one element; rock lies to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,11 +11,11 @@ pub struct BoundaryPiece {
     /// End (m).
     pub b: Point,
     /// Element on the left.
-    pub element: u32,
-    /// Joint trace that made it, `NONE` on an outline.
-    pub trace: u32,
-    /// Element on the right, `NONE` outside the rock.
-    pub opposite: u32,
+    pub element: ElementId,
+    /// Joint trace that made it; none on an outline.
+    pub trace: Option<TraceId>,
+    /// Element on the right; none outside the rock.
+    pub opposite: Option<ElementId>,
     /// Whether both sides belong to one block.
     pub partial: bool,
 }
@@ -27,12 +28,12 @@ pub struct Outlines {
     /// First piece of each loop, and the number of pieces at the end.
     pub loop_start: Vec<u32>,
     /// Block of each loop.
-    pub loop_block: Vec<u32>,
+    pub loop_block: Vec<BlockId>,
 }
 
 /// Whether an edge carries the mesh and nothing that cuts.
 pub(super) fn mesh_only(label: &Label) -> bool {
-    label.mesh != NONE && label.trace == NONE && label.outline == 0
+    label.mesh.is_some() && label.trace.is_none() && label.outline == 0
 }
 
 impl Outlines {
@@ -52,40 +53,44 @@ impl Outlines {
     }
 
     /// Walks all boundary loops of the elements that `element_of_face` names.
-    pub(super) fn trace(arrangement: &Arrangement, element_of_face: &[u32], element_block: &[u32]) -> Self {
-        let element = |h: u32| element_of_face[arrangement.face[h as usize] as usize];
-        let block = |e: u32| if e == NONE { NONE } else { element_block[e as usize] };
-        let bounds = |h: u32| element(h) != NONE && !mesh_only(&arrangement.label_of(h));
-        let mut starts: Vec<u32> = (0..arrangement.next.len() as u32).filter(|&h| bounds(h)).collect();
-        starts.sort_by_key(|&h| (block(element(h)), h));
+    pub(super) fn trace(
+        arrangement: &Arrangement,
+        element_of_face: &[Option<ElementId>],
+        element_block: &[BlockId],
+    ) -> Self {
+        let element = |h: HalfEdgeId| element_of_face[arrangement.face[h]];
+        let block = |e: ElementId| element_block[e];
+        let bounds = |h: HalfEdgeId| Some((block(element(h)?), h)).filter(|_| !mesh_only(&arrangement.label_of(h)));
+        let mut starts: Vec<(BlockId, HalfEdgeId)> = arrangement.half_edges().filter_map(bounds).collect();
+        starts.sort_unstable();
         let mut seen = vec![false; arrangement.next.len()];
         let mut outlines = Self { loop_start: vec![0], ..Self::default() };
-        for start in starts {
-            if seen[start as usize] {
+        for (loop_block, start) in starts {
+            if seen[start] {
                 continue;
             }
             let mut h = start;
-            while !seen[h as usize] {
-                seen[h as usize] = true;
-                let [a, b] = [h, h ^ 1].map(|h| arrangement.points[arrangement.origin(h) as usize]);
-                let (own, opposite) = (element(h), element(h ^ 1));
-                let partial = block(own) == block(opposite);
+            while let (false, Some(own)) = (seen[h], element(h)) {
+                seen[h] = true;
+                let [a, b] = [h, h.twin()].map(|h| arrangement.points[arrangement.origin(h)]);
+                let opposite = element(h.twin());
+                let partial = opposite.is_some_and(|other| block(other) == block(own));
                 let trace = arrangement.label_of(h).trace;
                 outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
                 h = next_boundary(arrangement, h);
             }
             outlines.loop_start.push(outlines.pieces.len() as u32);
-            outlines.loop_block.push(block(element(start)));
+            outlines.loop_block.push(loop_block);
         }
         outlines
     }
 }
 
 /// The boundary half-edge after `h`, turning across mesh-only edges.
-fn next_boundary(arrangement: &Arrangement, h: u32) -> u32 {
-    let mut next = arrangement.next[h as usize];
+fn next_boundary(arrangement: &Arrangement, h: HalfEdgeId) -> HalfEdgeId {
+    let mut next = arrangement.next[h];
     while mesh_only(&arrangement.label_of(next)) {
-        next = arrangement.next[(next ^ 1) as usize];
+        next = arrangement.next[next.twin()];
     }
     next
 }

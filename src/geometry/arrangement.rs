@@ -1,14 +1,33 @@
 //! The planar arrangement: segments with provenance in, half-edges and faces out.
 //!
-//! Knows where an edge comes from only as plain indices (outline, joint trace, mesh edge). `noder` makes edges that
-//! meet in common vertices only, this file merges and prunes them, `faces` walks round them.
+//! Knows where an edge comes from only as ids (outline, joint trace, mesh edge). `noder` makes edges that meet in
+//! common vertices only, this file merges and prunes them, `faces` walks round them.
 
 use super::grid::Groups;
 use super::noder::{Noder, WorkEdge};
-use super::{GeometryError, Point, faces};
+use super::{GeometryError, Point, faces, id};
 
-/// The index that stands for nothing.
-pub const NONE: u32 = u32::MAX;
+id! {
+    /// A joint trace.
+    TraceId
+}
+id! {
+    /// An edge of the mesh, as its maker counts them.
+    MeshEdgeId
+}
+id! {
+    /// A vertex of an arrangement.
+    VertexId
+}
+id! {
+    /// A half-edge of an arrangement: 2e runs along edge e, 2e + 1 against it.
+    HalfEdgeId
+}
+id! {
+    /// A face of an arrangement.
+    FaceId
+}
+
 /// Edges whose half-edges and faces can be told apart by 32 bits.
 const EDGES_MAX: usize = 1 << 30;
 
@@ -17,44 +36,44 @@ const EDGES_MAX: usize = 1 << 30;
 pub struct Label {
     /// Change of winding: +1 when rock lies to the left of a→b, -1 to the right, 0 not an outline.
     pub outline: i8,
-    /// Joint trace, [`NONE`] when none; where traces coincide the lowest index.
-    pub trace: u32,
-    /// Mesh edge, [`NONE`] when none.
-    pub mesh: u32,
+    /// Joint trace, if any; where traces coincide the lowest index.
+    pub trace: Option<TraceId>,
+    /// Mesh edge, if any.
+    pub mesh: Option<MeshEdgeId>,
     /// Whether a→b runs against the direction of the mesh edge.
     pub mesh_reversed: bool,
 }
 
 impl Label {
     /// Labels an outline edge with rock on its left.
-    pub const OUTLINE: Self = Self { outline: 1, trace: NONE, mesh: NONE, mesh_reversed: false };
+    pub const OUTLINE: Self = Self { outline: 1, trace: None, mesh: None, mesh_reversed: false };
 
     /// Labels a piece of a joint trace.
-    pub const fn trace(trace: u32) -> Self {
-        Self { outline: 0, trace, mesh: NONE, mesh_reversed: false }
+    pub const fn trace(trace: TraceId) -> Self {
+        Self { outline: 0, trace: Some(trace), mesh: None, mesh_reversed: false }
     }
 
     /// Labels a mesh edge in its own direction.
-    pub const fn mesh(mesh: u32) -> Self {
-        Self { outline: 0, trace: NONE, mesh, mesh_reversed: false }
+    pub const fn mesh(mesh: MeshEdgeId) -> Self {
+        Self { outline: 0, trace: None, mesh: Some(mesh), mesh_reversed: false }
     }
 
     /// Returns the label as read from b to a.
     pub const fn reversed(self) -> Self {
-        let mesh_reversed = self.mesh_reversed != (self.mesh != NONE);
+        let mesh_reversed = self.mesh_reversed != self.mesh.is_some();
         Self { outline: -self.outline, trace: self.trace, mesh: self.mesh, mesh_reversed }
     }
 
     /// Tells whether nothing is left: two outlines that cancel, no trace, no mesh.
     const fn is_empty(self) -> bool {
-        self.outline == 0 && self.trace == NONE && self.mesh == NONE
+        self.outline == 0 && self.trace.is_none() && self.mesh.is_none()
     }
 
     /// Adds the label of an edge that coincides and runs the same way.
     fn absorb(&mut self, other: Self) {
         self.outline = self.outline.saturating_add(other.outline);
-        self.trace = self.trace.min(other.trace);
-        if other.mesh < self.mesh {
+        self.trace = [self.trace, other.trace].into_iter().flatten().min();
+        if other.mesh.is_some_and(|mesh| self.mesh.is_none_or(|own| mesh < own)) {
             self.mesh = other.mesh;
             self.mesh_reversed = other.mesh_reversed;
         }
@@ -76,9 +95,9 @@ pub struct Segment {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Edge {
     /// Start vertex.
-    pub a: u32,
+    pub a: VertexId,
     /// End vertex.
-    pub b: u32,
+    pub b: VertexId,
     /// Where it comes from, read from a to b.
     pub label: Label,
 }
@@ -86,10 +105,10 @@ pub struct Edge {
 /// A face: the region between an outer cycle and the cycles inside it.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Face {
-    /// A half-edge of the outer cycle, [`NONE`] for the unbounded face.
-    pub outer: u32,
+    /// A half-edge of the outer cycle; none for the unbounded face.
+    pub outer: Option<HalfEdgeId>,
     /// A half-edge of each inner cycle.
-    pub inner: Vec<u32>,
+    pub inner: Vec<HalfEdgeId>,
     /// How often the outlines wind round the face: 1 rock, 0 none.
     pub winding: i32,
 }
@@ -123,10 +142,38 @@ pub struct NodingReport {
     /// What became of each trace.
     pub traces: Vec<TraceLength>,
     /// Pairs of traces that coincide along an edge, lower index first, sorted; the lower one holds the edge.
-    pub overlapping_traces: Vec<[u32; 2]>,
+    pub overlapping_traces: Vec<[TraceId; 2]>,
 }
 
-/// A planar subdivision with provenance. Half-edge 2e runs along edge e, 2e+1 against it.
+impl HalfEdgeId {
+    /// The two half-edges of an edge, along it and against it.
+    pub fn both(edge: usize) -> [Self; 2] {
+        [Self::new(2 * edge), Self::new(2 * edge + 1)]
+    }
+
+    /// The half-edge that runs the other way.
+    #[must_use]
+    pub const fn twin(self) -> Self {
+        Self::new(self.index() ^ 1)
+    }
+
+    /// Its edge.
+    pub const fn edge(self) -> usize {
+        self.index() / 2
+    }
+
+    /// Whether it runs along its edge.
+    pub const fn runs_along(self) -> bool {
+        self.index() & 1 == 0
+    }
+}
+
+impl FaceId {
+    /// The unbounded face.
+    pub const UNBOUNDED: Self = Self::new(0);
+}
+
+/// A planar subdivision with provenance.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Arrangement {
     /// Vertices (m), each with at least two edges.
@@ -134,9 +181,9 @@ pub struct Arrangement {
     /// Edges.
     pub edges: Vec<Edge>,
     /// Next half-edge round the face on the left of each half-edge.
-    pub next: Vec<u32>,
+    pub next: Vec<HalfEdgeId>,
     /// Face on the left of each half-edge.
-    pub face: Vec<u32>,
+    pub face: Vec<FaceId>,
     /// Faces; face 0 is the unbounded one.
     pub faces: Vec<Face>,
     /// What the noder did.
@@ -145,53 +192,53 @@ pub struct Arrangement {
 
 impl Arrangement {
     /// Returns the vertex where a half-edge starts.
-    pub fn origin(&self, half_edge: u32) -> u32 {
-        let edge = &self.edges[half_edge as usize / 2];
-        if half_edge & 1 == 0 { edge.a } else { edge.b }
+    pub fn origin(&self, half_edge: HalfEdgeId) -> VertexId {
+        let edge = &self.edges[half_edge.edge()];
+        if half_edge.runs_along() { edge.a } else { edge.b }
     }
 
     /// Returns the vertex where a half-edge ends.
-    pub fn target(&self, half_edge: u32) -> u32 {
-        self.origin(self.twin(half_edge))
+    pub fn target(&self, half_edge: HalfEdgeId) -> VertexId {
+        self.origin(half_edge.twin())
     }
 
-    /// Returns the half-edge that runs the other way.
-    pub const fn twin(&self, half_edge: u32) -> u32 {
-        half_edge ^ 1
+    /// Returns all half-edges.
+    pub fn half_edges(&self) -> impl ExactSizeIterator<Item = HalfEdgeId> + Clone {
+        HalfEdgeId::all(2 * self.edges.len())
     }
 
     /// Returns the label read along a half-edge.
-    pub fn label_of(&self, half_edge: u32) -> Label {
-        let label = self.edges[half_edge as usize / 2].label;
-        if half_edge & 1 == 0 { label } else { label.reversed() }
+    pub fn label_of(&self, half_edge: HalfEdgeId) -> Label {
+        let label = self.edges[half_edge.edge()].label;
+        if half_edge.runs_along() { label } else { label.reversed() }
     }
 
     /// Returns the half-edges round the loop of a half-edge, that one first.
-    pub fn cycle(&self, half_edge: u32) -> impl Iterator<Item = u32> + '_ {
+    pub fn cycle(&self, half_edge: HalfEdgeId) -> impl Iterator<Item = HalfEdgeId> + '_ {
         std::iter::successors(Some(half_edge), move |&h| {
-            let next = self.next[h as usize];
+            let next = self.next[h];
             (next != half_edge).then_some(next)
         })
     }
 
     /// Returns one half-edge of each loop of a face: the outer loop, if any, then the inner ones.
-    pub fn face_loops(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
-        let face = &self.faces[face as usize];
-        Some(face.outer).filter(|&h| h != NONE).into_iter().chain(face.inner.iter().copied())
+    pub fn face_loops(&self, face: FaceId) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        let face = &self.faces[face];
+        face.outer.into_iter().chain(face.inner.iter().copied())
     }
 
     /// Returns the points round the loop of a half-edge (m).
-    pub fn loop_points(&self, half_edge: u32) -> Vec<Point> {
-        self.cycle(half_edge).map(|h| self.points[self.origin(h) as usize]).collect()
+    pub fn loop_points(&self, half_edge: HalfEdgeId) -> Vec<Point> {
+        self.cycle(half_edge).map(|h| self.points[self.origin(h)]).collect()
     }
 
     /// Tells whether rock lies on both sides of an edge.
-    pub fn in_rock(&self, edge: u32) -> bool {
-        [2 * edge, 2 * edge + 1].iter().all(|&h| self.faces[self.face[h as usize] as usize].winding != 0)
+    pub fn in_rock(&self, edge: usize) -> bool {
+        HalfEdgeId::both(edge).iter().all(|&h| self.faces[self.face[h]].winding != 0)
     }
 
     /// Returns the area of a face (m²), holes taken out; negative for the unbounded face.
-    pub fn face_area(&self, face: u32) -> f64 {
+    pub fn face_area(&self, face: FaceId) -> f64 {
         self.face_loops(face).map(|h| super::polygon::area(&self.loop_points(h))).sum()
     }
 }
@@ -200,18 +247,18 @@ impl Arrangement {
     /// Adds up what became of each trace and which traces coincide; `edges` are those before pruning.
     fn report_traces(&mut self, points: &[Point], edges: &[Edge], kept: &[bool], members: &[Member], copies: &Copies) {
         let mut overlaps = Vec::new();
-        let mut ranked = (0, 0u32); // edges looked at, and how many of them were kept
+        let mut ranked = (0, 0); // edges looked at, and how many of them were kept
         for member in members {
-            let edge = member.edge as usize;
-            ranked.1 += kept[ranked.0..edge].iter().filter(|&&kept| kept).count() as u32;
+            let edge = member.edge;
+            ranked.1 += kept[ranked.0..edge].iter().filter(|&&kept| kept).count();
             ranked.0 = edge;
             let length = length(points, &edges[edge]);
             let in_rock = kept[edge] && self.in_rock(ranked.1);
-            let report = &mut self.report.traces[member.trace as usize];
+            let report = &mut self.report.traces[member.trace];
             report.noded += length;
             report.kept += if kept[edge] { length } else { 0.0 };
             report.in_rock += if in_rock { length } else { 0.0 };
-            overlaps.push([edges[edge].label.trace, member.trace]);
+            overlaps.extend(edges[edge].label.trace.map(|holder| [holder, member.trace]));
         }
         overlaps.sort_unstable();
         overlaps.dedup();
@@ -224,50 +271,49 @@ impl Arrangement {
 /// Traces that run through the same points as an earlier one; only the first of each is cut.
 struct Copies {
     /// The first trace like each.
-    first: Vec<u32>,
+    first: Vec<TraceId>,
 }
 
 impl Copies {
     /// Compares all traces; segments that are outline or mesh as well are never copies.
     fn find(segments: &[Segment], traces: usize) -> Self {
         let of_trace = |put: &mut dyn FnMut(usize, u32)| {
-            let labelled = (0u32..).zip(segments).filter(|(_, segment)| segment.label.trace != NONE);
-            labelled.for_each(|(k, segment)| put(segment.label.trace as usize, k));
+            let labelled = (0u32..).zip(segments).filter_map(|(k, segment)| Some((segment.label.trace?, k)));
+            labelled.for_each(|(trace, k)| put(trace.index(), k));
         };
         let groups = Groups::build(traces, of_trace);
-        let compare = |s: u32, t: u32| {
-            let positions = |t: u32| groups.get(t as usize).iter().map(|&k| position(&segments[k as usize]));
+        let compare = |s: TraceId, t: TraceId| {
+            let positions = |t: TraceId| groups.get(t.index()).iter().map(|&k| position(&segments[k as usize]));
             positions(s).cmp(positions(t))
         };
-        let pure = |t: &u32| {
-            let own = groups.get(*t as usize);
+        let pure = |t: &TraceId| {
+            let own = groups.get(t.index());
             own.iter().all(|&k| segments[k as usize].label == Label::trace(*t))
         };
-        let mut order: Vec<u32> = (0..traces as u32).filter(pure).collect();
+        let mut order: Vec<TraceId> = TraceId::all(traces).filter(pure).collect();
         order.sort_unstable_by(|&s, &t| compare(s, t).then(s.cmp(&t)));
-        let mut first: Vec<u32> = (0..traces as u32).collect();
+        let mut first: Vec<TraceId> = TraceId::all(traces).collect();
         for alike in order.chunk_by(|&s, &t| compare(s, t).is_eq()) {
-            alike.iter().for_each(|&t| first[t as usize] = alike[0]);
+            alike.iter().for_each(|&t| first[t] = alike[0]);
         }
         Self { first }
     }
 
     /// Whether a segment is to be cut.
     fn is_first(&self, segment: &Segment) -> bool {
-        let trace = segment.label.trace;
-        trace == NONE || self.first[trace as usize] == trace
+        segment.label.trace.is_none_or(|trace| self.first[trace] == trace)
     }
 
     /// Gives each copy what the first has: its lengths, and its overlaps, sorted as they were.
-    fn report(&self, lengths: &mut [TraceLength], overlaps: &mut Vec<[u32; 2]>) {
-        let copies = || (0u32..).zip(&self.first).filter(|(trace, first)| trace != *first);
+    fn report(&self, lengths: &mut [TraceLength], overlaps: &mut Vec<[TraceId; 2]>) {
+        let copies = || TraceId::all(self.first.len()).zip(&self.first).filter(|(trace, first)| trace != *first);
         if copies().next().is_none() {
             return;
         }
         let mut of_first = overlaps.clone();
         of_first.sort_unstable_by_key(|&[holder, trace]| [trace, holder]);
         for (copy, &first) in copies() {
-            lengths[copy as usize] = lengths[first as usize];
+            lengths[copy] = lengths[first];
             let from = of_first.partition_point(|pair| pair[1] < first);
             let own = of_first[from..].iter().take_while(|pair| pair[1] == first);
             overlaps.extend(own.map(|&[holder, _]| [holder, copy]));
@@ -300,12 +346,12 @@ pub fn arrange(segments: &[Segment], tolerance: f64) -> Result<Arrangement, Geom
 /// # Errors
 /// As [`arrange`], and too many edges.
 pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) -> Result<Arrangement, GeometryError> {
-    let traces = segments.iter().filter(|s| s.label.trace != NONE).map(|s| s.label.trace + 1).max().unwrap_or(0);
-    let copies = Copies::find(segments, traces as usize);
+    let traces = segments.iter().filter_map(|s| s.label.trace).map(|trace| trace.index() + 1).max().unwrap_or(0);
+    let copies = Copies::find(segments, traces);
     let mut noder = Noder::new(segments, |s| copies.is_first(s), tolerance, edges_max.min(EDGES_MAX))?;
     let mut report = noder.run()?;
     let (points, work) = (noder.points, noder.edges);
-    report.traces = vec![TraceLength::default(); traces as usize];
+    report.traces = vec![TraceLength::default(); traces];
     let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
     report.fused_outline_length = fused_length;
     let kept = prune(&points, &edges, &mut report);
@@ -317,8 +363,8 @@ pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) ->
 
 /// A trace that runs along an edge.
 struct Member {
-    edge: u32,
-    trace: u32,
+    edge: usize,
+    trace: TraceId,
 }
 
 /// Edges each of which is the only one between its vertices.
@@ -333,7 +379,7 @@ struct Merged {
 fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
     let mut groups = Groups::build(points.len(), |put| {
         for (k, edge) in edges.iter().enumerate() {
-            put(edge.a.min(edge.b) as usize, k as u32);
+            put(edge.a.min(edge.b).index(), k as u32);
         }
     });
     let mut merged = Merged { edges: Vec::with_capacity(edges.len()), members: Vec::new(), fused_length: 0.0 };
@@ -342,8 +388,8 @@ fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
         let group = groups.get_mut(vertex);
         group.sort_unstable_by_key(|&k| (far(k), k));
         for run in group.chunk_by(|&i, &j| far(i) == far(j)) {
-            let edge = merge_run(edges, run, merged.edges.len() as u32, &mut merged.members);
-            let cancels = edge.label.outline == 0 && edge.label.trace == NONE;
+            let edge = merge_run(edges, run, merged.edges.len(), &mut merged.members);
+            let cancels = edge.label.outline == 0 && edge.label.trace.is_none();
             if cancels && run.iter().any(|&k| edges[k as usize].label.outline != 0) {
                 merged.fused_length += length(points, &edge);
             }
@@ -356,16 +402,16 @@ fn merge_coincident(points: &[Point], edges: &[WorkEdge]) -> Merged {
 }
 
 /// Merges a run of edges between the same two vertices and lists its traces, each once.
-fn merge_run(edges: &[WorkEdge], run: &[u32], id: u32, members: &mut Vec<Member>) -> Edge {
+fn merge_run(edges: &[WorkEdge], run: &[u32], edge: usize, members: &mut Vec<Member>) -> Edge {
     let WorkEdge { a, b, mut label, .. } = edges[run[0] as usize];
     for &k in &run[1..] {
         let other = &edges[k as usize];
         label.absorb(if other.a == a { other.label } else { other.label.reversed() });
     }
     let first = members.len();
-    for trace in run.iter().map(|&k| edges[k as usize].label.trace).filter(|&trace| trace != NONE) {
+    for trace in run.iter().filter_map(|&k| edges[k as usize].label.trace) {
         if members[first..].iter().all(|member| member.trace != trace) {
-            members.push(Member { edge: id, trace });
+            members.push(Member { edge, trace });
         }
     }
     Edge { a, b, label }
@@ -374,52 +420,52 @@ fn merge_run(edges: &[WorkEdge], run: &[u32], id: u32, members: &mut Vec<Member>
 /// Finds the edges that are left when dead ends are removed again and again.
 fn prune(points: &[Point], edges: &[Edge], report: &mut NodingReport) -> Vec<bool> {
     let mut degree = vec![0u32; points.len()];
-    let mut incident = vec![0u32; points.len()]; // exclusive or of the incident edges: the edge itself at degree one
+    let mut incident = vec![0; points.len()]; // exclusive or of the incident edges: the edge itself at degree one
     for (k, edge) in edges.iter().enumerate() {
         for v in [edge.a, edge.b] {
-            degree[v as usize] += 1;
-            incident[v as usize] ^= k as u32;
+            degree[v] += 1;
+            incident[v] ^= k;
         }
     }
     let mut kept = vec![true; edges.len()];
-    for start in 0..points.len() {
+    for start in VertexId::all(points.len()) {
         let mut vertex = start;
         while degree[vertex] == 1 {
-            let id = incident[vertex] as usize;
-            let edge = &edges[id];
-            kept[id] = false;
+            let k: usize = incident[vertex];
+            let edge = &edges[k];
+            kept[k] = false;
             report.trimmed_edges += 1;
             report.trimmed_length += length(points, edge);
             for v in [edge.a, edge.b] {
-                degree[v as usize] -= 1;
-                incident[v as usize] ^= id as u32;
+                degree[v] -= 1;
+                incident[v] ^= k;
             }
-            vertex = if edge.a as usize == vertex { edge.b } else { edge.a } as usize;
+            vertex = if edge.a == vertex { edge.b } else { edge.a };
         }
     }
     kept
 }
 
 fn length(points: &[Point], edge: &Edge) -> f64 {
-    (points[edge.b as usize] - points[edge.a as usize]).norm()
+    (points[edge.b] - points[edge.a]).norm()
 }
 
 /// Keeps the edges asked for and the vertices that they use, both in order.
 fn compact(points: &[Point], edges: &[Edge], kept: &[bool]) -> (Vec<Point>, Vec<Edge>) {
     let mut edges: Vec<Edge> = edges.iter().zip(kept).filter(|(_, kept)| **kept).map(|(edge, _)| *edge).collect();
-    let mut number = vec![NONE; points.len()];
+    let mut is_used = vec![false; points.len()];
     for edge in &edges {
-        number[edge.a as usize] = 0;
-        number[edge.b as usize] = 0;
+        is_used[edge.a] = true;
+        is_used[edge.b] = true;
     }
     let mut used = Vec::new();
-    for (k, id) in number.iter_mut().enumerate().filter(|(_, id)| **id == 0) {
-        *id = used.len() as u32;
-        used.push(points[k]);
+    let mut new = Vec::with_capacity(points.len());
+    for (point, is_used) in points.iter().zip(is_used) {
+        new.push(VertexId::new(used.len()));
+        used.extend(is_used.then_some(*point));
     }
     for edge in &mut edges {
-        edge.a = number[edge.a as usize];
-        edge.b = number[edge.b as usize];
+        (edge.a, edge.b) = (new[edge.a], new[edge.b]);
     }
     (used, edges)
 }

@@ -2,21 +2,21 @@
 //!
 //! Every decision rests on exact signs; nothing here knows a tolerance.
 
-use super::arrangement::{Arrangement, Edge, Face, NONE, NodingReport};
+use super::arrangement::{Arrangement, Edge, Face, FaceId, HalfEdgeId, NodingReport, VertexId};
 use super::grid::{CellGrid, Groups};
 use super::{GeometryError, Point, orientation};
 
 /// Walks round the faces of edges that cross nowhere and have no dead ends, and floods the winding from outside.
 pub(super) fn build(points: Vec<Point>, edges: Vec<Edge>, report: NodingReport) -> Result<Arrangement, GeometryError> {
-    let next = vec![NONE; 2 * edges.len()];
-    let face = vec![NONE; 2 * edges.len()];
-    let faces = vec![Face { outer: NONE, inner: Vec::new(), winding: 0 }];
+    // The next of each half-edge and its face are filled in below.
+    let next = vec![HalfEdgeId::default(); 2 * edges.len()];
+    let face = vec![FaceId::UNBOUNDED; 2 * edges.len()];
+    let faces = vec![Face { outer: None, inner: Vec::new(), winding: 0 }];
     let mut arrangement = Arrangement { points, edges, next, face, faces, report };
     let fans = fans(&arrangement);
     link(&mut arrangement, &fans);
     let outers = outer_cycles(&arrangement, &fans);
-    mark_outer_cycles(&mut arrangement, &outers);
-    mark_faces(&mut arrangement);
+    mark_faces(&mut arrangement, &outers);
     place_outer_cycles(&mut arrangement, &outers);
     flood(&mut arrangement);
     check_winding(&arrangement)?;
@@ -24,11 +24,11 @@ pub(super) fn build(points: Vec<Point>, edges: Vec<Edge>, report: NodingReport) 
 }
 
 /// Groups the half-edges by origin, counter-clockwise from the direction of x.
-fn fans(arrangement: &Arrangement) -> Groups {
+fn fans(arrangement: &Arrangement) -> Groups<HalfEdgeId> {
     let points = &arrangement.points;
     let mut fans = Groups::build(points.len(), |put| {
-        for h in 0..2 * arrangement.edges.len() as u32 {
-            put(arrangement.origin(h) as usize, h);
+        for h in arrangement.half_edges() {
+            put(arrangement.origin(h).index(), h);
         }
     });
     let mut fan = Vec::new();
@@ -36,7 +36,7 @@ fn fans(arrangement: &Arrangement) -> Groups {
         let group = fans.get_mut(vertex);
         fan.clear();
         fan.extend(group.iter().map(|&h| {
-            let target = points[arrangement.target(h) as usize];
+            let target = points[arrangement.target(h)];
             let lower = target.y < origin.y || (target.y == origin.y && target.x < origin.x);
             (lower, target, h)
         }));
@@ -52,12 +52,12 @@ fn fans(arrangement: &Arrangement) -> Groups {
 }
 
 /// Sets `next`: from the twin of a half-edge, one step clockwise round its vertex.
-fn link(arrangement: &mut Arrangement, fans: &Groups) {
+fn link(arrangement: &mut Arrangement, fans: &Groups<HalfEdgeId>) {
     for vertex in 0..arrangement.points.len() {
         let fan = fans.get(vertex);
         for (k, &h) in fan.iter().enumerate() {
             let before = fan[(k + fan.len() - 1) % fan.len()];
-            arrangement.next[(h ^ 1) as usize] = before;
+            arrangement.next[h.twin()] = before;
         }
     }
 }
@@ -65,32 +65,32 @@ fn link(arrangement: &mut Arrangement, fans: &Groups) {
 /// The outer cycle of one connected component.
 struct OuterCycle {
     /// A half-edge of it, starting at the leftmost vertex.
-    half_edge: u32,
+    half_edge: HalfEdgeId,
     /// Leftmost vertex of the component, lowest among equals.
-    leftmost: u32,
+    leftmost: VertexId,
 }
 
 /// Finds the outer cycle of each component, ordered by leftmost vertex.
-fn outer_cycles(arrangement: &Arrangement, fans: &Groups) -> Vec<OuterCycle> {
+fn outer_cycles(arrangement: &Arrangement, fans: &Groups<HalfEdgeId>) -> Vec<OuterCycle> {
     let points = &arrangement.points;
-    let mut sorted: Vec<u32> = (0..points.len() as u32).collect();
+    let mut sorted: Vec<VertexId> = VertexId::all(points.len()).collect();
     sorted.sort_unstable_by(|&i, &j| {
-        let (p, q) = (points[i as usize], points[j as usize]);
+        let (p, q) = (points[i], points[j]);
         p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(&j))
     });
     let mut reached = vec![false; points.len()];
-    let (mut outers, mut stack) = (Vec::new(), Vec::new());
+    let (mut outers, mut stack) = (Vec::new(), Vec::<VertexId>::new());
     for &leftmost in &sorted {
-        if reached[leftmost as usize] {
+        if reached[leftmost] {
             continue;
         }
-        outers.push(OuterCycle { half_edge: most_upward(arrangement, fans, leftmost), leftmost });
-        reached[leftmost as usize] = true;
+        outers.extend(most_upward(arrangement, fans, leftmost).map(|half_edge| OuterCycle { half_edge, leftmost }));
+        reached[leftmost] = true;
         stack.push(leftmost);
         while let Some(vertex) = stack.pop() {
-            for &h in fans.get(vertex as usize) {
+            for &h in fans.get(vertex.index()) {
                 let target = arrangement.target(h);
-                if !std::mem::replace(&mut reached[target as usize], true) {
+                if !std::mem::replace(&mut reached[target], true) {
                     stack.push(target);
                 }
             }
@@ -100,44 +100,30 @@ fn outer_cycles(arrangement: &Arrangement, fans: &Groups) -> Vec<OuterCycle> {
 }
 
 /// Returns the half-edge from a leftmost vertex that turns furthest to the left; what lies left of it is outside.
-fn most_upward(arrangement: &Arrangement, fans: &Groups, leftmost: u32) -> u32 {
-    let origin = arrangement.points[leftmost as usize];
-    let target = |h: u32| arrangement.points[arrangement.target(h) as usize];
-    let fan = fans.get(leftmost as usize);
-    let later = |&best: &u32, &h: &u32| orientation(origin, target(best), target(h)) > 0.0;
-    fan.iter().copied().reduce(|best, h| if later(&best, &h) { h } else { best }).unwrap_or(NONE)
-}
-
-/// Gives the half-edges of outer cycles provisional face numbers counted down from the top.
-fn mark_outer_cycles(arrangement: &mut Arrangement, outers: &[OuterCycle]) {
-    for (k, outer) in outers.iter().enumerate() {
-        mark_cycle(arrangement, outer.half_edge, provisional(k));
-    }
-}
-
-/// Provisional face number of the outside of component `k`; [`NONE`] itself means unmarked.
-const fn provisional(k: usize) -> u32 {
-    NONE - 1 - k as u32
-}
-
-fn mark_cycle(arrangement: &mut Arrangement, start: u32, face: u32) {
-    let mut h = start;
-    loop {
-        arrangement.face[h as usize] = face;
-        h = arrangement.next[h as usize];
-        if h == start {
-            return;
-        }
-    }
+fn most_upward(arrangement: &Arrangement, fans: &Groups<HalfEdgeId>, leftmost: VertexId) -> Option<HalfEdgeId> {
+    let origin = arrangement.points[leftmost];
+    let target = |h: HalfEdgeId| arrangement.points[arrangement.target(h)];
+    let later = |best: HalfEdgeId, h: HalfEdgeId| orientation(origin, target(best), target(h)) > 0.0;
+    let fan = fans.get(leftmost.index()).iter().copied();
+    fan.reduce(|best, h| if later(best, h) { h } else { best })
 }
 
 /// Makes a face of every cycle that is not an outer one.
-fn mark_faces(arrangement: &mut Arrangement) {
-    for h in 0..arrangement.face.len() as u32 {
-        if arrangement.face[h as usize] == NONE {
-            let face = arrangement.faces.len() as u32;
-            arrangement.faces.push(Face { outer: h, inner: Vec::new(), winding: 0 });
-            mark_cycle(arrangement, h, face);
+fn mark_faces(arrangement: &mut Arrangement, outers: &[OuterCycle]) {
+    let mut marked = vec![false; arrangement.face.len()];
+    for h in outers.iter().flat_map(|outer| arrangement.cycle(outer.half_edge)) {
+        marked[h] = true;
+    }
+    for h in HalfEdgeId::all(marked.len()) {
+        if marked[h] {
+            continue;
+        }
+        let face = FaceId::new(arrangement.faces.len());
+        arrangement.faces.push(Face { outer: Some(h), inner: Vec::new(), winding: 0 });
+        let mut at = h;
+        while !std::mem::replace(&mut marked[at], true) {
+            arrangement.face[at] = face;
+            at = arrangement.next[at];
         }
     }
 }
@@ -147,9 +133,16 @@ fn place_outer_cycles(arrangement: &mut Arrangement, outers: &[OuterCycle]) {
     let search = (outers.len() > 1).then(|| LeftSearch::new(arrangement));
     for outer in outers {
         let holder = search.as_ref().and_then(|search| search.half_edge_left_of(arrangement, outer.leftmost));
-        let face = holder.map_or(0, |h| arrangement.face[h as usize]);
-        mark_cycle(arrangement, outer.half_edge, face);
-        arrangement.faces[face as usize].inner.push(outer.half_edge);
+        let face = holder.map_or(FaceId::UNBOUNDED, |h| arrangement.face[h]);
+        let mut h = outer.half_edge;
+        loop {
+            arrangement.face[h] = face;
+            h = arrangement.next[h];
+            if h == outer.half_edge {
+                break;
+            }
+        }
+        arrangement.faces[face].inner.push(outer.half_edge);
     }
 }
 
@@ -162,7 +155,7 @@ struct LeftSearch {
 impl LeftSearch {
     fn new(arrangement: &Arrangement) -> Self {
         let points = &arrangement.points;
-        let ends = arrangement.edges.iter().map(|edge| (points[edge.a as usize], points[edge.b as usize]));
+        let ends = arrangement.edges.iter().map(|edge| (points[edge.a], points[edge.b]));
         let radius = arrangement.report.tolerance;
         let grid = CellGrid::for_edges(ends.clone(), 4.0 * radius);
         let cells = Groups::of_edges(&grid, ends, radius);
@@ -170,14 +163,14 @@ impl LeftSearch {
     }
 
     /// Returns the half-edge next to the left of a vertex, with the vertex on its left; ordinates are half-open.
-    fn half_edge_left_of(&self, arrangement: &Arrangement, vertex: u32) -> Option<u32> {
-        let p = arrangement.points[vertex as usize];
+    fn half_edge_left_of(&self, arrangement: &Arrangement, vertex: VertexId) -> Option<HalfEdgeId> {
+        let p = arrangement.points[vertex];
         let row = self.grid.row(p.y);
-        let mut nearest: Option<(Point, Point, u32)> = None;
+        let mut nearest: Option<(Point, Point, HalfEdgeId)> = None;
         for column in (0..=self.grid.column(p.x)).rev() {
             for &edge in self.cells.get(self.grid.cell(column, row)) {
-                let Some((low, high, down)) = rising(arrangement, edge, p.y) else { continue };
-                let nearer = |&(l, h, _): &(Point, Point, u32)| right_of((low, high), (l, h));
+                let Some((low, high, down)) = rising(arrangement, edge as usize, p.y) else { continue };
+                let nearer = |&(l, h, _): &(Point, Point, HalfEdgeId)| right_of((low, high), (l, h));
                 if orientation(low, high, p) < 0.0 && nearest.as_ref().is_none_or(nearer) {
                     nearest = Some((low, high, down));
                 }
@@ -192,13 +185,14 @@ impl LeftSearch {
 }
 
 /// Returns lower end, upper end and downward half-edge of an edge that spans an ordinate, lower end included.
-fn rising(arrangement: &Arrangement, edge: u32, y: f64) -> Option<(Point, Point, u32)> {
-    let Edge { a, b, .. } = arrangement.edges[edge as usize];
-    let (a, b) = (arrangement.points[a as usize], arrangement.points[b as usize]);
+fn rising(arrangement: &Arrangement, edge: usize, y: f64) -> Option<(Point, Point, HalfEdgeId)> {
+    let Edge { a, b, .. } = arrangement.edges[edge];
+    let (a, b) = (arrangement.points[a], arrangement.points[b]);
+    let [along, against] = HalfEdgeId::both(edge);
     if a.y <= y && y < b.y {
-        Some((a, b, 2 * edge + 1))
+        Some((a, b, against))
     } else if b.y <= y && y < a.y {
-        Some((b, a, 2 * edge))
+        Some((b, a, along))
     } else {
         None
     }
@@ -221,20 +215,20 @@ fn abscissa(low: Point, high: Point, y: f64) -> f64 {
 /// Carries the winding from the unbounded face across every edge.
 fn flood(arrangement: &mut Arrangement) {
     let mut reached = vec![false; arrangement.faces.len()];
-    reached[0] = true;
-    let mut stack = vec![0u32];
+    reached[FaceId::UNBOUNDED] = true;
+    let mut stack = vec![FaceId::UNBOUNDED];
     while let Some(face) = stack.pop() {
-        let winding = arrangement.faces[face as usize].winding;
-        let starts: Vec<u32> = arrangement.face_loops(face).collect();
+        let winding = arrangement.faces[face].winding;
+        let starts: Vec<HalfEdgeId> = arrangement.face_loops(face).collect();
         for start in starts {
             let mut h = start;
             loop {
-                let other = arrangement.face[(h ^ 1) as usize] as usize;
+                let other = arrangement.face[h.twin()];
                 if !std::mem::replace(&mut reached[other], true) {
                     arrangement.faces[other].winding = winding - i32::from(arrangement.label_of(h).outline);
-                    stack.push(other as u32);
+                    stack.push(other);
                 }
-                h = arrangement.next[h as usize];
+                h = arrangement.next[h];
                 if h == start {
                     break;
                 }
@@ -245,12 +239,13 @@ fn flood(arrangement: &mut Arrangement) {
 
 /// Refuses outlines whose winding depends on the way from outside.
 fn check_winding(arrangement: &Arrangement) -> Result<(), GeometryError> {
-    let winding = |h: usize| arrangement.faces[arrangement.face[h] as usize].winding;
+    let winding = |h: HalfEdgeId| arrangement.faces[arrangement.face[h]].winding;
     for (k, edge) in arrangement.edges.iter().enumerate() {
-        let found = winding(2 * k) - winding(2 * k + 1);
+        let [along, against] = HalfEdgeId::both(k);
+        let found = winding(along) - winding(against);
         let expected = i32::from(edge.label.outline);
         if found != expected {
-            let middle = (arrangement.points[edge.a as usize] + arrangement.points[edge.b as usize]) * 0.5;
+            let middle = (arrangement.points[edge.a] + arrangement.points[edge.b]) * 0.5;
             return Err(GeometryError::OpenOutline { x: middle.x, y: middle.y, found, expected });
         }
     }

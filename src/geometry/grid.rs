@@ -2,7 +2,7 @@
 //!
 //! Knows points and straight edges only. Cells on the rim reach to infinity, so nothing falls outside.
 
-use super::Point;
+use super::{Point, VertexId};
 
 /// Upper limit on the cells of one grid, so that memory stays bounded whatever the extent.
 const CELLS_MAX: f64 = 4.0e6;
@@ -117,27 +117,12 @@ impl CellGrid {
 }
 
 /// Items grouped by a small integer key, in input order within a group.
-pub(super) struct Groups {
+pub(super) struct Groups<T = u32> {
     start: Vec<u32>,
-    items: Vec<u32>,
+    items: Vec<T>,
 }
 
 impl Groups {
-    /// Groups items by counting sort; `each` calls its argument with (key, item) and is run twice, alike.
-    pub fn build(keys: usize, each: impl Fn(&mut dyn FnMut(usize, u32))) -> Self {
-        let mut start = vec![0u32; keys + 2];
-        each(&mut |key, _| start[key + 2] += 1);
-        for k in 2..start.len() {
-            start[k] += start[k - 1];
-        }
-        let mut items = vec![0u32; *start.last().unwrap_or(&0) as usize];
-        each(&mut |key, item| {
-            items[start[key + 1] as usize] = item;
-            start[key + 1] += 1;
-        });
-        Self { start, items }
-    }
-
     /// Groups edges by the cells that they come near.
     pub fn of_edges(grid: &CellGrid, edges: impl Iterator<Item = (Point, Point)> + Clone, radius: f64) -> Self {
         Self::build(grid.len(), |put| {
@@ -146,42 +131,55 @@ impl Groups {
             }
         })
     }
+}
+
+impl<T: Copy + Default> Groups<T> {
+    /// Groups items by counting sort; `each` calls its argument with (key, item) and is run twice, alike.
+    pub fn build(keys: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Self {
+        let mut start = vec![0u32; keys + 2];
+        each(&mut |key, _| start[key + 2] += 1);
+        for k in 2..start.len() {
+            start[k] += start[k - 1];
+        }
+        let mut items = vec![T::default(); *start.last().unwrap_or(&0) as usize];
+        each(&mut |key, item| {
+            items[start[key + 1] as usize] = item;
+            start[key + 1] += 1;
+        });
+        Self { start, items }
+    }
 
     /// Returns the items of one group.
-    pub fn get(&self, key: usize) -> &[u32] {
+    pub fn get(&self, key: usize) -> &[T] {
         &self.items[self.start[key] as usize..self.start[key + 1] as usize]
     }
 
     /// Returns the items of one group for sorting in place.
-    pub fn get_mut(&mut self, key: usize) -> &mut [u32] {
+    pub fn get_mut(&mut self, key: usize) -> &mut [T] {
         &mut self.items[self.start[key] as usize..self.start[key + 1] as usize]
     }
 }
 
 /// Points in the cells of a grid, as chains that grow.
 pub(super) struct PointChains {
-    head: Vec<u32>,
-    next: Vec<u32>,
+    head: Vec<Option<VertexId>>,
+    next: Vec<Option<VertexId>>,
 }
-
-const END: u32 = u32::MAX;
 
 impl PointChains {
     /// Makes empty chains for a number of cells.
     pub fn new(cells: usize) -> Self {
-        Self { head: vec![END; cells], next: Vec::new() }
+        Self { head: vec![None; cells], next: Vec::new() }
     }
 
     /// Puts the next point, numbered in order of insertion, into a cell.
     pub fn push(&mut self, cell: usize) {
-        let id = self.next.len() as u32;
-        self.next.push(self.head[cell]);
-        self.head[cell] = id;
+        let vertex = VertexId::new(self.next.len());
+        self.next.push(self.head[cell].replace(vertex));
     }
 
     /// Returns the points of a cell, latest first.
-    pub fn get(&self, cell: usize) -> impl Iterator<Item = u32> + '_ {
-        let some = |id: u32| (id != END).then_some(id);
-        std::iter::successors(some(self.head[cell]), move |&id| some(self.next[id as usize]))
+    pub fn get(&self, cell: usize) -> impl Iterator<Item = VertexId> + '_ {
+        std::iter::successors(self.head[cell], move |&vertex| self.next[vertex])
     }
 }

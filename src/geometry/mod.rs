@@ -1,12 +1,13 @@
 //! Points, exact predicates, loops, planar arrangement and the joint sets that cut it.
 //!
 //! Knows the plane: coordinates in metres, angles in radians, tolerances in metres. Must not know rock, covers, stress,
-//! time or files; a label carries plain indices whose meaning belongs to the caller.
+//! time or files; a label carries ids whose meaning belongs to the caller.
 
 mod arrangement;
 mod error;
 mod faces;
 pub(crate) mod grid;
+mod id;
 pub mod joint_set;
 pub mod loops;
 mod noder;
@@ -14,9 +15,11 @@ pub mod polygon;
 pub mod segment;
 
 pub use arrangement::{
-    Arrangement, Edge, Face, Label, NONE, NodingReport, Segment, TraceLength, arrange, arrange_within,
+    Arrangement, Edge, Face, FaceId, HalfEdgeId, Label, MeshEdgeId, NodingReport, Segment, TraceId, TraceLength,
+    VertexId, arrange, arrange_within,
 };
 pub use error::GeometryError;
+pub(crate) use id::id;
 
 /// A position in the plane (m).
 pub type Point = nalgebra::Vector2<f64>;

@@ -3,7 +3,7 @@
 //! Knows points, edges and which edges are still where the mesh put them; nothing of faces. Vertices are never moved
 //! and lie more than the merge radius apart, so that their number, and with it the work, is bounded.
 
-use super::arrangement::{Label, NONE, NodingReport, Segment};
+use super::arrangement::{Label, NodingReport, Segment, VertexId};
 use super::grid::{CellGrid, Groups, PointChains};
 use super::{GeometryError, Point, cross, orientation};
 
@@ -25,8 +25,8 @@ const PLACES_RATIO: usize = 100;
 /// An edge in the making.
 #[derive(Clone, Copy)]
 pub(super) struct WorkEdge {
-    pub a: u32,
-    pub b: u32,
+    pub a: VertexId,
+    pub b: VertexId,
     pub label: Label,
     /// Not yet tested against all vertices.
     unsplit: bool,
@@ -39,7 +39,7 @@ pub(super) struct WorkEdge {
 /// A vertex that splits an edge.
 struct Hit {
     edge: u32,
-    vertex: u32,
+    vertex: VertexId,
     /// Position along the edge, 0 to 1.
     at: f64,
     /// Whether the vertex lies off the line.
@@ -48,7 +48,7 @@ struct Hit {
 
 /// A vertex made at the crossing of two edges.
 struct Crossing {
-    vertex: u32,
+    vertex: VertexId,
     edges: [u32; 2],
 }
 
@@ -81,7 +81,7 @@ impl Noder {
         for Segment { a, b, label } in cut.filter(counts) {
             let (a, b) = (noder.vertex(a), noder.vertex(b));
             if a != b {
-                let lattice = label.mesh != NONE && label.trace == NONE && label.outline == 0;
+                let lattice = label.mesh.is_some() && label.trace.is_none() && label.outline == 0;
                 noder.edges.push(WorkEdge { a, b, label, unsplit: true, uncrossed: true, lattice });
             }
         }
@@ -93,7 +93,7 @@ impl Noder {
         let mut passes = 1;
         while let Some(hits) = self.hits()? {
             if passes == PASSES_MAX {
-                let (p, tolerance) = (self.points[hits[0].vertex as usize], self.tolerance);
+                let (p, tolerance) = (self.points[hits[0].vertex], self.tolerance);
                 return Err(GeometryError::Unsettled { passes, limit: PASSES_MAX, x: p.x, y: p.y, tolerance });
             }
             self.split(hits)?;
@@ -135,32 +135,35 @@ impl Noder {
     }
 
     fn ends(&self, edge: &WorkEdge) -> (Point, Point) {
-        (self.points[edge.a as usize], self.points[edge.b as usize])
+        (self.points[edge.a], self.points[edge.b])
     }
 
     /// Returns the vertex within the merge radius of a point, or makes one there.
-    fn vertex(&mut self, p: Point) -> u32 {
+    fn vertex(&mut self, p: Point) -> VertexId {
         let radius = MERGE_RATIO * self.tolerance;
-        let mut nearest = (radius * radius, NONE);
+        let mut nearest: Option<(f64, VertexId)> = None;
         self.grid.visit_square(p, radius, |cell| {
-            for id in self.chains.get(cell) {
-                let distance = (self.points[id as usize] - p).norm_squared();
-                if distance < nearest.0 || (distance == nearest.0 && id < nearest.1) {
-                    nearest = (distance, id);
+            for vertex in self.chains.get(cell) {
+                let distance = (self.points[vertex] - p).norm_squared();
+                let is_nearer = nearest.map_or(distance <= radius * radius, |(least, first)| {
+                    distance < least || (distance == least && vertex < first)
+                });
+                if is_nearer {
+                    nearest = Some((distance, vertex));
                 }
             }
         });
-        if nearest.1 != NONE {
-            self.merged += usize::from(nearest.0 > 0.0);
-            return nearest.1;
+        if let Some((distance, vertex)) = nearest {
+            self.merged += usize::from(distance > 0.0);
+            return vertex;
         }
         self.chains.push(self.grid.cell_of(p));
         self.points.push(p);
-        self.points.len() as u32 - 1
+        VertexId::new(self.points.len() - 1)
     }
 
     /// Judges whether a vertex lies within the tolerance of the inside of an edge.
-    fn near(&self, edge: u32, vertex: u32) -> Option<Hit> {
+    fn near(&self, edge: u32, vertex: VertexId) -> Option<Hit> {
         let work = &self.edges[edge as usize];
         if vertex == work.a || vertex == work.b {
             return None;
@@ -171,9 +174,9 @@ impl Noder {
 
     /// Projects a vertex onto an edge; returns the hit and the squared distance from the line.
     #[inline]
-    fn hit(&self, edge: u32, vertex: u32) -> (Hit, f64) {
+    fn hit(&self, edge: u32, vertex: VertexId) -> (Hit, f64) {
         let (a, b) = self.ends(&self.edges[edge as usize]);
-        let (along, to) = (b - a, self.points[vertex as usize] - a);
+        let (along, to) = (b - a, self.points[vertex] - a);
         let length_squared = along.norm_squared();
         let off = cross(along, to);
         let off_squared = off * off / length_squared;
@@ -216,8 +219,8 @@ impl Noder {
                 }
             }
         }
-        for vertex in first_new as u32..self.points.len() as u32 {
-            let cell = self.grid.cell_of(self.points[vertex as usize]);
+        for vertex in VertexId::range(first_new..self.points.len()) {
+            let cell = self.grid.cell_of(self.points[vertex]);
             hits.extend(cells.get(cell).iter().filter_map(|&edge| self.near(edge, vertex)));
         }
         for edge in &mut self.edges {
@@ -229,7 +232,7 @@ impl Noder {
     /// Makes a vertex at each proper crossing of an untested edge with any other.
     fn cross_all(&mut self, cells: &Groups) -> Result<Vec<Crossing>, GeometryError> {
         let mut crossings = Vec::new();
-        let mut seen = vec![NONE; self.edges.len()];
+        let mut seen = vec![None; self.edges.len()];
         let mut near = Vec::new();
         for e in 0..self.edges.len() as u32 {
             let edge = self.edges[e as usize];
@@ -242,7 +245,7 @@ impl Noder {
                 for &f in cells.get(cell) {
                     let other = &self.edges[f as usize];
                     let taken = f <= e && other.uncrossed && !other.lattice;
-                    if !taken && std::mem::replace(&mut seen[f as usize], e) != e {
+                    if !taken && seen[f as usize].replace(e) != Some(e) {
                         near.push(f);
                     }
                 }
@@ -338,7 +341,7 @@ struct Reach {
 /// Returns the box of outline and mesh with a margin, or the whole plane when there is neither.
 fn reach(segments: &[Segment]) -> Reach {
     let (mut low, mut high) = (Point::repeat(f64::INFINITY), Point::repeat(f64::NEG_INFINITY));
-    for segment in segments.iter().filter(|s| s.label.outline != 0 || s.label.mesh != NONE) {
+    for segment in segments.iter().filter(|s| s.label.outline != 0 || s.label.mesh.is_some()) {
         low = low.inf(&segment.a).inf(&segment.b);
         high = high.sup(&segment.a).sup(&segment.b);
     }

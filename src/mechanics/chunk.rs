@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use enmm_lanes::{LANES, SLOTS, Slot};
 
-use crate::cover::Covers;
+use crate::cover::{BlockId, CoverId, Covers, ElementId};
 use crate::geometry::Vector;
 
 use super::PreStress;
@@ -23,8 +23,6 @@ const PATCH: usize = 512;
 const PART: usize = Covers::TILE;
 /// Least number of elements of a row of eight; gather and scatter is faster for fewer.
 const ROW_MIN: usize = 4;
-/// Index of the element in an empty lane.
-const NO_ELEMENT: u32 = u32::MAX;
 
 /// Whole blocks, or a part of one.
 #[doc(alias = "tile")]
@@ -34,7 +32,7 @@ pub struct Chunk {
     /// Blocks: those that begin here.
     pub blocks: Range<usize>,
     /// The large block of which this is a part.
-    pub part_of: Option<u32>,
+    pub part_of: Option<BlockId>,
     /// Covers whose forces this chunk computes.
     pub covers: Range<usize>,
     halo: Range<usize>,
@@ -83,8 +81,8 @@ struct Eights<E> {
     list: Vec<E>,
     /// In-situ stress of each; empty when there is none.
     pre_stress: Vec<PreStresses>,
-    /// Elements of the lanes.
-    elements: Vec<[u32; LANES]>,
+    /// Elements of the lanes; none in an empty one.
+    elements: Vec<[Option<ElementId>; LANES]>,
 }
 
 impl<E> Default for Eights<E> {
@@ -107,11 +105,11 @@ impl<E> Eights<E> {
         &self,
         range: &Range<usize>,
         slots: impl Fn(&E, usize) -> [Slot; 3] + Copy,
-    ) -> impl Iterator<Item = (usize, [Slot; 3])> {
-        self.list[range.clone()].iter().zip(&self.elements[range.clone()]).flat_map(move |(eight, ids)| {
-            let there = ids.iter().enumerate().filter(|(_, id)| **id != NO_ELEMENT);
-            there.map(move |(lane, id)| (*id as usize, slots(eight, lane)))
-        })
+    ) -> impl Iterator<Item = (ElementId, [Slot; 3])> {
+        self.list[range.clone()]
+            .iter()
+            .zip(&self.elements[range.clone()])
+            .flat_map(move |(eight, ids)| lanes_of(ids).map(move |(lane, id)| (id, slots(eight, lane))))
     }
 }
 
@@ -119,7 +117,7 @@ impl<E> Eights<E> {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chunks {
     list: Vec<Chunk>,
-    halo: Vec<u32>,
+    halo: Vec<CoverId>,
     batches: Vec<Batch>,
     rows: Eights<Row>,
     groups: Eights<Group>,
@@ -132,13 +130,14 @@ impl Chunks {
             covers,
             element_rock,
             pre_stress,
-            slot_of: vec![NO_ELEMENT; covers.cover_count()],
+            slot_of: vec![0; covers.cover_count()],
             chunks: Self::default(),
         };
         let (mut first, count) = (0, covers.block_count());
         while first < count {
-            if covers.covers_of(first).len() > PART {
-                cutter.push_large(first);
+            let block = BlockId::new(first);
+            if covers.covers_of(block).len() > PART {
+                cutter.push_large(block);
                 first += 1;
                 continue;
             }
@@ -181,7 +180,7 @@ impl Chunks {
     }
 
     /// Covers of other chunks that elements of a chunk touch: their slots follow those of the chunk's own.
-    pub fn halo(&self, chunk: &Chunk) -> &[u32] {
+    pub fn halo(&self, chunk: &Chunk) -> &[CoverId] {
         &self.halo[chunk.halo.clone()]
     }
 
@@ -212,7 +211,7 @@ impl Chunks {
     }
 
     /// Elements of a batch with their slots.
-    pub fn elements(&self, batch: &Batch) -> impl Iterator<Item = (usize, [Slot; 3])> {
+    pub fn elements(&self, batch: &Batch) -> impl Iterator<Item = (ElementId, [Slot; 3])> {
         let corners = ROW_CORNERS[batch.set as usize];
         let in_row = move |row: &Row, lane: usize| {
             let [base, tip] = row.first.map(|first| first.index() + lane);
@@ -246,77 +245,78 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     fn push_blocks(&mut self, blocks: Range<usize>) {
-        let elements = self.covers.elements_of(blocks.start).start..self.covers.elements_of(blocks.end - 1).end;
-        let own = self.covers.covers_of(blocks.start).start..self.covers.covers_of(blocks.end - 1).end;
-        let ids = elements.map(|e| e as u32).collect();
+        let [first, last] = [blocks.start, blocks.end - 1].map(BlockId::new);
+        let elements = self.covers.elements_of(first).start..self.covers.elements_of(last).end;
+        let own = self.covers.covers_of(first).start..self.covers.covers_of(last).end;
+        let ids = ElementId::range(elements).collect();
         self.push(Chunk { blocks, part_of: None, covers: own, halo: 0..0, batches: 0..0 }, ids);
     }
 
     /// Cuts a block into runs of whole tiles, in the order of the covers; a tile with too many covers is cut as well. A
     /// block without tiles is cut into equal parts.
-    fn parts_of(&self, block: usize) -> Vec<Range<usize>> {
+    fn parts_of(&self, block: BlockId) -> Vec<Range<usize>> {
         let own = self.covers.covers_of(block);
         if !self.covers.is_tiled(block) {
             let count = own.len().div_ceil(PART);
             let start = |part: usize| own.start + own.len() * part / count;
             return (0..count).map(|part| start(part)..start(part + 1)).collect();
         }
-        let own: Vec<usize> = own.collect();
+        let own: Vec<CoverId> = CoverId::range(own).collect();
         let mut parts: Vec<Range<usize>> = Vec::new();
         for tile in own.chunk_by(|&a, &b| self.covers.tile(a) == self.covers.tile(b)) {
             for piece in tile.chunks(PART) {
                 match parts.last_mut() {
                     Some(last) if last.len() + piece.len() <= PART => last.end += piece.len(),
-                    _ => parts.push(piece[0]..piece[0] + piece.len()),
+                    _ => parts.push(piece[0].index()..piece[0].index() + piece.len()),
                 }
             }
         }
         parts
     }
 
-    fn push_large(&mut self, block: usize) {
+    fn push_large(&mut self, block: BlockId) {
         let parts = self.parts_of(block);
         let first = self.covers.covers_of(block).start;
         let part_of_cover: Vec<usize> =
             parts.iter().enumerate().flat_map(|(k, part)| part.clone().map(move |_| k)).collect();
         let mut elements = vec![Vec::new(); parts.len()];
-        for e in self.covers.elements_of(block) {
-            let mut touched = self.covers.element_covers[e].map(|i| part_of_cover[i as usize - first]);
+        for e in ElementId::range(self.covers.elements_of(block)) {
+            let mut touched = self.covers.element_covers[e].map(|i| part_of_cover[i.index() - first]);
             touched.sort_unstable();
-            elements[touched[0]].push(e as u32);
-            (1..3).filter(|&k| touched[k] != touched[k - 1]).for_each(|k| elements[touched[k]].push(e as u32));
+            elements[touched[0]].push(e);
+            (1..3).filter(|&k| touched[k] != touched[k - 1]).for_each(|k| elements[touched[k]].push(e));
         }
         for (part, (covers, elements)) in parts.into_iter().zip(elements).enumerate() {
-            let blocks = if part == 0 { block..block + 1 } else { block + 1..block + 1 };
-            let chunk = Chunk { blocks, part_of: Some(block as u32), covers, halo: 0..0, batches: 0..0 };
+            let blocks = block.index() + usize::from(part > 0)..block.index() + 1;
+            let chunk = Chunk { blocks, part_of: Some(block), covers, halo: 0..0, batches: 0..0 };
             self.push(chunk, elements);
         }
     }
 
     /// Covers of other chunks that elements touch, row by row.
-    fn find_halo(&mut self, chunk: &mut Chunk, elements: &[u32]) {
-        let is_own = |i: &u32| chunk.covers.contains(&(*i as usize));
-        let touched = elements.iter().flat_map(|&e| self.covers.element_covers[e as usize]);
-        let mut halo: Vec<u32> = touched.filter(|i| !is_own(i)).collect();
+    fn find_halo(&mut self, chunk: &mut Chunk, elements: &[ElementId]) {
+        let is_own = |i: &CoverId| chunk.covers.contains(&i.index());
+        let touched = elements.iter().flat_map(|&e| self.covers.element_covers[e]);
+        let mut halo: Vec<CoverId> = touched.filter(|i| !is_own(i)).collect();
         halo.sort_unstable_by_key(|&i| {
-            let [column, row] = self.covers.star[i as usize];
+            let [column, row] = self.covers.star[i];
             (row, column, i)
         });
         halo.dedup();
         chunk.halo = self.chunks.halo.len()..self.chunks.halo.len() + halo.len();
-        for (slot, cover) in chunk.covers.clone().chain(halo.iter().map(|&i| i as usize)).enumerate() {
+        for (slot, cover) in CoverId::range(chunk.covers.clone()).chain(halo.iter().copied()).enumerate() {
             self.slot_of[cover] = slot as u32;
         }
         self.chunks.halo.append(&mut halo);
     }
 
-    fn push(&mut self, mut chunk: Chunk, mut elements: Vec<u32>) {
+    fn push(&mut self, mut chunk: Chunk, mut elements: Vec<ElementId>) {
         self.find_halo(&mut chunk, &elements);
         let first_batch = self.chunks.batches.len();
         let (covers, element_rock) = (self.covers, self.element_rock);
-        let kind = |e: u32| (covers.element_triangle[e as usize].set, element_rock[e as usize]);
+        let kind = |e: ElementId| (covers.element_triangle[e].set, element_rock[e]);
         elements.sort_by_key(|&e| (kind(e), e));
-        let in_rows = chunk.part_of.is_some_and(|block| covers.is_tiled(block as usize));
+        let in_rows = chunk.part_of.is_some_and(|block| covers.is_tiled(block));
         for batch in elements.chunk_by(|&a, &b| kind(a) == kind(b)) {
             self.push_batch(kind(batch[0]), batch, in_rows);
         }
@@ -324,51 +324,51 @@ impl Cutter<'_> {
         self.chunks.list.push(chunk);
     }
 
-    fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[u32], in_rows: bool) {
+    fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[ElementId], in_rows: bool) {
         let [first_row, first_group] = [self.chunks.rows.list.len(), self.chunks.groups.list.len()];
         let others = if in_rows { self.push_rows(set, elements) } else { elements.to_vec() };
         for eight in others.chunks(LANES) {
-            let mut ids = [NO_ELEMENT; LANES];
-            ids[..eight.len()].copy_from_slice(eight);
+            let mut ids = [None; LANES];
+            ids.iter_mut().zip(eight).for_each(|(id, &e)| *id = Some(e));
             self.push_group(ids);
         }
         let (rows, groups) = (first_row..self.chunks.rows.list.len(), first_group..self.chunks.groups.list.len());
         self.chunks.batches.push(Batch { set, rock, rows, groups });
     }
 
-    fn slots(&self, e: u32) -> [u32; 3] {
-        self.covers.element_covers[e as usize].map(|cover| self.slot_of[cover as usize])
+    fn slots(&self, e: ElementId) -> [u32; 3] {
+        self.covers.element_covers[e].map(|cover| self.slot_of[cover])
     }
 
     /// Slots of an element's covers at the left end of its base, at its right end and at the tip.
-    fn row_slots(&self, set: u8, e: u32) -> [u32; 3] {
+    fn row_slots(&self, set: u8, e: ElementId) -> [u32; 3] {
         let slots = self.slots(e);
         ROW_CORNERS[set as usize].map(|k| slots[k])
     }
 
     /// Rows of elements whose covers are in runs of slots; returns the other elements.
-    fn push_rows(&mut self, set: u8, elements: &[u32]) -> Vec<u32> {
-        let position = |&e: &u32| {
+    fn push_rows(&mut self, set: u8, elements: &[ElementId]) -> Vec<ElementId> {
+        let position = |&e: &ElementId| {
             let [left, right, tip] = self.row_slots(set, e);
             (right == left + 1, tip.wrapping_sub(left), left, e)
         };
         let mut sorted: Vec<_> = elements.iter().map(position).collect();
         sorted.sort_unstable();
         let (apart, mut rest) = sorted.split_at(sorted.partition_point(|s| !s.0));
-        let mut others: Vec<u32> = apart.iter().map(|s| s.3).collect();
+        let mut others: Vec<ElementId> = apart.iter().map(|s| s.3).collect();
         while let Some(&(_, line, first, e)) = rest.first() {
             let within = rest.partition_point(|s| (s.1, s.2) < (line, first + LANES as u32));
-            let mut ids = [NO_ELEMENT; LANES];
+            let mut ids = [None; LANES];
             let mut doubles = Vec::new();
             for &(.., slot, e) in &rest[..within] {
                 match &mut ids[(slot - first) as usize] {
-                    id if *id == NO_ELEMENT => *id = e,
+                    id @ None => *id = Some(e),
                     _ => doubles.push(e),
                 }
             }
             let is_row = within - doubles.len() >= ROW_MIN;
             if is_row {
-                self.push_row(set, ids);
+                self.push_row(self.row_slots(set, e), ids);
                 others.append(&mut doubles);
             } else {
                 others.push(e);
@@ -379,15 +379,16 @@ impl Cutter<'_> {
         others
     }
 
-    fn push_row(&mut self, set: u8, ids: [u32; LANES]) {
-        let [left, _, tip] = self.row_slots(set, ids[0]).map(|slot| Slot::new(slot as usize));
+    /// Adds a row whose first element has these slots.
+    fn push_row(&mut self, first: [u32; 3], ids: [Option<ElementId>; LANES]) {
+        let [left, _, tip] = first.map(|slot| Slot::new(slot as usize));
         let (area, pre) = self.lanes(&ids);
         push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, pre, ids);
     }
 
-    fn push_group(&mut self, ids: [u32; LANES]) {
+    fn push_group(&mut self, ids: [Option<ElementId>; LANES]) {
         let mut slots = <[[Slot; LANES]; 3]>::default();
-        for (lane, &e) in ids.iter().enumerate().filter(|(_, e)| **e != NO_ELEMENT) {
+        for (lane, e) in lanes_of(&ids) {
             (0..3).for_each(|k| slots[k][lane] = Slot::new(self.slots(e)[k] as usize));
         }
         let (area, pre) = self.lanes(&ids);
@@ -395,11 +396,11 @@ impl Cutter<'_> {
     }
 
     /// Areas (m²) of eight elements, and their in-situ stress when the model has any.
-    fn lanes(&self, ids: &[u32; LANES]) -> ([f64; LANES], Option<PreStresses>) {
+    fn lanes(&self, ids: &[Option<ElementId>; LANES]) -> ([f64; LANES], Option<PreStresses>) {
         let (mut area, mut pre) = ([0.0; LANES], [[0.0; LANES]; 3]);
-        for (lane, &e) in ids.iter().enumerate().filter(|(_, e)| **e != NO_ELEMENT) {
-            area[lane] = self.covers.element_area[e as usize];
-            if let Some(stress) = self.pre_stress.get(e as usize) {
+        for (lane, e) in lanes_of(ids) {
+            area[lane] = self.covers.element_area[e];
+            if let Some(stress) = self.pre_stress.get(e.index()) {
                 (0..3).for_each(|k| pre[k][lane] = stress[k]);
             }
         }
@@ -407,7 +408,12 @@ impl Cutter<'_> {
     }
 }
 
-fn push_eight<E>(eights: &mut Eights<E>, eight: E, pre: Option<PreStresses>, ids: [u32; LANES]) {
+/// Lanes that have an element, with it.
+fn lanes_of(ids: &[Option<ElementId>; LANES]) -> impl Iterator<Item = (usize, ElementId)> {
+    ids.iter().enumerate().filter_map(|(lane, id)| Some((lane, (*id)?)))
+}
+
+fn push_eight<E>(eights: &mut Eights<E>, eight: E, pre: Option<PreStresses>, ids: [Option<ElementId>; LANES]) {
     eights.list.push(eight);
     eights.pre_stress.extend(pre);
     eights.elements.push(ids);

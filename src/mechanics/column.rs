@@ -1,6 +1,7 @@
 //! Free-field columns: rock beside the model that moves in one dimension and drives the free-field boundaries (Eqs. 49,
 //! 50).
 
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 
 use super::Elasticity;
@@ -55,7 +56,7 @@ pub struct Column {
     /// Rock of each cell, from the foot.
     pub rocks: Vec<Elasticity>,
     /// Block of the model beside each node; those of one block are damped together.
-    pub blocks: Vec<u32>,
+    pub blocks: Vec<BlockId>,
     /// Cause of the motion of the foot.
     pub foot: Foot,
 }
@@ -111,7 +112,7 @@ impl Column {
     }
 
     /// Writes the velocities (m/s) after the step; `decay` gives the damping factor of a block (Eqs. 49, 50).
-    pub fn kick(&self, state: &ColumnState, drive: &ColumnDrive, decay: impl Fn(u32) -> f64, out: &mut [Vector]) {
+    pub fn kick(&self, state: &ColumnState, drive: &ColumnDrive, decay: impl Fn(BlockId) -> f64, out: &mut [Vector]) {
         out.copy_from_slice(&state.velocity);
         self.damp(decay, out);
         let last = self.rocks.len();
@@ -134,7 +135,7 @@ impl Column {
     }
 
     /// Damps the velocities of the nodes beside each block relative to their mean.
-    fn damp(&self, decay: impl Fn(u32) -> f64, velocity: &mut [Vector]) {
+    fn damp(&self, decay: impl Fn(BlockId) -> f64, velocity: &mut [Vector]) {
         let mut first = 0;
         while first < self.blocks.len() {
             let block = self.blocks[first];
@@ -164,7 +165,7 @@ mod tests {
 
     fn column(foot: Foot) -> Column {
         let rock = Elasticity { lambda: 2.0, mu: 1.0, density: 1.0 };
-        Column { foot_height: 1.0, spacing: 0.5, rocks: vec![rock; 40], blocks: vec![0; 41], foot }
+        Column { foot_height: 1.0, spacing: 0.5, rocks: vec![rock; 40], blocks: vec![BlockId::default(); 41], foot }
     }
 
     /// Runs a column of c_s = 1 and c_p = 2 m/s, 20 m high.

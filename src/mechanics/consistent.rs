@@ -1,5 +1,6 @@
 //! Consistent mass and corotated stiffness of one element, for the implicit integrator (Eqs. 68, 69).
 
+use crate::cover::CoverId;
 use crate::geometry::{Vector, polygon};
 
 use super::Elasticity;
@@ -19,7 +20,7 @@ pub fn element_mass(density: f64, weights: [f64; 3], g: &[Vector; 3], about_cent
 }
 
 /// Adds an element's mass times a cover field to `out`.
-pub fn push_mass(mass: &[f64; 6], ids: [usize; 3], field: &[Vector], out: &mut [Vector]) {
+pub fn push_mass(mass: &[f64; 6], ids: [CoverId; 3], field: &[Vector], out: &mut [Vector]) {
     for (value, [a, b]) in mass.iter().zip(PAIRS) {
         out[ids[a]] += field[ids[b]] * *value;
         if a != b {

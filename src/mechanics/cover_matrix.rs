@@ -10,6 +10,8 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
+use crate::cover::CoverId;
+
 /// Slot of a pair of covers that the matrix does not hold.
 pub const UNCOUPLED: u32 = u32::MAX;
 
@@ -25,7 +27,7 @@ pub struct CoverMatrix {
     /// First block of each cover's column, and the number of blocks at the end.
     block_start: Vec<u32>,
     /// Cover of each block's rows; the diagonal block first, then ascending.
-    block_row: Vec<u32>,
+    block_row: Vec<CoverId>,
     column_start: Vec<u32>,
     row: Vec<u32>,
     value: Vec<f64>,
@@ -52,11 +54,11 @@ impl std::fmt::Debug for Workspace {
 
 impl CoverMatrix {
     /// Takes a new pattern: `pairs` are sorted pairs (column, row) of covers with column < row, each once.
-    pub fn set_pattern(&mut self, covers: usize, pairs: &[[u32; 2]]) {
+    pub fn set_pattern(&mut self, covers: usize, pairs: &[[CoverId; 2]]) {
         self.block_start.clear();
         self.block_row.clear();
         let mut rest = pairs;
-        for column in 0..covers as u32 {
+        for column in CoverId::all(covers) {
             self.block_start.push(self.block_row.len() as u32);
             self.block_row.push(column);
             let (mine, others) = rest.split_at(rest.partition_point(|p| p[0] <= column));
@@ -77,7 +79,7 @@ impl CoverMatrix {
             let blocks = &self.block_row[self.block_start[column] as usize..self.block_start[column + 1] as usize];
             for half in 0..2 {
                 self.column_start.push(self.row.len() as u32);
-                let rows = blocks.iter().flat_map(|&i| [2 * i, 2 * i + 1]).skip(half);
+                let rows = blocks.iter().flat_map(|i| [2 * i.number(), 2 * i.number() + 1]).skip(half);
                 self.row.extend(rows);
             }
         }
@@ -96,11 +98,11 @@ impl CoverMatrix {
     }
 
     /// Slot of the block of a pair of covers, row not before column; [`UNCOUPLED`] when the pattern lacks it.
-    pub fn slot(&self, row: u32, column: u32) -> u32 {
-        let first = self.block_start[column as usize] as usize;
-        let rows = &self.block_row[first..self.block_start[column as usize + 1] as usize];
+    pub fn slot(&self, row: CoverId, column: CoverId) -> u32 {
+        let column = column.index();
+        let rows = &self.block_row[self.block_start[column] as usize..self.block_start[column + 1] as usize];
         match rows.binary_search(&row) {
-            Ok(k) => self.column_start[2 * column as usize] + 2 * k as u32,
+            Ok(k) => self.column_start[2 * column] + 2 * k as u32,
             Err(_) => UNCOUPLED,
         }
     }
@@ -112,13 +114,12 @@ impl CoverMatrix {
 
     /// Adds a block (row by row) at the `slot` of a pair of covers; `diagonal` when both are the same.
     #[inline]
-    pub fn add(&mut self, slot: u32, column: u32, block: [f64; 4], diagonal: bool) {
+    pub fn add(&mut self, slot: u32, column: CoverId, block: [f64; 4], diagonal: bool) {
         if slot == UNCOUPLED {
             return;
         }
-        let slot = slot as usize;
-        let second =
-            slot + (self.column_start[2 * column as usize + 1] - self.column_start[2 * column as usize]) as usize - 1;
+        let (slot, column) = (slot as usize, 2 * column.index());
+        let second = slot + (self.column_start[column + 1] - self.column_start[column]) as usize - 1;
         self.value[slot] += block[0];
         self.value[slot + 1] += block[2];
         if !diagonal {
@@ -195,14 +196,16 @@ mod tests {
     #[test]
     fn a_chain_of_three_covers_is_solved() {
         let mut matrix = CoverMatrix::default();
-        matrix.set_pattern(3, &[[0, 1], [1, 2]]);
-        for i in 0..3u32 {
+        let covers = [0, 1, 2].map(CoverId::new);
+        let pairs = [[covers[0], covers[1]], [covers[1], covers[2]]];
+        matrix.set_pattern(3, &pairs);
+        for i in covers {
             matrix.add(matrix.slot(i, i), i, [4.0, 0.5, 0.5, 3.0], true);
         }
-        for i in 0..2u32 {
-            matrix.add(matrix.slot(i + 1, i), i, [-1.0, 0.25, -0.5, -1.0], false);
+        for [column, row] in pairs {
+            matrix.add(matrix.slot(row, column), column, [-1.0, 0.25, -0.5, -1.0], false);
         }
-        assert_eq!(matrix.slot(2, 0), UNCOUPLED);
+        assert_eq!(matrix.slot(covers[2], covers[0]), UNCOUPLED);
         matrix.factorise().unwrap();
         let x = [1.0, -2.0, 0.5, 3.0, -1.0, 2.0];
         let mut b = [0.0; 6];

@@ -1,6 +1,6 @@
 //! External loads and their time tables: forces on covers from points, faces, blocks and all rock.
 
-use crate::cover::Weights;
+use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::MassMatrix;
@@ -29,7 +29,7 @@ impl TimeTable {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadedFace {
     /// Covers of both ends.
-    pub covers: [[u32; 3]; 2],
+    pub covers: [[CoverId; 3]; 2],
     /// Weights of both ends.
     pub weights: [Weights; 2],
     /// Shares of the way along the edge between which the fluid is.
@@ -42,15 +42,15 @@ pub struct LoadedFace {
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadAction {
     /// Force (N/m) at material points: covers, weights, force.
-    Forces(Vec<([u32; 3], Weights, Vector)>),
+    Forces(Vec<([CoverId; 3], Weights, Vector)>),
     /// Pressure (Pa) on pieces of boundary, given by the covers of their element and the weights of both ends.
-    Pressure(Vec<([u32; 3], [Weights; 2])>, f64),
+    Pressure(Vec<([CoverId; 3], [Weights; 2])>, f64),
     /// Fluid pressure on faces of joints.
     Faces(Vec<LoadedFace>),
     /// Acceleration (m/s²) of all rock.
     Body(Vector),
     /// Force (N/m) and moment (N·m/m) about the centroid of a block.
-    Block(u32, Vector, f64),
+    Block(BlockId, Vector, f64),
 }
 
 /// A load with its time table.
@@ -77,8 +77,8 @@ impl Load {
     pub fn push(
         &self,
         t: f64,
-        position: impl Fn(usize) -> Point,
-        block: impl Fn(u32) -> std::ops::Range<usize>,
+        position: impl Fn(CoverId) -> Point,
+        block: impl Fn(BlockId) -> std::ops::Range<usize>,
         mass_matrix: &MassMatrix,
         force: &mut [Vector],
     ) {
@@ -91,15 +91,14 @@ impl Load {
             }
             LoadAction::Pressure(list, pressure) => {
                 for (covers, ends) in list {
-                    let [a, b] = ends.map(|w| (0..3).map(|k| position(covers[k] as usize) * w[k]).sum::<Point>());
+                    let [a, b] = ends.map(|w| (0..3).map(|k| position(covers[k]) * w[k]).sum::<Point>());
                     let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
                     spread(covers, &middle, inward(a, b) * (pressure * factor), force);
                 }
             }
             LoadAction::Faces(faces) => {
                 for LoadedFace { covers, weights, span, pressure } in faces {
-                    let [a, b] =
-                        [0, 1].map(|e| (0..3).map(|k| position(covers[e][k] as usize) * weights[e][k]).sum::<Point>());
+                    let [a, b] = [0, 1].map(|e| (0..3).map(|k| position(covers[e][k]) * weights[e][k]).sum::<Point>());
                     let forces = part(inward(a, b), *span, pressure.map(|p| p * factor));
                     (0..2).for_each(|e| spread(&covers[e], &weights[e], forces[e], force));
                 }
@@ -113,22 +112,23 @@ impl Load {
 }
 
 /// Spreads a force (N/m) at a material point over its covers.
-pub fn spread(covers: &[u32; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
+pub fn spread(covers: &[CoverId; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
     for (cover, w) in covers.iter().zip(weights) {
-        force[*cover as usize] += f * *w;
+        force[*cover] += f * *w;
     }
 }
 
 /// Spreads a force and a moment over a block so that it moves as a rigid body: μ·f/M and m·(x − x_D)^⊥·τ/J_D.
 pub fn push_block(
     covers: std::ops::Range<usize>,
-    position: &impl Fn(usize) -> Point,
+    position: &impl Fn(CoverId) -> Point,
     mass_matrix: &MassMatrix,
     f: Vector,
     moment: f64,
     force: &mut [Vector],
 ) {
     let total: f64 = mass_matrix.row_sum[covers.clone()].iter().sum();
+    let covers = CoverId::range(covers);
     let centre = covers.clone().map(|i| position(i) * mass_matrix.mass[i]).sum::<Point>() / total;
     let polar: f64 = covers.clone().map(|i| mass_matrix.mass[i] * (position(i) - centre).norm_squared()).sum();
     for i in covers {
@@ -152,7 +152,8 @@ mod tests {
     #[test]
     fn a_block_moment_has_no_resultant_force() {
         let positions = [Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
-        let load = Load { action: LoadAction::Block(0, Vector::zeros(), 5.0), table: TimeTable::default() };
+        let load =
+            Load { action: LoadAction::Block(BlockId::new(0), Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
         let mass_matrix = MassMatrix { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..MassMatrix::default() };
         load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force);

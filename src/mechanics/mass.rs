@@ -1,6 +1,6 @@
 //! Mass matrix: equal-thirds lumped mass of the covers with the rigid-exact correction of free blocks (Eqs. 2–4).
 
-use crate::cover::Covers;
+use crate::cover::{BlockId, CoverId, Covers};
 use crate::geometry::{Point, Vector};
 
 use super::Elasticity;
@@ -46,24 +46,24 @@ impl MassMatrix {
     pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
         let mut mass_matrix =
             Self { mass: vec![0.0; covers.cover_count()], row_sum: vec![0.0; covers.cover_count()], ..Self::default() };
-        for e in 0..covers.element_count() {
+        for e in covers.elements() {
             let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
             let weights = covers.weights(e, covers.element_centroid[e]);
             for (k, &cover) in covers.element_covers[e].iter().enumerate() {
-                mass_matrix.mass[cover as usize] += mass / 3.0;
-                mass_matrix.row_sum[cover as usize] += mass * weights[k];
+                mass_matrix.mass[cover] += mass / 3.0;
+                mass_matrix.row_sum[cover] += mass * weights[k];
             }
         }
         mass_matrix.lightness = 1.0;
         mass_matrix.inertial.clone_from(&mass_matrix.row_sum);
         mass_matrix.inverse = mass_matrix.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
-        for block in 0..covers.block_count() {
+        for block in covers.blocks() {
             mass_matrix.push_block(covers, rocks, element_rock, block);
         }
         mass_matrix
     }
 
-    fn push_block(&mut self, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16], block: usize) {
+    fn push_block(&mut self, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16], block: BlockId) {
         let range = covers.covers_of(block);
         let density = |e: usize| rocks[element_rock[e] as usize].density;
         let total: f64 = self.row_sum[range.clone()].iter().sum();
@@ -90,7 +90,7 @@ impl MassMatrix {
     }
 
     /// Gives a block the plain lumped metric, which every block with a fixed cover or support needs.
-    pub fn hold_block(&mut self, covers: &Covers, block: usize) {
+    pub fn hold_block(&mut self, covers: &Covers, block: BlockId) {
         if !self.is_free(block) {
             return;
         }
@@ -104,7 +104,7 @@ impl MassMatrix {
     }
 
     /// Fixes a cover along the axes whose flag is set.
-    pub fn hold_cover(&mut self, cover: usize, axes: [bool; 2]) {
+    pub fn hold_cover(&mut self, cover: CoverId, axes: [bool; 2]) {
         for (axis, held) in axes.into_iter().enumerate() {
             if held {
                 self.inverse[cover][axis] = 0.0;
@@ -116,26 +116,26 @@ impl MassMatrix {
     /// stay.
     pub fn lighten(&mut self, lightness: f64) {
         self.lightness = lightness;
-        for block in (0..self.total.len()).filter(|&b| self.inverse_total[b] > 0.0) {
+        for block in BlockId::all(self.total.len()).filter(|&b| self.inverse_total[b] > 0.0) {
             self.square[block] += (lightness - 1.0) * self.total[block];
             self.polar[block] /= lightness;
         }
     }
 
     /// Mass (kg/m) of a block under a force through its centroid.
-    pub fn rigid_mass(&self, block: usize) -> f64 {
+    pub fn rigid_mass(&self, block: BlockId) -> f64 {
         if self.is_free(block) { self.total[block] / self.lightness } else { self.total[block] }
     }
 
     /// Marks the blocks that cannot move at all.
     pub fn mark_fixed(&mut self, covers: &Covers) {
-        for block in 0..covers.block_count() {
+        for block in covers.blocks() {
             self.fixed[block] = covers.covers_of(block).all(|i| self.inverse[i] == Vector::zeros());
         }
     }
 
     /// Whether a block has the rigid-exact metric.
-    pub fn is_free(&self, block: usize) -> bool {
+    pub fn is_free(&self, block: BlockId) -> bool {
         self.inverse_total[block] > 0.0
     }
 }

@@ -1,5 +1,6 @@
 //! Motion of one block: rigid velocity, damping, kinetic energy and momentum by its mass matrix.
 
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 
 use super::MassMatrix;
@@ -44,7 +45,7 @@ pub struct BlockCovers<'a> {
     /// Masses of all covers and blocks.
     pub mass_matrix: &'a MassMatrix,
     /// Block.
-    pub block: usize,
+    pub block: BlockId,
     /// Covers of the block in the arrays of the metric.
     pub range: std::ops::Range<usize>,
     /// Star positions (m), all covers.
@@ -167,7 +168,7 @@ pub struct BlockStart {
 
 impl BlockStart {
     /// The start of a block from its sums.
-    pub fn new(mass_matrix: &MassMatrix, block: usize, from: Reference, sums: &BlockSums) -> Self {
+    pub fn new(mass_matrix: &MassMatrix, block: BlockId, from: Reference, sums: &BlockSums) -> Self {
         let total = mass_matrix.total[block];
         Self {
             from,
@@ -182,7 +183,7 @@ impl BlockStart {
 
     /// Centroid and inertia correction for contacts: C·J_D' is constant, so that J·L/J_D is kept to round-off in every
     /// kick and drift.
-    pub fn motion(&self, mass_matrix: &MassMatrix, block: usize) -> BlockMotion {
+    pub fn motion(&self, mass_matrix: &MassMatrix, block: BlockId) -> BlockMotion {
         let centre = self.from.position + self.centre;
         if !mass_matrix.is_free(block) {
             return BlockMotion { centre, spin: 0.0 };
@@ -191,7 +192,7 @@ impl BlockStart {
     }
 
     /// Common velocity that damping and the forces on a block give to all its covers (Eqs. 3, 11).
-    pub fn common(&self, mass_matrix: &MassMatrix, block: usize, sums: &BlockSums, step: &KickStep) -> Common {
+    pub fn common(&self, mass_matrix: &MassMatrix, block: BlockId, sums: &BlockSums, step: &KickStep) -> Common {
         let mut common = Common::default();
         if let Damping::Deformation(factor) = step.damping
             && factor < 1.0
@@ -216,7 +217,7 @@ impl BlockStart {
 
     /// Work (J/m) that damping took in the step: the lost momentum times the mean of the velocities before and after
     /// it (Eq. 18).
-    pub fn damping_work(&self, mass_matrix: &MassMatrix, block: usize, sums: &WorkSums, damping: Damping) -> f64 {
+    pub fn damping_work(&self, mass_matrix: &MassMatrix, block: BlockId, sums: &WorkSums, damping: Damping) -> f64 {
         let (factor, whole) = match damping {
             Damping::Deformation(factor) => (factor, 0.0),
             Damping::Mass(factor) => (factor, 1.0),

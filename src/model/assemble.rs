@@ -11,10 +11,10 @@ mod rock;
 mod stage;
 mod warnings;
 
-use std::collections::BTreeMap;
-
-use crate::contact::{BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, Resistance, Roughness, Support};
-use crate::cover::{self, Covers, Outlines};
+use crate::contact::{
+    BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support,
+};
+use crate::cover::{self, BlockId, CoverId, Covers, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector};
 use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
@@ -35,13 +35,13 @@ pub struct Built {
     /// State at the start.
     pub state: State,
     /// Element and reference point of each monitor.
-    pub monitors: Vec<(usize, Point)>,
+    pub monitors: Vec<(ElementId, Point)>,
     /// What the noder did.
     pub noding: NodingReport,
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
     pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
-    pub traces: Vec<(Vec<Point>, u32)>,
+    pub traces: Vec<(Vec<Point>, LawId)>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -250,12 +250,12 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
 
 /// Angular frequency of each block's deformation (Eq. 11); a block smaller than an element deforms like one.
 fn block_frequencies(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Vec<f64> {
-    let of_block = |b: usize| {
+    let of_block = |b: BlockId| {
         let speed =
             covers.elements_of(b).map(|e| rocks[element_rock[e] as usize].shear_wave_speed()).fold(0.0, f64::max);
         2.0 * std::f64::consts::PI * speed / covers.block_area(b).sqrt().max(covers.mesh.size)
     };
-    (0..covers.block_count()).map(of_block).collect()
+    covers.blocks().map(of_block).collect()
 }
 
 fn pre_stresses(case: &Case, covers: &Covers) -> Vec<PreStress> {
@@ -281,7 +281,7 @@ fn fixities(case: &Case, positions: &Locator, stiffness: f64) -> Result<(Vec<Fix
             fixity.covers.extend(covers.into_iter().map(|i| (i, axes)));
         } else if let Some(point) = fix.block {
             let block = positions.block(&format!("{key}.block"), point)?;
-            fixity.covers.extend(positions.covers.covers_of(block).map(|i| (i as u32, axes)));
+            fixity.covers.extend(CoverId::range(positions.covers.covers_of(block)).map(|i| (i, axes)));
         }
         for (axis, direction) in [Vector::x(), Vector::y()].into_iter().enumerate().filter(|(axis, _)| axes[*axis]) {
             supports.extend(held.iter().map(|h: &locator::Hold| Support {
@@ -337,7 +337,7 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
             LoadKind::Joint => LoadAction::Faces(faces.loaded(&key, load)?),
             LoadKind::Block => {
                 let block = positions.block(&point().0, point().1)?;
-                LoadAction::Block(block as u32, vector(load.force), load.moment.unwrap_or_default())
+                LoadAction::Block(block, vector(load.force), load.moment.unwrap_or_default())
             }
         };
         loads.push(Load { action, table: TimeTable(load.table.clone().unwrap_or_default()) });
@@ -345,7 +345,7 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
     Ok(loads)
 }
 
-fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(usize, Point)>, Invalid> {
+fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(ElementId, Point)>, Invalid> {
     let of = |(k, monitor): (usize, &case::Monitor)| {
         let element = positions.element(&format!("monitor[{k}].point"), monitor.point)?;
         Ok((element, Point::from(monitor.point)))
@@ -360,11 +360,11 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         let blocks = match start.block {
             Some(point) => {
                 let block = positions.block(&format!("initial_velocity[{k}].block"), point)?;
-                block..block + 1
+                block.index()..block.index() + 1
             }
             None => 0..model.covers.block_count(),
         };
-        for block in blocks {
+        for block in BlockId::range(blocks) {
             let centre = model.covers.block_centroid(block);
             for i in model.covers.covers_of(block) {
                 let arm = model.covers.star_position[i] - centre;
@@ -389,7 +389,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         fix_active: model.fixities.iter().map(|f| f.active).collect(),
         removed: vec![false; model.covers.block_count()],
         laws: model.laws.clone(),
-        law_switch: (0..model.laws.len() as u32).collect(),
+        law_switch: LawId::all(model.laws.len()).collect(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(model)),
@@ -404,7 +404,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
     })
 }
 
-/// Index of each name in the order of a case's table.
-pub(super) fn index_of<T>(table: &BTreeMap<String, T>, name: &str) -> Option<u32> {
-    table.keys().position(|k| k == name).map(|k| k as u32)
+/// The joint law of a name: laws have the order of the case's table.
+pub(super) fn law_of(case: &Case, name: &str) -> Option<LawId> {
+    case.joint_laws.keys().position(|k| k == name).map(LawId::new)
 }

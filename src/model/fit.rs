@@ -223,9 +223,9 @@ impl Simulation {
                 state: _,
                 intact: _,
             } = contact;
-            index(format_args!("contacts[{k}].node"), node, boundary.node_count())?;
-            index(format_args!("contacts[{k}].side"), side, boundary.side_first.len())?;
-            index(format_args!("contacts[{k}].edge"), edge, boundary.len())?;
+            index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
+            index(format_args!("contacts[{k}].side"), side.number(), boundary.side_first.len())?;
+            index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
             for (field, value, most) in [
                 ("normal_force", normal_force, FORCE),
                 ("shear_force", shear_force, FORCE),
@@ -246,9 +246,9 @@ impl Simulation {
     fn check_neighbours(&self, neighbours: &NeighbourList) -> Fit {
         let boundary = &self.model().boundary;
         for (k, pair) in neighbours.pairs.iter().enumerate() {
-            index(format_args!("neighbours.pairs[{k}].node"), pair.node, boundary.node_count())?;
-            index(format_args!("neighbours.pairs[{k}].side"), pair.side, boundary.side_first.len())?;
-            index(format_args!("neighbours.pairs[{k}].edge"), pair.edge, boundary.len())?;
+            index(format_args!("neighbours.pairs[{k}].node"), pair.node.number(), boundary.node_count())?;
+            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.side_first.len())?;
+            index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
         }
         in_order("neighbours.pairs", neighbours.pairs.is_sorted())?;
         let found_at = neighbours.found_at();

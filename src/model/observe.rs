@@ -4,7 +4,8 @@
 
 use std::ops::Range;
 
-use crate::contact::{ContactHistory, ContactState, VertexEdge};
+use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
+use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
 use crate::state::{Model, State};
@@ -62,7 +63,7 @@ impl Simulation {
             ..Snapshot::default()
         };
         snapshot.elements.start.push(0);
-        for e in (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]) {
+        for e in covers.elements().filter(|&e| !state.removed[covers.element_block[e]]) {
             for &p in covers.polygon(e) {
                 let displacement = model.sample(e, p, &state.displacement);
                 snapshot.elements.points.push(p + displacement);
@@ -74,7 +75,7 @@ impl Simulation {
             if !state.plastic.is_empty() {
                 snapshot.plastic_strain.push(equivalent_strain(&model.plastic_strain(state, e)));
             }
-            snapshot.block.push(covers.element_block[e]);
+            snapshot.block.push(covers.element_block[e].number());
             snapshot.rock.push(u32::from(model.element_rock[e]));
         }
         let positions = positions(model, state);
@@ -86,10 +87,10 @@ impl Simulation {
     /// Loops of all blocks that are there, at the current `positions` of the boundary points.
     fn boundaries(&self, positions: &[Point]) -> Vec<Boundary> {
         let (model, state) = (self.model(), self.state());
-        let mut by_block: Vec<(u32, Vec<Range<usize>>)> = Vec::new();
+        let mut by_block: Vec<(BlockId, Vec<Range<usize>>)> = Vec::new();
         let mut k = 0;
         while k < model.boundary.len() {
-            let end = loop_end(model, k);
+            let end = loop_end(model, EdgeId::new(k));
             let block = model.boundary.block[k];
             match by_block.last_mut() {
                 Some((last, loops)) if *last == block => loops.push(k..end),
@@ -97,15 +98,15 @@ impl Simulation {
             }
             k = end;
         }
-        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block as usize]);
+        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block]);
         there
             .map(|(block, mut loops)| {
                 let area = |points: &Range<usize>| polygon::area(&positions[points.clone()]);
                 loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
                 Boundary {
-                    block,
-                    fixed: self.workspace().mass_matrix.fixed[block as usize],
-                    displacement: mean(model, &state.displacement, block as usize),
+                    block: block.number(),
+                    fixed: self.workspace().mass_matrix.fixed[block],
+                    displacement: mean(model, &state.displacement, block),
                     loops: polygons(&loops, positions),
                     reference: loops
                         .into_iter()
@@ -120,14 +121,13 @@ impl Simulation {
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
         let positions = positions(self.model(), self.state());
-        let mut states: Vec<BlockState> =
-            (0..self.model().covers.block_count()).map(|block| self.motion_of(block)).collect();
+        let mut states: Vec<BlockState> = self.model().covers.blocks().map(|block| self.motion_of(block)).collect();
         let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
-            let node = boundary.node_point[contact.node as usize] as usize;
+            let node = boundary.node_point[contact.node];
             let depth = penetration(self.model(), &positions, contact);
-            for block in [boundary.block[node], boundary.block[contact.edge as usize]] {
-                let state = &mut states[block as usize];
+            for block in [boundary.block[node], boundary.block[contact.edge]] {
+                let state = &mut states[block];
                 state.contact_count += u32::from(contact.state != ContactState::Open);
                 state.penetration_max = state.penetration_max.max(depth);
             }
@@ -139,7 +139,7 @@ impl Simulation {
     }
 
     /// The state of one block without what its contacts tell.
-    pub fn motion_of(&self, block: usize) -> BlockState {
+    pub fn motion_of(&self, block: BlockId) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
         let mass_matrix = &self.workspace().mass_matrix;
@@ -149,7 +149,7 @@ impl Simulation {
         let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
         BlockState {
-            id: block as u32,
+            id: block.number(),
             fixed: mass_matrix.fixed[block],
             removed,
             centroid: mean(model, &covers.star_position, block) + displacement,
@@ -169,12 +169,12 @@ impl Simulation {
 
 impl Simulation {
     /// Area mean of the stress xx, yy, xy (Pa, tension positive) and the strain energy (J/m) of a block.
-    pub fn stress_of(&self, block: usize) -> ([f64; 3], f64) {
+    pub fn stress_of(&self, block: BlockId) -> ([f64; 3], f64) {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
-        for e in covers.elements_of(block) {
+        for e in ElementId::range(covers.elements_of(block)) {
             let of_element = model.stress(state, e);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
             strain_energy += model.strain_energy(state, e) * covers.element_area[e];
@@ -186,7 +186,7 @@ impl Simulation {
     pub fn yielded_elements(&self) -> usize {
         let state = self.state();
         let blocks = &self.model().covers.element_block;
-        let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block as usize]);
+        let there = state.plastic.iter().zip(blocks).filter(|(_, block)| !state.removed[**block]);
         there.filter(|(plastic, _)| **plastic != [0.0; 4]).count()
     }
 
@@ -197,12 +197,12 @@ impl Simulation {
 }
 
 /// One past the last point of the boundary loop that begins with point `first`.
-fn loop_end(model: &Model, first: usize) -> usize {
+fn loop_end(model: &Model, first: EdgeId) -> usize {
     let mut k = first;
     while model.boundary.after(k) != first {
         k = model.boundary.after(k);
     }
-    k + 1
+    k.index() + 1
 }
 
 fn polygons(loops: &[Range<usize>], points: &[Point]) -> Polygons {
@@ -217,20 +217,21 @@ fn polygons(loops: &[Range<usize>], points: &[Point]) -> Polygons {
 /// Current positions of the boundary points (m).
 fn positions(model: &Model, state: &State) -> Vec<Point> {
     let boundary = &model.boundary;
-    let position = |i: u32| model.covers.star_position[i as usize] + state.displacement[i as usize];
-    let sum =
-        |(covers, weights): (&[u32; 3], &[f64; 3])| covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum();
+    let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
+    let sum = |(covers, weights): (&[CoverId; 3], &[f64; 3])| {
+        covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum()
+    };
     boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
 }
 
 /// Mean of a cover field over a block's mass.
-fn mean(model: &Model, field: &[Vector], block: usize) -> Vector {
+fn mean(model: &Model, field: &[Vector], block: BlockId) -> Vector {
     let sum: Vector = model.covers.covers_of(block).map(|i| field[i] * model.mass_matrix.row_sum[i]).sum();
     sum / model.mass_matrix.total[block]
 }
 
 /// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
-fn rotation(model: &Model, state: &State, block: usize) -> f64 {
+fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
     let centre = mean(model, &model.covers.star_position, block);
     let shift = mean(model, &state.displacement, block);
     let (mut cosine, mut sine) = (0.0, 0.0);
@@ -246,20 +247,20 @@ fn rotation(model: &Model, state: &State, block: usize) -> f64 {
 fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> JointPoint {
     let history = &contact.history;
     JointPoint {
-        position: positions[model.boundary.node_point[history.node as usize] as usize],
+        position: positions[model.boundary.node_point[history.node]],
         normal: contact.normal,
         length: contact.length,
         normal_stress: -history.normal_force / contact.length,
         shear_stress: history.shear_force / contact.length,
         state: history.state,
-        law: contact.law,
+        law: contact.law.number(),
     }
 }
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
 fn penetration(model: &Model, positions: &[Point], contact: &ContactHistory) -> f64 {
-    let edge = contact.edge as usize;
+    let edge = contact.edge;
     let (a, b) = (positions[edge], positions[model.boundary.after(edge)]);
-    let node = positions[model.boundary.node_point[contact.node as usize] as usize];
+    let node = positions[model.boundary.node_point[contact.node]];
     ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

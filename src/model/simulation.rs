@@ -2,12 +2,13 @@
 
 use std::sync::OnceLock;
 
-use crate::contact::{BoltState, EntranceRule, JointLaw, VertexEdge};
+use crate::contact::{BoltState, EntranceRule, JointLaw, LawId, VertexEdge};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
-use super::assemble::{BuildStage, Built, build, index_of};
+use super::assemble::{BuildStage, Built, build, law_of};
 use super::case::{Case, Invalid, Stage, StageKind};
 
 /// Unbalanced ratio at which a static stage that names none ends.
@@ -306,7 +307,7 @@ impl Simulation {
         let stage_case = &self.case.stages[stage];
         for (k, &point) in stage_case.excavate.iter().enumerate() {
             let element = covers.element_near(Point::from(point), self.built.noding.tolerance);
-            let block = element.map(|e| covers.element_block[e] as usize).ok_or_else(|| Invalid {
+            let block = element.map(|e| covers.element_block[e]).ok_or_else(|| Invalid {
                 key: format!("stage[{stage}].excavate[{k}]"),
                 message: format!("there is no block at ({}, {}): choose a point inside one", point[0], point[1]),
             })?;
@@ -314,8 +315,8 @@ impl Simulation {
         }
         if let Some(region) = &stage_case.excavate_region {
             let region: Vec<Point> = region.iter().map(|p| Point::from(*p)).collect();
-            let inside = |b: &usize| polygon::contains(&region, covers.block_centroid(*b));
-            let blocks: Vec<usize> = (0..covers.block_count()).filter(inside).collect();
+            let inside = |b: &BlockId| polygon::contains(&region, covers.block_centroid(*b));
+            let blocks: Vec<BlockId> = covers.blocks().filter(inside).collect();
             if blocks.is_empty() {
                 return Err(Invalid {
                     key: format!("stage[{stage}].excavate_region"),
@@ -328,9 +329,9 @@ impl Simulation {
     }
 
     /// Laws and their switches as the stages of the case up to one make them.
-    pub(super) fn laws_in(&self, stage: u32) -> (Vec<JointLaw>, Vec<u32>) {
+    pub(super) fn laws_in(&self, stage: u32) -> (Vec<JointLaw>, Vec<LawId>) {
         let mut laws = self.model().laws.clone();
-        let mut switch: Vec<u32> = (0..laws.len() as u32).collect();
+        let mut switch: Vec<LawId> = LawId::all(laws.len()).collect();
         (0..=stage as usize).for_each(|stage| change_laws(&self.case, stage, &mut laws, &mut switch));
         (laws, switch)
     }
@@ -360,7 +361,7 @@ impl Simulation {
         for (segment, bolt) in model.bolts.iter().zip(&mut state.bolts) {
             let name = self.case.bolts[segment.bolt as usize].name.as_ref();
             let position = install.iter().position(|wanted| Some(wanted) == name);
-            let gone = segment.blocks.iter().any(|&b| state.removed[b as usize]);
+            let gone = segment.blocks.iter().any(|&b| state.removed[b]);
             if let (Some(k), true) = (position, gone) {
                 let message =
                     format!("an end of bolt {:?} is in a block that has been removed: leave it out", install[k]);
@@ -392,11 +393,11 @@ impl Simulation {
 }
 
 /// Changes and switches the laws as a stage of the case says.
-fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [u32]) {
+fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [LawId]) {
     let stage_case = &case.stages[stage];
     for change in &stage_case.law_changes {
-        let Some(k) = index_of(&case.joint_laws, &change.law) else { continue };
-        let law = &mut laws[k as usize];
+        let Some(k) = law_of(case, &change.law) else { continue };
+        let law = &mut laws[k];
         if let Some(degrees) = change.friction_deg {
             law.friction = degrees.to_radians().tan();
             law.residual_friction = law.friction;
@@ -412,7 +413,7 @@ fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [u
         }
     }
     for names in &stage_case.law_switches {
-        let find = |name: &str| index_of(&case.joint_laws, name);
+        let find = |name: &str| law_of(case, name);
         let (Some(from), Some(to)) = (find(&names.from), find(&names.to)) else { continue };
         switch.iter_mut().filter(|law| **law == from).for_each(|law| *law = to);
     }

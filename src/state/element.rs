@@ -1,5 +1,6 @@
 //! Stress and energy of one element: elastic stress, in-situ stress and plastic strain together.
 
+use crate::cover::ElementId;
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress};
 
@@ -7,37 +8,37 @@ use super::{Model, State};
 
 impl Model {
     /// Deformation of an element under displacements of the covers (m).
-    pub fn deformation(&self, element: usize, displacement: &[Vector]) -> Deformation {
-        let u = self.covers.element_covers[element].map(|i| displacement[i as usize]);
+    pub fn deformation(&self, element: ElementId, displacement: &[Vector]) -> Deformation {
+        let u = self.covers.element_covers[element].map(|i| displacement[i]);
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
     }
 
     /// Elastic constants of an element.
-    pub fn rock_of(&self, element: usize) -> &Elasticity {
+    pub fn rock_of(&self, element: ElementId) -> &Elasticity {
         &self.rocks[self.element_rock[element] as usize]
     }
 
     /// Strength of an element; none when it never yields.
-    pub fn strength_of(&self, element: usize) -> Option<&MohrCoulomb> {
+    pub fn strength_of(&self, element: ElementId) -> Option<&MohrCoulomb> {
         self.strengths[self.element_rock[element] as usize].as_ref()
     }
 
     /// In-situ stress xx, yy, xy (Pa) of an element, zero when the model has none.
-    pub fn pre_stress_of(&self, element: usize) -> PreStress {
-        self.pre_stress.get(element).copied().unwrap_or_default()
+    pub fn pre_stress_of(&self, element: ElementId) -> PreStress {
+        self.pre_stress.get(element.index()).copied().unwrap_or_default()
     }
 
     /// In-situ stress xx, yy, xy, zz (Pa) of an element, zero when the model has none.
-    pub fn pre_stress_and_out(&self, element: usize) -> [f64; 4] {
+    pub fn pre_stress_and_out(&self, element: ElementId) -> [f64; 4] {
         let [xx, yy, xy] = self.pre_stress_of(element);
-        [xx, yy, xy, self.pre_stress_out.get(element).copied().unwrap_or_default()]
+        [xx, yy, xy, self.pre_stress_out.get(element.index()).copied().unwrap_or_default()]
     }
 
     /// Strength and plastic strain of an element at the displacements of a state, as the next step will find them
     /// unless an input changes; none when the element never yields.
-    fn plastic_now(&self, state: &State, element: usize) -> Option<(&MohrCoulomb, PlasticStrain)> {
+    fn plastic_now(&self, state: &State, element: ElementId) -> Option<(&MohrCoulomb, PlasticStrain)> {
         let strength = self.strength_of(element)?;
-        let before = state.plastic.get(element)?;
+        let before = state.plastic.get(element.index())?;
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surface = strength.surface(state.drive.strength_factor_now(time));
         let at = self.deformation(element, &state.displacement);
@@ -46,7 +47,7 @@ impl Model {
     }
 
     /// Stress xx, yy, xy (Pa, tension positive) of an element in global axes.
-    pub fn stress(&self, state: &State, element: usize) -> [f64; 3] {
+    pub fn stress(&self, state: &State, element: ElementId) -> [f64; 3] {
         let at = self.deformation(element, &state.displacement);
         let stress = at.stress(self.rock_of(element), &self.pre_stress_of(element));
         match self.plastic_now(state, element) {
@@ -59,15 +60,15 @@ impl Model {
     }
 
     /// Plastic strain of an element at the displacements of a state; zero when it never yields.
-    pub fn plastic_strain(&self, state: &State, element: usize) -> PlasticStrain {
+    pub fn plastic_strain(&self, state: &State, element: ElementId) -> PlasticStrain {
         self.plastic_now(state, element).map_or([0.0; 4], |(_, plastic)| plastic)
     }
 
     /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.
-    pub fn strain_energy(&self, state: &State, element: usize) -> f64 {
+    pub fn strain_energy(&self, state: &State, element: ElementId) -> f64 {
         let at = self.deformation(element, &state.displacement);
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
-        match self.strength_of(element).zip(state.plastic.get(element)) {
+        match self.strength_of(element).zip(state.plastic.get(element.index())) {
             Some((strength, plastic)) => energy + strength.energy(&at, &self.pre_stress_and_out(element), plastic),
             None => energy,
         }

@@ -1,6 +1,7 @@
 //! What the implicit integrator keeps: its choices and masses (fixed), and its buffers.
 
 use crate::contact::ContactState;
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::mechanics::CoverMatrix;
 
@@ -40,7 +41,7 @@ pub struct ImplicitWorkspace {
     /// Whether any row is held.
     pub any_held: bool,
     /// Pairs of covers of the pattern, while it is built.
-    pub pairs: Vec<[u32; 2]>,
+    pub pairs: Vec<[CoverId; 2]>,
     /// Displacements since the start of the sub-step (m).
     pub moved: Vec<Vector>,
     /// Mass times this, plus `c` times what has moved, is the inertial force (m/s²).

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 
 use super::{Model, PortKind};
@@ -43,8 +44,8 @@ impl Inputs {
         };
         for (k, port) in model.ports.iter().enumerate() {
             if port.kind == PortKind::Block {
-                inputs.block_force[port.block as usize] += port.force;
-                inputs.block_moment[port.block as usize] += port.scalar;
+                inputs.block_force[port.block] += port.force;
+                inputs.block_moment[port.block] += port.scalar;
             } else {
                 (inputs.port_traction[k], inputs.port_pressure[k]) = (port.force, port.scalar);
             }
@@ -167,7 +168,7 @@ impl Drive {
     }
 
     /// Force (N/m) and moment (N·m/m) on a block at a share of the way.
-    pub fn block(&self, block: usize, share: f64) -> (Vector, f64) {
+    pub fn block(&self, block: BlockId, share: f64) -> (Vector, f64) {
         let force = mix(self.from.block_force[block], self.to.block_force[block], share);
         (force, mix(self.from.block_moment[block], self.to.block_moment[block], share))
     }

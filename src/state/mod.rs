@@ -25,7 +25,7 @@ pub use workspace::{ContactOutcome, PatchSums, Seconds, Workspace};
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{BoltState, ContactHistory, JointLaw, NeighbourList};
+use crate::contact::{BoltState, ContactHistory, JointLaw, LawId, NeighbourList};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
@@ -67,7 +67,7 @@ pub struct State {
     /// Joint laws as they are now.
     pub laws: Vec<JointLaw>,
     /// Law that each law of the case has been switched to.
-    pub law_switch: Vec<u32>,
+    pub law_switch: Vec<LawId>,
     /// Displacements at the start of a static stage (m).
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).

@@ -1,7 +1,7 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, EntranceRule, JointLaw, Support};
-use crate::cover::{self, Covers};
+use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, LawId, Support};
+use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
@@ -15,7 +15,7 @@ pub struct Fixity {
     /// Name.
     pub name: Option<String>,
     /// Covers that it holds, and along which axes.
-    pub covers: Vec<(u32, [bool; 2])>,
+    pub covers: Vec<(CoverId, [bool; 2])>,
     /// Whether it holds from the start.
     pub active: bool,
 }
@@ -39,9 +39,9 @@ pub struct Port {
     /// Kind.
     pub kind: PortKind,
     /// The block, or the block of the first edge.
-    pub block: u32,
+    pub block: BlockId,
     /// Boundary edges; none for a block.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeId>,
     /// Force on the block (N/m) or traction on the boundary (Pa) at the start.
     pub force: Vector,
     /// Moment on the block (N·m/m) or pressure on the faces (Pa) at the start.
@@ -58,7 +58,7 @@ pub struct Water {
     /// Points of a sloping surface at the start (m), from left to right; empty for a level one.
     pub table: Vec<Point>,
     /// Boundary edges that it reaches.
-    pub edges: Vec<u32>,
+    pub edges: Vec<EdgeId>,
 }
 
 /// What the rows of a motion of the base give.
@@ -145,9 +145,9 @@ pub struct Model {
     /// Joint laws at the start.
     pub laws: Vec<JointLaw>,
     /// Law of each joint trace.
-    pub trace_law: Vec<u32>,
+    pub trace_law: Vec<LawId>,
     /// Law of contacts between faces that were no joints.
-    pub default_law: u32,
+    pub default_law: LawId,
     /// Fixities.
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.
@@ -198,7 +198,7 @@ pub struct Model {
 
 impl Model {
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
-    pub fn sample(&self, element: usize, p: Point, field: &[Vector]) -> Vector {
+    pub fn sample(&self, element: ElementId, p: Point, field: &[Vector]) -> Vector {
         cover::sample(&self.covers.element_covers[element], &self.covers.weights(element, p), field)
     }
 }

@@ -1,8 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, OpenClose, PenetratingContacts, SearchGrid, SupportRow,
-    VertexEdge,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, LawId, OpenClose, PenetratingContacts, SearchGrid,
+    SupportRow, VertexEdge,
 };
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
@@ -67,7 +67,7 @@ pub struct Workspace {
     /// Impulse sums of blocks.
     pub push: Vec<BlockImpulse>,
     /// Law of each joint trace after switches.
-    pub trace_law: Vec<u32>,
+    pub trace_law: Vec<LawId>,
     /// Yield surface of each rock in this step; none for one that never yields.
     pub surfaces: Vec<Option<YieldSurface>>,
     /// Energy (J/m) taken by yielding of each run of elements in this step.

@@ -1,5 +1,7 @@
 //! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
 
+use crate::contact::EdgeId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
 use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
@@ -62,8 +64,8 @@ pub fn pushes(model: &Model, state: &State) -> bool {
 /// `ramp`, as gravity does.
 pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
     for load in &model.loads {
-        let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
-        let covers = |b: u32| model.covers.covers_of(b as usize);
+        let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
+        let covers = |b: BlockId| model.covers.covers_of(b);
         load.push(t, position, covers, &model.mass_matrix, force);
     }
     let faces = Faces { model, state };
@@ -80,10 +82,10 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
 }
 
 fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
-    for block in (0..model.covers.block_count()).filter(|&b| !state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
-            let position = |i: usize| model.covers.star_position[i] + state.displacement[i];
+            let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
             let covers = model.covers.covers_of(block);
             mechanics::push_block(covers, &position, &model.mass_matrix, f * ramp, moment * ramp, force);
         }
@@ -117,19 +119,19 @@ impl Faces<'_> {
         }
         let reference = &self.model.boundary.reference;
         for &edge in &port.edges {
-            let length = (reference[self.model.boundary.after(edge as usize)] - reference[edge as usize]).norm();
+            let length = (reference[self.model.boundary.after(edge)] - reference[edge]).norm();
             let dead = traction * (0.5 * length);
             self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
         }
     }
 
     /// Spreads the forces at both ends of an edge over their covers.
-    fn push(&self, edge: u32, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
+    fn push(&self, edge: EdgeId, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
         let boundary = &self.model.boundary;
-        if self.state.removed[boundary.block[edge as usize] as usize] {
+        if self.state.removed[boundary.block[edge]] {
             return;
         }
-        let ends = [edge as usize, boundary.after(edge as usize)];
+        let ends = [edge, boundary.after(edge)];
         let stars = &self.model.covers.star_position;
         let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
         for (k, f) in ends.into_iter().zip(forces(a, b)) {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::contact::{self, Approach, NarrowPhase, SearchView};
-use crate::cover::Weights;
+use crate::cover::{CoverId, Weights};
 use crate::geometry::Point;
 
 use super::{Regime, Step, StepTimes};
@@ -28,8 +28,8 @@ impl Step<'_> {
         let boundary = &model.boundary;
         let star = &model.covers.star_position;
         let displacement = &self.state.displacement;
-        let position = |(covers, weights): (&[u32; 3], &Weights)| -> Point {
-            (0..3).map(|k| (star[covers[k] as usize] + displacement[covers[k] as usize]) * weights[k]).sum()
+        let position = |(covers, weights): (&[CoverId; 3], &Weights)| -> Point {
+            (0..3).map(|k| (star[covers[k]] + displacement[covers[k]]) * weights[k]).sum()
         };
         if workspace.serial {
             workspace.position.clear();
@@ -89,7 +89,7 @@ impl Step<'_> {
             laws: &state.laws,
             trace_law: &workspace.trace_law,
             strength: state.drive.strength_factor(state.drive.share(self.time)),
-            default_law: state.law_switch.get(model.default_law as usize).copied().unwrap_or_default(),
+            default_law: state.law_switch[model.default_law],
             velocity: &state.velocity,
             dt_last,
             history: &state.contacts,

@@ -1,6 +1,7 @@
 //! Sees what happens for the first time: a block that loses its last contact, a joint that slips, a block that fails.
 
 use crate::contact::ContactState;
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::state::{Event, EventKind, Model, State, Workspace};
 
@@ -15,9 +16,9 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
     touching.clear();
     touching.resize(model.covers.block_count(), false);
     for contact in &state.contacts {
-        let node = model.boundary.node_point[contact.node as usize] as usize;
-        touching[model.boundary.block[node] as usize] = true;
-        touching[model.boundary.block[contact.edge as usize] as usize] = true;
+        let node = model.boundary.node_point[contact.node];
+        touching[model.boundary.block[node]] = true;
+        touching[model.boundary.block[contact.edge]] = true;
     }
     if let Regime::Dynamic { .. } = regime {
         note_detached(state, workspace, time);
@@ -29,12 +30,12 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
 
 fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
     let events = &mut state.events;
-    for block in 0..workspace.touching.len() {
+    for block in BlockId::all(workspace.touching.len()) {
         let free = !workspace.mass_matrix.fixed[block] && !state.removed[block];
         let left = events.touching[block] && !workspace.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
-            events.list.push(Event { kind: EventKind::Detached, subject: block as u32, time });
+            events.list.push(Event { kind: EventKind::Detached, subject: block.number(), time });
         }
     }
 }
@@ -44,11 +45,11 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
     let events = &mut state.events;
     let none = events.slipped.len() - 1;
     for contact in state.contacts.iter().filter(|c| c.state == ContactState::Slip && c.slip > least) {
-        let trace = model.boundary.trace[contact.edge as usize];
-        let joint = (trace as usize).min(none);
+        let trace = model.boundary.trace[contact.edge];
+        let joint = trace.map_or(none, |trace| trace.index());
         if !events.slipped[joint] {
             events.slipped[joint] = true;
-            let subject = if joint == none { u32::MAX } else { trace };
+            let subject = trace.map_or(u32::MAX, |trace| trace.number());
             events.list.push(Event { kind: EventKind::Slipped, subject, time });
         }
     }
@@ -61,7 +62,9 @@ fn note_failed(model: &Model, state: &mut State, workspace: &mut Workspace, time
         if workspace.sums[parts].iter().all(|sums| sums.is_near) {
             continue;
         }
-        for block in chunk.blocks.clone().filter(|&b| !workspace.mass_matrix.fixed[b] && !state.removed[b]) {
+        for block in
+            BlockId::range(chunk.blocks.clone()).filter(|&b| !workspace.mass_matrix.fixed[b] && !state.removed[b])
+        {
             if state.events.failed[block] {
                 continue;
             }
@@ -69,7 +72,7 @@ fn note_failed(model: &Model, state: &mut State, workspace: &mut Workspace, time
             let sum: Vector = covers.map(|i| state.displacement[i] * model.mass_matrix.row_sum[i]).sum();
             if sum.norm() > limit * model.mass_matrix.total[block] {
                 state.events.failed[block] = true;
-                state.events.list.push(Event { kind: EventKind::Failed, subject: block as u32, time });
+                state.events.list.push(Event { kind: EventKind::Failed, subject: block.number(), time });
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Checks after every step: a run that has gone wrong stops with block, position and cause.
 
-use crate::cover;
+use crate::cover::{self, BlockId, ElementId};
 use crate::geometry::Point;
 use crate::state::Model;
 
@@ -57,7 +57,7 @@ impl Step<'_> {
     pub(super) fn guard(&self) -> Result<(), StepError> {
         let model = self.model;
         if self.singular {
-            return Err(self.failed(0, model.covers.star_position[0], Failure::Singular));
+            return Err(self.failed(BlockId::new(0), model.covers.star_position[0], Failure::Singular));
         }
         if !self.is_sound {
             self.guard_speeds()?;
@@ -69,7 +69,7 @@ impl Step<'_> {
         }
         match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let position = workspace.position[model.boundary.node_point[contact.history.node as usize] as usize];
+                let position = workspace.position[model.boundary.node_point[contact.history.node]];
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
                 Err(self.failed(contact.pair.blocks[0], position, failure))
             }
@@ -78,8 +78,8 @@ impl Step<'_> {
     }
 
     /// A failure now, with its block and position (m).
-    fn failed(&self, block: u32, position: Point, failure: Failure) -> StepError {
-        StepError { block, position, time: self.time, failure }
+    fn failed(&self, block: BlockId, position: Point, failure: Failure) -> StepError {
+        StepError { block: block.number(), position, time: self.time, failure }
     }
 
     /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
@@ -92,7 +92,7 @@ impl Step<'_> {
                 return Err(self.failed(block, model.covers.star_position[i], Failure::NotFinite));
             }
             if speed > limit
-                && let Some((position, speed)) = self.rock_faster_than(limit, block as usize)
+                && let Some((position, speed)) = self.rock_faster_than(limit, block)
             {
                 return Err(self.failed(block, position, Failure::Runaway { speed, limit }));
             }
@@ -101,9 +101,10 @@ impl Step<'_> {
     }
 
     /// Position and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
-    fn rock_faster_than(&self, limit: f64, block: usize) -> Option<(Point, f64)> {
+    fn rock_faster_than(&self, limit: f64, block: BlockId) -> Option<(Point, f64)> {
         let (covers, state) = (&self.model.covers, &*self.state);
-        let corners = covers.elements_of(block).flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
+        let corners = ElementId::range(covers.elements_of(block))
+            .flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
         let mut moving = corners.map(|(element, corner)| {
             let weights = covers.weights(element, corner);
             let sample = |field| cover::sample(&covers.element_covers[element], &weights, field);

@@ -1,6 +1,7 @@
 //! What a stage needs before its first step: masses with its fixities, buffers, reference of the static damping.
 
 use crate::contact::{Support, SupportRow};
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::state::{Model, State, Workspace};
 
@@ -22,7 +23,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     workspace.columns.clear();
     workspace.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
     workspace.trace_law.clear();
-    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law as usize]));
+    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
     hold(model, state, workspace);
     expose(model, &mut workspace.exposed);
     workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
@@ -37,7 +38,7 @@ fn expose(model: &Model, exposed: &mut Vec<bool>) {
     let of_supports = model.supports.iter().map(|support| &support.covers);
     let of_bolts = model.bolts.iter().flat_map(|bolt| &bolt.covers);
     for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {
-        exposed[cover as usize] = true;
+        exposed[cover] = true;
     }
 }
 
@@ -47,18 +48,18 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
     let mass_matrix = &mut workspace.mass_matrix;
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, axes) in &fixity.covers {
-            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover as usize] as usize);
-            mass_matrix.hold_cover(cover as usize, axes);
+            mass_matrix.hold_block(&model.covers, model.covers.cover_block[cover]);
+            mass_matrix.hold_cover(cover, axes);
         }
     }
-    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| state.removed[b]) {
         mass_matrix.hold_block(&model.covers, block);
-        model.covers.covers_of(block).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
+        CoverId::range(model.covers.covers_of(block)).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
     workspace.rows.clear();
-    let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block as usize];
+    let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block];
     for (_, support) in model.supports.iter().enumerate().filter(holds) {
-        mass_matrix.hold_block(&model.covers, support.block as usize);
+        mass_matrix.hold_block(&model.covers, support.block);
     }
     workspace.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
@@ -109,7 +110,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32,
         applied::push_forces(model, state, start, 1.0, &mut force);
         state.stage_force = force;
     }
-    for block in (0..model.covers.block_count()).filter(|&b| state.removed[b]) {
+    for block in model.covers.blocks().filter(|&b| state.removed[b]) {
         state.velocity[model.covers.covers_of(block)].fill(Vector::zeros());
     }
 }

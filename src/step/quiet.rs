@@ -11,7 +11,7 @@ use super::{Regime, Step, StepTimes, applied};
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
     let first = model.fixed_supports as usize;
     let is_frozen = |support: &Support| {
-        !support.is_dashpot() && !state.fix_active[support.fix as usize] && !state.removed[support.block as usize]
+        !support.is_dashpot() && !state.fix_active[support.fix as usize] && !state.removed[support.block]
     };
     model.supports.iter().enumerate().skip(first).filter(move |(_, support)| is_frozen(support))
 }

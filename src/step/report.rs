@@ -1,6 +1,7 @@
 //! Energies, momenta and what a step reports.
 
 use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
+use crate::cover::{BlockId, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, BlockCovers, MassMatrix};
 use crate::state::{Ledger, Model, State, Workspace};
@@ -38,12 +39,14 @@ pub(super) fn unbalanced(net: f64, applied: f64) -> f64 {
 /// blocks.
 pub(super) fn speed_max(model: &Model, state: &State) -> f64 {
     let boundary = &model.boundary;
-    (0..boundary.len()).map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
+    boundary.edges().map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
 
 /// Kinetic energy (J/m) by lumped masses of all blocks that can move.
 pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
-    (0..model.covers.block_count())
+    model
+        .covers
+        .blocks()
         .filter(|&b| !mass_matrix.fixed[b])
         .map(|b| mechanics::kinetic_energy(&block_covers(model, mass_matrix, displacement, velocity, b)))
         .sum()
@@ -52,15 +55,15 @@ pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[V
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
 pub(super) fn strain(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
-    let of_element = |e: usize| covers.element_area[e] * model.strain_energy(state, e);
-    (0..covers.element_count()).filter(|&e| !state.removed[covers.element_block[e] as usize]).map(of_element).sum()
+    let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e);
+    covers.elements().filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
 }
 
 /// Potential energy (J/m) of gravity relative to the reference configuration.
 pub(super) fn potential(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
     (0..covers.cover_count())
-        .filter(|&i| !state.removed[covers.cover_block[i] as usize])
+        .filter(|&i| !state.removed[covers.cover_block[i]])
         .map(|i| -model.mass_matrix.row_sum[i] * model.gravity.dot(&state.displacement[i]))
         .sum()
 }
@@ -102,7 +105,7 @@ pub fn energies(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledge
 /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
 pub fn momentum(model: &Model, state: &State, mass_matrix: &MassMatrix) -> (Vector, f64) {
     let (mut linear, mut angular) = (Vector::zeros(), 0.0);
-    for block in (0..model.covers.block_count()).filter(|&b| mass_matrix.is_free(b)) {
+    for block in model.covers.blocks().filter(|&b| mass_matrix.is_free(b)) {
         let covers = block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
         let (centre, velocity, spin): (Point, Vector, f64) = mechanics::rigid_motion(&covers);
         linear += velocity * mass_matrix.total[block];
@@ -112,7 +115,12 @@ pub fn momentum(model: &Model, state: &State, mass_matrix: &MassMatrix) -> (Vect
 }
 
 /// Rigid motion of one block: centroid (m), its velocity (m/s), spin (rad/s), and the kinetic energy (J/m).
-pub fn block_motion(model: &Model, state: &State, mass_matrix: &MassMatrix, block: usize) -> (Point, Vector, f64, f64) {
+pub fn block_motion(
+    model: &Model,
+    state: &State,
+    mass_matrix: &MassMatrix,
+    block: BlockId,
+) -> (Point, Vector, f64, f64) {
     let covers = block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
     let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
     let kinetic = if mass_matrix.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
@@ -125,7 +133,7 @@ pub(super) fn block_covers<'a>(
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
-    block: usize,
+    block: BlockId,
 ) -> BlockCovers<'a> {
     let range = model.covers.covers_of(block);
     BlockCovers { mass_matrix, block, range, star: &model.covers.star_position, displacement, velocity }

@@ -40,7 +40,7 @@ impl Kernel for Settle<'_> {
             let (stored, slipped) = contact.shear_after(after[1] * dt);
             add_works(outcome, contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
             add_depths(outcome, contact);
-            *history = history_of(contact, &laws[contact.law as usize], stored, slipped);
+            *history = history_of(contact, &laws[contact.law], stored, slipped);
             history.offset *= fade;
         }
     }

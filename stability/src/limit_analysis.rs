@@ -8,6 +8,7 @@ mod program;
 mod refusal;
 mod search;
 
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 
 use contact::Contact;
@@ -186,12 +187,12 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
 fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse {
     let model = simulation.model();
     let motions = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.motions);
-    let speed = |b: usize| motions[b].0.norm().hypot(motions[b].1 * bodies[b].radius);
-    let fastest = (0..motions.len()).map(speed).fold(0.0, f64::max);
-    let moving = (0..motions.len()).filter(|&b| fastest > 0.0 && speed(b) >= MOVES * fastest);
+    let speed = |b: BlockId| motions[b].0.norm().hypot(motions[b].1 * bodies[b].radius);
+    let fastest = BlockId::all(motions.len()).map(speed).fold(0.0, f64::max);
+    let moving = BlockId::all(motions.len()).filter(|&b| fastest > 0.0 && speed(b) >= MOVES * fastest);
     let mut mechanism: Vec<MovingBlock> = moving
         .map(|b| MovingBlock {
-            block: b as u32,
+            block: b.number(),
             position: bodies[b].centre,
             velocity: motions[b].0 / fastest,
             spin: motions[b].1 / fastest,

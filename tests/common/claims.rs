@@ -1,5 +1,6 @@
 //! What the claim tests share beyond runs: case text, exact polygons, ledgers.
 
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
@@ -77,7 +78,7 @@ pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
     let covers = &slope.covers;
     (0..covers.element_count())
         .map(|e| {
-            let u = covers.element_covers[e].map(|i| state.displacement[i as usize]);
+            let u = covers.element_covers[e].map(|i| state.displacement[i]);
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &slope.rocks[slope.element_rock[e] as usize];
             Deformation::new(u, gradients).stress(rock, &[0.0; 3])
@@ -92,10 +93,10 @@ pub fn motion(simulation: &Simulation, point: [f64; 2]) -> (Point, Vector, f64, 
 }
 
 /// The block that holds a reference point.
-pub fn block_at(simulation: &Simulation, point: [f64; 2]) -> usize {
+pub fn block_at(simulation: &Simulation, point: [f64; 2]) -> BlockId {
     let covers = &simulation.model().covers;
     let element = covers.element_at(Point::from(point)).expect("rock at the point");
-    covers.element_block[element] as usize
+    covers.element_block[element]
 }
 
 /// Advances the stage in progress by a number of steps; returns the report of the last one.

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use enmm::contact::{Boundary, VertexEdge};
+use enmm::contact::{Boundary, EdgeId, VertexEdge};
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector, polygon, segment};
 use enmm::model::Simulation;
 
@@ -15,7 +16,7 @@ pub struct Overlap {
     /// Depth (m).
     pub depth: f64,
     /// Blocks.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
 }
 
 impl Overlap {
@@ -33,9 +34,9 @@ impl Overlap {
 /// The blocks of a model, cut into triangles once.
 pub struct Audit {
     /// Boundary points of each block.
-    points: Vec<Vec<usize>>,
+    points: Vec<Vec<EdgeId>>,
     /// Triangles of boundary points of each block that is not cracked.
-    triangles: Vec<Vec<[usize; 3]>>,
+    triangles: Vec<Vec<[EdgeId; 3]>>,
     cracked: Vec<bool>,
 }
 
@@ -51,8 +52,8 @@ impl Audit {
     pub fn new(simulation: &Simulation) -> Self {
         let (boundary, blocks) = (&simulation.model().boundary, simulation.model().covers.block_count());
         let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
-        for k in 0..boundary.len() {
-            let block = boundary.block[k] as usize;
+        for k in boundary.edges() {
+            let block = boundary.block[k];
             points[block].push(k);
             cracked[block] |= boundary.partial[k];
         }
@@ -77,9 +78,9 @@ impl Audit {
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
         let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().position);
         let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
-        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut pairs: Vec<[BlockId; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {
-            let [a, b] = [boundary.node_point[c.node as usize], c.edge].map(|k| boundary.block[k as usize]);
+            let [a, b] = [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]);
             let pair = [a.min(b), a.max(b)];
             if pairs.last() != Some(&pair) && a != b {
                 pairs.push(pair);
@@ -87,8 +88,7 @@ impl Audit {
         }
         pairs.sort_unstable();
         pairs.dedup();
-        let depth = |&[p, q]: &[u32; 2]| {
-            let [p, q] = [p as usize, q as usize];
+        let depth = |&[p, q]: &[BlockId; 2]| {
             if placed[p].is_apart(placed[q].low, placed[q].high) {
                 return 0.0;
             }
@@ -116,7 +116,7 @@ impl Placed {
 }
 
 /// Triangles of a block, as indices of its boundary points.
-fn cut(boundary: &Boundary, points: &[usize]) -> Vec<[usize; 3]> {
+fn cut(boundary: &Boundary, points: &[EdgeId]) -> Vec<[EdgeId; 3]> {
     let polygon: Vec<Point> = points.iter().map(|&k| boundary.reference[k]).collect();
     let index = |p: Point| points[polygon.iter().position(|q| *q == p).expect("a corner of the block")];
     polygon::triangles(&polygon).iter().map(|t| t.map(index)).collect()
@@ -149,11 +149,11 @@ fn deepest_corner(p: &Placed, q: &Placed) -> f64 {
 }
 
 /// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.
-fn corner_depth(boundary: &Boundary, place: &[Point], p: &[usize], q: &[usize]) -> f64 {
+fn corner_depth(boundary: &Boundary, place: &[Point], p: &[EdgeId], q: &[EdgeId]) -> f64 {
     let polygon: Vec<Point> = q.iter().map(|&k| place[k]).collect();
-    let ends = |e: usize| (place[e], place[boundary.after(e)]);
+    let ends = |e: EdgeId| (place[e], place[boundary.after(e)]);
     // A crack's wall is a way in where the crack stands open by as much as the point lies behind it.
-    let is_way_in = |e: usize, x: Point| {
+    let is_way_in = |e: EdgeId, x: Point| {
         let (a, b) = ends(e);
         let along = b - a;
         let foot = a + along * ((x - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);

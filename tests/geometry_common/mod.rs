@@ -1,24 +1,24 @@
 //! The sanity check that tests run after every arrangement.
 
-use enmm::geometry::{Arrangement, NONE, Point, orientation, polygon};
+use enmm::geometry::{Arrangement, FaceId, HalfEdgeId, Point, orientation, polygon};
 
 /// Asserts what holds for every arrangement: twins, cycles, faces, labels, winding, areas, Euler's formula, and edges
 /// that meet in common vertices only (the last by testing every pair: for small inputs).
 pub fn sanity_check(arrangement: &Arrangement) {
-    let half_edges = 2 * arrangement.edges.len() as u32;
-    assert_eq!((arrangement.next.len(), arrangement.face.len()), (half_edges as usize, half_edges as usize));
-    let mut previous = vec![NONE; half_edges as usize];
-    for h in 0..half_edges {
-        let next = arrangement.next[h as usize];
+    let half_edges = arrangement.half_edges();
+    assert_eq!((arrangement.next.len(), arrangement.face.len()), (half_edges.len(), half_edges.len()));
+    let mut previous = vec![None; half_edges.len()];
+    for h in half_edges {
+        let next = arrangement.next[h];
         assert_eq!(arrangement.target(h), arrangement.origin(next), "next starts where its predecessor ends");
-        assert_eq!(std::mem::replace(&mut previous[next as usize], h), NONE, "next is a permutation");
-        assert_ne!(next, arrangement.twin(h), "no dead ends");
-        assert_eq!(arrangement.face[h as usize], arrangement.face[next as usize], "a cycle bounds one face");
-        let (label, back) = (arrangement.label_of(h), arrangement.label_of(arrangement.twin(h)));
+        assert_eq!(previous[next].replace(h), None, "next is a permutation");
+        assert_ne!(next, h.twin(), "no dead ends");
+        assert_eq!(arrangement.face[h], arrangement.face[next], "a cycle bounds one face");
+        let (label, back) = (arrangement.label_of(h), arrangement.label_of(h.twin()));
         assert_eq!((label.outline, label.trace, label.mesh), (-back.outline, back.trace, back.mesh));
-        assert!(label.outline != 0 || label.trace != NONE || label.mesh != NONE, "every edge comes from somewhere");
-        let winding = |h: u32| arrangement.faces[arrangement.face[h as usize] as usize].winding;
-        assert_eq!(winding(h) - winding(arrangement.twin(h)), i32::from(label.outline));
+        assert!(label.outline != 0 || label.trace.is_some() || label.mesh.is_some(), "every edge comes from somewhere");
+        let winding = |h: HalfEdgeId| arrangement.faces[arrangement.face[h]].winding;
+        assert_eq!(winding(h) - winding(h.twin()), i32::from(label.outline));
     }
     check_faces(arrangement);
     check_crossings(arrangement);
@@ -29,20 +29,20 @@ fn check_faces(arrangement: &Arrangement) {
     let mut seen = vec![false; arrangement.face.len()];
     let mut cycles = 0;
     let mut total = 0.0;
-    for face in 0..arrangement.faces.len() as u32 {
+    for face in FaceId::all(arrangement.faces.len()) {
         for start in arrangement.face_loops(face) {
             cycles += 1;
             for h in arrangement.cycle(start) {
-                assert_eq!(arrangement.face[h as usize], face);
-                assert!(!std::mem::replace(&mut seen[h as usize], true), "one loop for each half-edge");
+                assert_eq!(arrangement.face[h], face);
+                assert!(!std::mem::replace(&mut seen[h], true), "one loop for each half-edge");
             }
         }
         let area = arrangement.face_area(face);
-        assert!(face == 0 || area > 0.0, "face {face} has area {area}");
+        assert!(face == FaceId::UNBOUNDED || area > 0.0, "face {face} has area {area}");
         total += area;
     }
     assert!(seen.iter().all(|&seen| seen), "every half-edge is in a loop of its face");
-    assert_eq!((arrangement.faces[0].outer, arrangement.faces[0].winding), (NONE, 0));
+    assert_eq!((arrangement.faces[0].outer, arrangement.faces[0].winding), (None, 0));
     let extent = arrangement.points.iter().map(|p| p.amax()).fold(1.0, f64::max);
     // Every half-edge adds its area once forth and once back: round-off remains.
     assert!(total.abs() < 1e-13 * extent * extent * (1 + seen.len()) as f64, "areas sum to {total}");
@@ -63,7 +63,7 @@ fn connected_parts(arrangement: &Arrangement) -> usize {
     }
     let mut count = parent.len();
     for edge in &arrangement.edges {
-        let (a, b) = (root(&mut parent, edge.a as usize), root(&mut parent, edge.b as usize));
+        let (a, b) = (root(&mut parent, edge.a.index()), root(&mut parent, edge.b.index()));
         if a != b {
             parent[a] = b;
             count -= 1;
@@ -73,7 +73,7 @@ fn connected_parts(arrangement: &Arrangement) -> usize {
 }
 
 fn check_crossings(arrangement: &Arrangement) {
-    let ends = |k: usize| [arrangement.edges[k].a, arrangement.edges[k].b].map(|v| arrangement.points[v as usize]);
+    let ends = |k: usize| [arrangement.edges[k].a, arrangement.edges[k].b].map(|v| arrangement.points[v]);
     for i in 0..arrangement.edges.len() {
         let [a, b] = ends(i);
         for j in 0..i {
@@ -85,9 +85,9 @@ fn check_crossings(arrangement: &Arrangement) {
 }
 
 /// Returns the face that holds a point which lies on no edge, by looking at every face.
-pub fn face_at(arrangement: &Arrangement, p: Point) -> u32 {
-    let inside = |h: u32| polygon::contains(&arrangement.loop_points(h), p);
-    (1..arrangement.faces.len() as u32)
+pub fn face_at(arrangement: &Arrangement, p: Point) -> FaceId {
+    let inside = |h: HalfEdgeId| polygon::contains(&arrangement.loop_points(h), p);
+    FaceId::range(1..arrangement.faces.len())
         .find(|&face| arrangement.face_loops(face).filter(|&h| inside(h)).count() % 2 == 1)
-        .unwrap_or(0)
+        .unwrap_or(FaceId::UNBOUNDED)
 }

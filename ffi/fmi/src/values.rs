@@ -151,7 +151,7 @@ impl Values {
     fn push_blocks(&self, table: &Table, model: &mut Cosimulation) -> Result<(), CosimulationError> {
         let blocks = model.inputs().block_force.len();
         let (mut force, mut moment) = (vec![Vector::zeros(); blocks], vec![0.0; blocks]);
-        let of_port = |k: usize| model.ports().get(k).filter(|p| p.kind == PortKind::Block).map(|p| p.block as usize);
+        let of_port = |k: usize| model.ports().get(k).filter(|p| p.kind == PortKind::Block).map(|p| p.block.index());
         for v in &table.variables {
             let values = self.get(v.reference);
             match v.quantity {

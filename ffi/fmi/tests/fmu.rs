@@ -367,7 +367,7 @@ fn start_values_are_those_that_the_model_starts_with() {
         let model = loaded.cosimulation().unwrap();
         let (inputs, blocks) = (model.inputs(), model.block_states().len());
         let of = |axis: Axis, vector: Vector| if axis == Axis::X { vector.x } else { vector.y };
-        let block = |port: usize| model.ports()[port].block as usize;
+        let block = |port: usize| model.ports()[port].block.index();
         for variable in Table::new(&loaded.case, blocks, &loaded.hash, Version::Three).variables {
             let own = match variable.quantity {
                 Quantity::Gravity(axis) => of(axis, inputs.gravity),

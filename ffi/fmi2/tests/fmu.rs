@@ -20,7 +20,7 @@ fn outputs_have_the_bits_of_the_facade_under_inputs_and_parameters() {
                 assert_eq!(instance.set(name, value), OK, "{}", instance.last_line());
             }
             model.start().unwrap();
-            model.set_block_force(model.ports()[0].block, Vector::new(2e3, 0.0), 9.0).unwrap();
+            model.set_block_force(model.ports()[0].block.number(), Vector::new(2e3, 0.0), 9.0).unwrap();
             model.set_pressure(1, 10.0).unwrap();
         }
         instance.run(0.0, 0.01, 0.04);

@@ -49,7 +49,7 @@ fn inputs_act_as_those_of_the_facade_and_forces_of_ports_and_arrays_add_up() {
     let fmu = Fmu::boxed();
     let (instance, mut model) = (fmu.started(), fmu.model());
     model.start().unwrap();
-    let block = model.ports()[0].block as usize;
+    let block = model.ports()[0].block;
     let mut forces = [0.0; 2];
     forces[block] = 2e3;
     for (name, values) in [
@@ -67,7 +67,7 @@ fn inputs_act_as_those_of_the_facade_and_forces_of_ports_and_arrays_add_up() {
         assert_eq!(instance.set(name, values), OK, "{}", instance.last_line());
         assert_eq!(instance.get(name), values);
     }
-    model.set_block_force(block as u32, Vector::new(3e3, 0.0), 50.0).unwrap();
+    model.set_block_force(block.number(), Vector::new(3e3, 0.0), 50.0).unwrap();
     model.set_gravity(Vector::new(0.5, -9.81)).unwrap();
     model.set_base_acceleration(Vector::new(0.0, -0.25)).unwrap();
     model.set_water_level(0.5).unwrap();
@@ -117,7 +117,7 @@ fn reset_is_as_new_and_parameters_build_another_model() {
     case.rocks.values_mut().for_each(|rock| rock.density = 2000.0);
     let loaded = enmm_io::LoadedCase::of(case, "other").unwrap();
     let mut model = loaded.cosimulation().unwrap();
-    model.set_block_force(model.ports()[0].block, Vector::new(0.0, -1e3), 0.0).unwrap();
+    model.set_block_force(model.ports()[0].block.number(), Vector::new(0.0, -1e3), 0.0).unwrap();
     (0..3).for_each(|k| drop(model.do_step(0.01 * f64::from(k), 0.01).unwrap()));
     assert_eq!(instance.snapshot(), model.serialize(&model.save()).unwrap());
 
@@ -180,7 +180,7 @@ fn threads_do_not_change_the_bits_and_interpolation_is_that_of_the_facade() {
     let mut model = fmu.model();
     model.set_interpolation(enmm::cosimulation::Interpolation::Linear);
     model.start().unwrap();
-    model.set_block_force(model.ports()[0].block, Vector::new(1e3, 0.0), 0.0).unwrap();
+    model.set_block_force(model.ports()[0].block.number(), Vector::new(1e3, 0.0), 0.0).unwrap();
     model.do_step(0.0, 0.01).unwrap();
     model.do_step(0.01, 0.01).unwrap();
     assert_eq!(run(1, true), model.block_states().iter().map(|b| b.velocity.x).collect::<Vec<_>>());
@@ -330,7 +330,7 @@ fn an_early_return_leaves_linear_inputs_on_their_way() {
         let mut model = fmu.model();
         model.set_interpolation(enmm::cosimulation::Interpolation::Linear);
         model.start().unwrap();
-        model.set_block_force(model.ports()[0].block, Vector::new(1e3, 0.0), 0.0).unwrap();
+        model.set_block_force(model.ports()[0].block.number(), Vector::new(1e3, 0.0), 0.0).unwrap();
         let mut interval = model.begin(0.0, 0.04).unwrap();
         model.advance(&mut interval).unwrap();
         model.shorten(&mut interval, model.time() + (wanted - model.time()));

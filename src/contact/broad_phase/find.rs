@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use enmm_lanes::{Kernel, LANES, Lanes};
 
-use crate::contact::Boundary;
+use crate::contact::{Boundary, EdgeId, NodeId};
+use crate::cover::BlockId;
 
 use super::grid::{Grid, Stretch};
 use super::within::{Boxes, Marks, NOWHERE, Span, Within};
@@ -51,9 +52,9 @@ impl Kernel for Find<'_> {
         self.run.near_pairs.clear();
         while !self.nodes.is_empty() {
             let (few, block, span) = self.next_few();
-            if !self.view.removed[block as usize] {
+            if !self.view.removed[block] {
                 self.look_round(&within, block, span);
-                for node in few {
+                for node in NodeId::range(few) {
                     self.near_edges(&within, node, block);
                 }
             }
@@ -64,10 +65,10 @@ impl Kernel for Find<'_> {
 impl Find<'_> {
     /// The next few nodes of one block: indices, block and bounding box.
     #[inline(always)]
-    fn next_few(&mut self) -> (Range<usize>, u32, Span) {
+    fn next_few(&mut self) -> (Range<usize>, BlockId, Span) {
         let (boundary, position) = (self.view.boundary, self.view.position);
         let Range { start, end } = self.nodes;
-        let point = |node: usize| boundary.node_point[node] as usize;
+        let point = |node: usize| boundary.node_point[node];
         let block = boundary.block[point(start)];
         let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
         let (mut span, mut last) = (Span::at(position[point(start)]), start);
@@ -80,7 +81,7 @@ impl Find<'_> {
 
     /// Lists the stretches that a box of a block may meet, with their boxes.
     #[inline(always)]
-    fn look_round<L: Lanes>(&mut self, within: &Within<L>, block: u32, span: Span) {
+    fn look_round<L: Lanes>(&mut self, within: &Within<L>, block: BlockId, span: Span) {
         let (grid, fixed) = (self.grid, self.view.fixed);
         let Run { around, boxes, .. } = &mut *self.run;
         around.clear();
@@ -88,7 +89,7 @@ impl Find<'_> {
         let mut list = |eight: u32, lane: usize| {
             let stretch = grid.stretch_at[eight as usize * LANES + lane];
             let Stretch { block: other, partial, .. } = grid.stretches[stretch as usize];
-            if (other != block || partial) && !(fixed[block as usize] && fixed[other as usize]) {
+            if (other != block || partial) && !(fixed[block] && fixed[other]) {
                 around.push(stretch);
             }
         };
@@ -109,10 +110,10 @@ impl Find<'_> {
 
     /// Appends the near edges of a node.
     #[inline(always)]
-    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: usize, block: u32) {
+    fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: BlockId) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
-        let p = self.view.position[boundary.node_point[node] as usize];
+        let p = self.view.position[boundary.node_point[node]];
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);
@@ -121,8 +122,8 @@ impl Find<'_> {
         }
         marks.see(&mut list);
         let mut add = |edge: u32, k: usize| {
-            let edge = edge + k as u32;
-            near_pairs.push(NearPair { node: node as u32, side: boundary.side[edge as usize], edge });
+            let edge = EdgeId::new(edge as usize + k);
+            near_pairs.push(NearPair { node, side: boundary.side[edge], edge });
         };
         for &stretch in near.iter() {
             let stretch = &grid.stretches[stretch as usize];
@@ -130,7 +131,7 @@ impl Find<'_> {
             if stretch.block == block {
                 edges &= may_meet(boundary, node, stretch.edge);
             }
-            marks.push(stretch.edge, edges, &mut add);
+            marks.push(stretch.edge.number(), edges, &mut add);
         }
         marks.see(&mut add);
     }
@@ -153,9 +154,9 @@ fn sort(list: &mut [u32]) {
 }
 
 /// Which of eight consecutive edges a node of their own block can touch.
-fn may_meet(boundary: &Boundary, node: usize, first: u32) -> u8 {
-    let sides = [boundary.side[boundary.node_point[node] as usize], boundary.side_of_node_before(node)];
-    let edges = (first as usize..boundary.len()).take(LANES).enumerate();
+fn may_meet(boundary: &Boundary, node: NodeId, first: EdgeId) -> u8 {
+    let sides = [boundary.side[boundary.node_point[node]], boundary.side_of_node_before(node)];
+    let edges = (first.index()..boundary.len()).take(LANES).enumerate();
     let may = |edge: usize| boundary.partial[edge] && !sides.contains(&boundary.side[edge]);
     if boundary.node_partial(node) { edges.fold(0, |bits, (k, edge)| bits | u8::from(may(edge)) << k) } else { 0 }
 }

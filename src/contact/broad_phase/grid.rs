@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use enmm_lanes::{LANES, Lanes};
 
+use crate::contact::EdgeId;
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 
 use super::SearchView;
@@ -21,10 +23,10 @@ const CELLS_PER_STRETCH: f64 = 4.0;
 pub struct Stretch {
     pub span: Span,
     /// First edge.
-    pub edge: u32,
+    pub edge: EdgeId,
     /// Start of that edge among the points of the grid.
     point: u32,
-    pub block: u32,
+    pub block: BlockId,
     count: u8,
     /// Whether one of the edges lies on a partial cut.
     pub partial: bool,
@@ -64,13 +66,13 @@ impl Stretch {
         let (boundary, edge) = (view.boundary, edges.start);
         let (mut span, mut count, mut partial) = (Span::at(view.position[edge]), 0, false);
         for edge in edges {
-            let longer = span.with(view.position[boundary.after(edge)]);
+            let longer = span.with(view.position[boundary.next[edge]]);
             if count > 0 && (longer.high - longer.low).amax() > LONGEST * view.cutoff {
                 break;
             }
             (span, count, partial) = (longer, count + 1, partial | boundary.partial[edge]);
         }
-        Self { span, edge: edge as u32, point: point as u32, block: boundary.block[edge], count, partial }
+        Self { span, edge: EdgeId::new(edge), point: point as u32, block: boundary.block[edge], count, partial }
     }
 
     /// Bit mask of its edges.
@@ -117,10 +119,10 @@ impl Grid {
         self.y.clear();
         self.stretches.clear();
         let mut first = 0;
-        while let Some(length) = boundary.next[first..].iter().position(|&next| next as usize == first) {
+        while let Some(length) = boundary.next[first..].iter().position(|next| next.index() == first) {
             let edges = first..first + length + 1;
             first = edges.end;
-            if !view.removed[boundary.block[edges.start] as usize] {
+            if !view.removed[boundary.block[edges.start]] {
                 self.divide_loop(view, edges);
             }
         }

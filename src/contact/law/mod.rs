@@ -4,6 +4,13 @@ mod barton_bandis;
 
 pub use barton_bandis::{Closure, Roughness};
 
+use crate::geometry::id;
+
+id! {
+    /// A joint law.
+    LawId
+}
+
 /// A joint: Mohr–Coulomb with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21), or, with a
 /// roughness, Barton–Bandis (Eq. 33).
 #[doc(alias = "Mohr-Coulomb")]

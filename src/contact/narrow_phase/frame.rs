@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::contact::Boundary;
+use crate::contact::{Boundary, EdgeId, NodeId};
 use crate::geometry::{Point, Vector};
 
 use super::{is_convex, right_of};
@@ -105,10 +105,10 @@ impl Frames {
     /// Updates all edges and nodes from the current positions of the boundary points; at a corner the boundary turns by
     /// more than an angle given by its sine.
     pub fn update(&mut self, boundary: &Boundary, position: &[Point], flush_sine: f64, serial: bool) {
-        let edge = |(a, next): (&Point, &u32)| EdgeFrame::new(*a, position[*next as usize]);
-        let at = |node: u32| position[boundary.node_point[node as usize] as usize];
-        let node = |((point, previous), next): ((&u32, &u32), &u32)| {
-            NodeFrame::new(position[*point as usize], [at(*previous), at(*next)], flush_sine)
+        let edge = |(a, next): (&Point, &EdgeId)| EdgeFrame::new(*a, position[*next]);
+        let at = |node: NodeId| position[boundary.node_point[node]];
+        let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
+            NodeFrame::new(position[*point], [at(*previous), at(*next)], flush_sine)
         };
         let Boundary { node_point, node_previous, node_next, .. } = boundary;
         if serial {

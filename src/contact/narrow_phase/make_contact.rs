@@ -3,8 +3,8 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{Closure, ContactHistory, ContactState, Pair, Spring, VertexEdge};
-use crate::cover::Weights;
+use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, Spring, VertexEdge};
+use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
@@ -45,18 +45,18 @@ impl NarrowPhase<'_> {
 
     #[inline(always)]
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
-        let (boundary, node) = (self.boundary, candidate.node as usize);
-        let (point, edge) = (boundary.node_point[node] as usize, candidate.edge as usize);
+        let (boundary, node) = (self.boundary, candidate.node);
+        let (point, edge) = (boundary.node_point[node], candidate.edge);
         let p = self.position[point];
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
-        let arms = blocks.map(|b| p - self.motion[b as usize].centre);
+        let arms = blocks.map(|b| p - self.motion[b].centre);
         let Tributary { length, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
-        let mut stiffness = self.laws[law as usize].stiffness(length, penalty);
-        let closure_max = self.laws[law as usize].closure_max;
+        let mut stiffness = self.laws[law].stiffness(length, penalty);
+        let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
         let history = match candidate.held {
             Some(known) => self.history[known as usize],
@@ -66,7 +66,7 @@ impl NarrowPhase<'_> {
         let gap = candidate.gap + history.offset;
         let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
         let compliance = pair.weigh(self.mass_matrix, [normal, candidate.tangent]);
-        if self.laws[law as usize].penalty[0] {
+        if self.laws[law].penalty[0] {
             stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
         }
         let gap = gap - history.rest;
@@ -75,7 +75,7 @@ impl NarrowPhase<'_> {
             normal,
             answers: Default::default(),
             expected: [0.0; 2],
-            limits: self.laws[law as usize].limits(length, history.intact).times(self.strength),
+            limits: self.laws[law].limits(length, history.intact).times(self.strength),
             closure_max,
             gap,
             history,
@@ -109,12 +109,12 @@ impl NarrowPhase<'_> {
             Spring { stiffness, compliance, approach, forward: self.theta, lag: 0.0, dt, kick }
         };
         let (mut normal, mut shear) = (spring(0), spring(1));
-        let physical = self.laws[contact.law as usize].penalty.map(|penalty| !penalty);
+        let physical = self.laws[contact.law].penalty.map(|penalty| !penalty);
         if let Some(ratio) = damping
             && physical != [false; 2]
         {
             let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
-            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b as usize]).iter().sum();
+            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b]).iter().sum();
             let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
             let centre =
                 |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };
@@ -132,8 +132,8 @@ impl NarrowPhase<'_> {
     /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off
     /// decides there which of two edges is nearer.
     #[inline(always)]
-    fn covers_under(&self, candidate: &ContactCandidate) -> [u32; 3] {
-        let (boundary, edge, band) = (self.boundary, candidate.edge as usize, CORNER_TOLERANCE * self.size);
+    fn covers_under(&self, candidate: &ContactCandidate) -> [CoverId; 3] {
+        let (boundary, edge, band) = (self.boundary, candidate.edge, CORNER_TOLERANCE * self.size);
         if candidate.along.abs() < band {
             boundary.covers[edge]
         } else if (candidate.length - candidate.along).abs() < band {
@@ -145,8 +145,8 @@ impl NarrowPhase<'_> {
 
     /// Weights of an element's covers at a current position, by barycentric coordinates of its stars.
     #[inline(always)]
-    pub(super) fn weights_at(&self, covers: &[u32; 3], p: Point) -> Weights {
-        let x = |k: usize| self.star[covers[k] as usize] + self.displacement[covers[k] as usize];
+    pub(super) fn weights_at(&self, covers: &[CoverId; 3], p: Point) -> Weights {
+        let x = |k: usize| self.star[covers[k]] + self.displacement[covers[k]];
         let (x0, x1, x2) = (x(0), x(1), x(2));
         let (d1, d2, d) = (x1 - x0, x2 - x0, p - x0);
         let area = d1.perp(&d2);
@@ -156,16 +156,16 @@ impl NarrowPhase<'_> {
 
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
     #[inline(always)]
-    fn law(&self, node: usize, edge: usize) -> u32 {
-        let law = |trace: u32| self.trace_law.get(trace as usize).copied();
-        law(self.boundary.trace[edge]).or_else(|| law(self.boundary.node_trace(node))).unwrap_or(self.default_law)
+    fn law(&self, node: NodeId, edge: EdgeId) -> LawId {
+        let trace = self.boundary.trace[edge].or_else(|| self.boundary.node_trace(node));
+        trace.map_or(self.default_law, |trace| self.trace_law[trace])
     }
 
     #[cold]
     #[inline(never)]
     fn first_sight(
         &self,
-        node: usize,
+        node: NodeId,
         candidate: &ContactCandidate,
         length: f64,
         closure: Closure,
@@ -173,7 +173,7 @@ impl NarrowPhase<'_> {
         normal: Vector,
     ) -> ContactHistory {
         let mut history = ContactHistory {
-            node: node as u32,
+            node,
             side: candidate.side,
             edge: candidate.edge,
             normal_force: 0.0,
@@ -191,7 +191,7 @@ impl NarrowPhase<'_> {
             history.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
-            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node] as usize]);
+            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node]]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);

@@ -15,7 +15,7 @@ use crate::mechanics::{BlockMotion, MassMatrix, StressField};
 
 use frame::{EdgeFrame, Over};
 
-use super::{Boundary, ContactHistory, ContactState, JointLaw, NearPair, VertexEdge};
+use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, LawId, NearPair, NodeId, SideId, VertexEdge};
 
 pub use constants::EntranceRule;
 pub use frame::Frames;
@@ -54,11 +54,11 @@ pub struct NarrowPhase<'a> {
     /// Joint laws.
     pub laws: &'a [JointLaw],
     /// Law of each joint trace, after switches.
-    pub trace_law: &'a [u32],
+    pub trace_law: &'a [LawId],
     /// Factor on the strength of all joints.
     pub strength: f64,
     /// Law of contacts between faces that were no joints.
-    pub default_law: u32,
+    pub default_law: LawId,
     /// Velocities (m/s) of the covers during the last step.
     pub velocity: &'a [Vector],
     /// Last step (s).
@@ -119,24 +119,24 @@ impl ContactCache {
     pub fn index(&mut self, history: &[ContactHistory], nodes: usize) {
         self.first.clear();
         for (k, contact) in history.iter().enumerate() {
-            self.first.resize(self.first.len().max(contact.node as usize + 1), k as u32);
+            self.first.resize(self.first.len().max(contact.node.index() + 1), k as u32);
         }
         self.first.resize(nodes + 1, history.len() as u32);
     }
 
     /// Contacts of a node.
     #[inline(always)]
-    fn of_node(&self, node: usize) -> std::ops::Range<usize> {
-        self.first[node] as usize..self.first[node + 1] as usize
+    fn of_node(&self, node: NodeId) -> std::ops::Range<usize> {
+        self.first[node] as usize..self.first[node.index() + 1] as usize
     }
 }
 
 /// A pair under test: a node over an edge of one side.
 #[derive(Debug, Clone, Copy, Default)]
 struct ContactCandidate {
-    node: u32,
-    side: u32,
-    edge: u32,
+    node: NodeId,
+    side: SideId,
+    edge: EdgeId,
     gap: f64,
     along: f64,
     beyond: f64,
@@ -232,7 +232,7 @@ impl NarrowPhase<'_> {
         let Run { accepted, sides } = run;
         accepted.clear();
         for group in near_pairs.chunk_by(|a, b| a.node == b.node) {
-            let node = group[0].node as usize;
+            let node = group[0].node;
             sides.resize(sides.len().max(group.len()), ContactCandidate::default());
             let candidates = self.nearest_edges(node, group, sides);
             let mut contested = false;
@@ -253,7 +253,7 @@ impl NarrowPhase<'_> {
     /// as many as there are near pairs.
     fn nearest_edges<'p>(
         &self,
-        node: usize,
+        node: NodeId,
         group: &[NearPair],
         candidates: &'p mut [ContactCandidate],
     ) -> &'p mut [ContactCandidate] {
@@ -273,12 +273,12 @@ impl NarrowPhase<'_> {
 
     /// Fills the candidate of one side; returns whether the node is over that side.
     #[inline(always)]
-    fn candidate(&self, node: usize, edges: &[NearPair], held: Option<u32>, candidate: &mut ContactCandidate) -> bool {
+    fn candidate(&self, node: NodeId, edges: &[NearPair], held: Option<u32>, candidate: &mut ContactCandidate) -> bool {
         let (edge, over) = self.nearest(self.node_position(node), edges);
         let Over { along, gap, beyond } = over;
         let known = held.map(|k| &self.history[k as usize]);
         let is_held = known.is_some_and(|h| h.state != ContactState::Open);
-        let EdgeFrame { length, tangent, .. } = self.frames.edges[edge as usize];
+        let EdgeFrame { length, tangent, .. } = self.frames.edges[edge];
         let NearPair { node: own, side, .. } = edges[0];
         *candidate = ContactCandidate {
             node: own,
@@ -302,21 +302,21 @@ impl NarrowPhase<'_> {
 
     /// The nearest of some edges, the first of equally near ones, and where the point is over it.
     #[inline(always)]
-    fn nearest(&self, p: Point, edges: &[NearPair]) -> (u32, Over) {
-        let over = |c: &NearPair| (c.edge, self.frames.edges[c.edge as usize].over(p));
+    fn nearest(&self, p: Point, edges: &[NearPair]) -> (EdgeId, Over) {
+        let over = |c: &NearPair| (c.edge, self.frames.edges[c.edge].over(p));
         edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
     }
 
     /// Whether a new candidate cannot be a contact: it is deep and not of the nearest side of the rock around the node,
     /// or the node is outside the rock and beyond a side that does not meet this one, or it is deep within one block.
-    fn is_false_sight(&self, node: usize, candidate: &ContactCandidate) -> bool {
+    fn is_false_sight(&self, node: NodeId, candidate: &ContactCandidate) -> bool {
         let tie = TIE_TOLERANCE * self.size;
         if candidate.held.is_some() || candidate.gap >= -tie {
             return false;
         }
         let boundary = self.boundary;
         let is_deep = self.is_deep(node, candidate, candidate.gap);
-        if boundary.block[boundary.node_point[node] as usize] == boundary.block[candidate.edge as usize] {
+        if boundary.block[boundary.node_point[node]] == boundary.block[candidate.edge] {
             return is_deep;
         }
         let (depth, nearest) = self.depth_in_rock(node, candidate.edge);
@@ -329,12 +329,12 @@ impl NarrowPhase<'_> {
 
     /// Depth (m) of a node in the rock within the loop of an edge, 0 outside, and the nearest side of the loop.
     #[cold]
-    fn depth_in_rock(&self, node: usize, edge: u32) -> (f64, u32) {
+    fn depth_in_rock(&self, node: NodeId, edge: EdgeId) -> (f64, SideId) {
         let p = self.node_position(node);
-        let next = |point: u32| self.boundary.next[point as usize];
+        let next = |point: EdgeId| self.boundary.next[point];
         let (mut point, mut area, mut turns, mut nearest) = (edge, 0.0, 0, (f64::INFINITY, edge));
         loop {
-            let ends = [point, next(point)].map(|point| self.position[point as usize]);
+            let ends = [point, next(point)].map(|point| self.position[point]);
             let [a, b] = ends.map(|end| end - p);
             area += a.perp(&b);
             if (a.y > 0.0) != (b.y > 0.0) && (a.perp(&b) > 0.0) == (b.y > 0.0) {
@@ -350,19 +350,19 @@ impl NarrowPhase<'_> {
             }
         }
         let is_inside = turns > 0 || area < 0.0 && turns == 0;
-        (if is_inside { nearest.0 } else { 0.0 }, self.boundary.side[nearest.1 as usize])
+        (if is_inside { nearest.0 } else { 0.0 }, self.boundary.side[nearest.1])
     }
 
     /// Whether the gap (m) of a candidate is deeper than a node moves in one step.
-    fn is_deep(&self, node: usize, candidate: &ContactCandidate, gap: f64) -> bool {
+    fn is_deep(&self, node: NodeId, candidate: &ContactCandidate, gap: f64) -> bool {
         let Boundary { block, block_thickness, node_point, .. } = self.boundary;
-        let blocks = [node_point[node], candidate.edge].map(|point| block[point as usize] as usize);
+        let blocks = [node_point[node], candidate.edge].map(|point| block[point]);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
         -gap > (self.rule.deep * self.size).min(self.rule.deep_share * thin)
     }
 
     #[inline(always)]
-    fn node_position(&self, node: usize) -> Point {
+    fn node_position(&self, node: NodeId) -> Point {
         self.frames.nodes[node].position
     }
 

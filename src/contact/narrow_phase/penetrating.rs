@@ -1,6 +1,6 @@
 //! Contacts of the last step in penetration. The vertex rule subtracts the compression of their springs from depths.
 
-use crate::contact::{Boundary, ContactHistory};
+use crate::contact::{Boundary, ContactHistory, NodeId, SideId};
 use crate::geometry::Vector;
 
 use super::{Frames, NarrowPhase};
@@ -9,9 +9,9 @@ use super::{Frames, NarrowPhase};
 #[derive(Debug, Clone, Copy)]
 struct PenetratingContact {
     /// Side that the node is in.
-    side: u32,
+    side: SideId,
     /// Sides before and after the node.
-    own: [u32; 2],
+    own: [SideId; 2],
     /// Compression (m) of the spring: the depth of the node, as far as the contact carries force.
     closure: f64,
     /// Direction out of the side.
@@ -32,7 +32,7 @@ pub struct PenetratingContacts {
     /// Contacts by segment.
     after: Vec<u32>,
     /// Segment of each.
-    segment: Vec<u32>,
+    segment: Vec<NodeId>,
 }
 
 impl PenetratingContacts {
@@ -48,7 +48,7 @@ impl PenetratingContacts {
         let Self { first_after, after, segment, .. } = self;
         first_after.clear();
         first_after.resize(boundary.node_count() + 1, 0);
-        segment.iter().for_each(|&node| first_after[node as usize] += 1);
+        segment.iter().for_each(|&node| first_after[node] += 1);
         let mut end = 0;
         for count in first_after.iter_mut() {
             end += *count;
@@ -56,7 +56,7 @@ impl PenetratingContacts {
         }
         after.resize(segment.len(), 0);
         for (k, &node) in segment.iter().enumerate().rev() {
-            let slot = &mut first_after[node as usize];
+            let slot = &mut first_after[node];
             *slot -= 1;
             after[*slot as usize] = k as u32;
         }
@@ -68,12 +68,12 @@ impl PenetratingContacts {
         penetrating.clear();
         segment.clear();
         for contact in history {
-            let (node, edge) = (contact.node as usize, &frames.edges[contact.edge as usize]);
+            let (node, edge) = (contact.node, &frames.edges[contact.edge]);
             let gap = (frames.nodes[node].position - edge.start).dot(&edge.normal());
             let closure = (-gap).max(0.0) * contact.share;
             if closure > 0.0 {
-                first.resize(first.len().max(node + 1), penetrating.len() as u32);
-                segment.push(boundary.node_before[contact.edge as usize]);
+                first.resize(first.len().max(node.index() + 1), penetrating.len() as u32);
+                segment.push(boundary.node_before[contact.edge]);
                 let own = boundary.sides_of_node(node);
                 penetrating.push(PenetratingContact { side: contact.side, own, closure, outward: edge.normal() });
             }
@@ -83,14 +83,14 @@ impl PenetratingContacts {
 
     /// Contacts of a node.
     #[inline(always)]
-    fn of_node(&self, node: usize) -> &[PenetratingContact] {
-        &self.penetrating[self.first[node] as usize..self.first[node + 1] as usize]
+    fn of_node(&self, node: NodeId) -> &[PenetratingContact] {
+        &self.penetrating[self.first[node] as usize..self.first[node.index() + 1] as usize]
     }
 
     /// Contacts on the segment after a node.
     #[inline(always)]
-    fn after(&self, node: usize) -> impl Iterator<Item = &PenetratingContact> {
-        let slots = self.first_after[node] as usize..self.first_after[node + 1] as usize;
+    fn after(&self, node: NodeId) -> impl Iterator<Item = &PenetratingContact> {
+        let slots = self.first_after[node] as usize..self.first_after[node.index() + 1] as usize;
         self.after[slots].iter().map(|&k| &self.penetrating[k as usize])
     }
 }
@@ -98,13 +98,13 @@ impl PenetratingContacts {
 impl NarrowPhase<'_> {
     /// Contacts of a node in the last step.
     #[inline(always)]
-    pub(super) fn known(&self, node: usize) -> &[ContactHistory] {
+    pub(super) fn known(&self, node: NodeId) -> &[ContactHistory] {
         &self.history[self.cache.of_node(node)]
     }
 
     /// Compression (m) of the contact of a node with a side; 0 if there was none in the last step.
     #[inline(always)]
-    pub(super) fn closure_with(&self, node: usize, side: u32) -> f64 {
+    pub(super) fn closure_with(&self, node: NodeId, side: SideId) -> f64 {
         self.penetrating
             .of_node(node)
             .iter()
@@ -115,14 +115,14 @@ impl NarrowPhase<'_> {
     /// Compression (m), along a direction, of the contacts of a node and of the faces next to it, except those with the
     /// sides `others`: the node would move so far if their springs were unloaded.
     #[inline(always)]
-    pub(super) fn let_in(&self, node: usize, direction: Vector, others: [u32; 2]) -> f64 {
+    pub(super) fn let_in(&self, node: NodeId, direction: Vector, others: [SideId; 2]) -> f64 {
         let mut depth = 0.0f64;
         for contact in self.penetrating.of_node(node) {
             if !others.contains(&contact.side) {
                 depth = depth.max(contact.closure * contact.outward.dot(&direction));
             }
         }
-        for node in [self.boundary.node_previous[node] as usize, node] {
+        for node in [self.boundary.node_previous[node], node] {
             for contact in self.penetrating.after(node) {
                 if !contact.own.iter().any(|side| others.contains(side)) {
                     depth = depth.max(-contact.closure * contact.outward.dot(&direction));

@@ -1,6 +1,6 @@
 //! Tributary length of a contact: the share of the joint length that belongs to it (Eq. 13).
 
-use crate::contact::Corner;
+use crate::contact::{Corner, NodeId};
 
 use super::vertex_rule::End;
 use super::{ContactCandidate, NarrowPhase};
@@ -32,7 +32,7 @@ impl NarrowPhase<'_> {
     /// Lengths over which a node acts on an edge (Eq. 13). Where corners meet they are those of the overlap with
     /// springs unloaded: only the part of a face that lies against the other one carries force.
     #[inline(always)]
-    pub(super) fn tributary(&self, node: usize, candidate: &ContactCandidate) -> Tributary {
+    pub(super) fn tributary(&self, node: NodeId, candidate: &ContactCandidate) -> Tributary {
         let [start, finish] = candidate.overlap;
         let ramp = |overlap: f64| (overlap / (self.rule.ledge * self.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(start.min(finish));
@@ -49,14 +49,14 @@ impl NarrowPhase<'_> {
     /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the
     /// side no farther than the overlap at its ends.
     #[inline(always)]
-    fn facing(&self, node: usize, candidate: &ContactCandidate) -> Facing {
+    fn facing(&self, node: NodeId, candidate: &ContactCandidate) -> Facing {
         let boundary = self.boundary;
         let frame = &self.frames.nodes[node];
         let p = frame.position.dot(&candidate.tangent);
-        let before = boundary.node_before[candidate.edge as usize] as usize;
-        let after = boundary.node_next[before] as usize;
-        let position = |n: u32| self.node_position(n as usize).dot(&candidate.tangent);
-        let (from, to) = (position(before as u32), position(after as u32));
+        let before = boundary.node_before[candidate.edge];
+        let after = boundary.node_next[before];
+        let position = |n: NodeId| self.node_position(n).dot(&candidate.tangent);
+        let (from, to) = (position(before), position(after));
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(position);
         let [low, high] = self.tie_shares(node, candidate, before, [p - from, to - p]);
@@ -88,15 +88,15 @@ impl NarrowPhase<'_> {
     /// Share that a convex corner keeps of the node segments beyond the ends of the one under it, by its distances (m)
     /// from those ends: 1 at an inner node of the other side, 0 beyond the band in which that node takes over.
     #[inline(always)]
-    fn tie_shares(&self, node: usize, candidate: &ContactCandidate, before: usize, distances: [f64; 2]) -> [f64; 2] {
+    fn tie_shares(&self, node: NodeId, candidate: &ContactCandidate, before: NodeId, distances: [f64; 2]) -> [f64; 2] {
         let (boundary, band) = (self.boundary, self.rule.held_beyond * self.size);
         if !boundary.node_convex[node] {
             return [0.0; 2];
         }
         let is_inner = |k: usize| match k {
-            0 => boundary.side_first[candidate.side as usize] != boundary.node_point[before],
+            0 => boundary.side_first[candidate.side] != boundary.node_point[before],
             _ => {
-                let after = boundary.node_point[boundary.node_next[before] as usize] as usize;
+                let after = boundary.node_point[boundary.node_next[before]];
                 boundary.side[after] == candidate.side
             }
         };
@@ -109,8 +109,8 @@ impl NarrowPhase<'_> {
     /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's
     /// edge.
     #[inline(always)]
-    fn reach_beyond(&self, far: u32, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
-        let far = self.node_position(far as usize).dot(&candidate.tangent);
+    fn reach_beyond(&self, far: NodeId, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
+        let far = self.node_position(far).dot(&candidate.tangent);
         if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 
@@ -118,12 +118,12 @@ impl NarrowPhase<'_> {
     /// inner node, whose segments belong to that corner. The share of a contact that the overlap of the corners keeps
     /// fades with that overlap.
     #[inline(always)]
-    fn share_at_corner(&self, node: usize, candidate: &ContactCandidate) -> f64 {
+    fn share_at_corner(&self, node: NodeId, candidate: &ContactCandidate) -> f64 {
         let band = self.rule.held_beyond * self.size;
         let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
         let mut share = 1.0f64;
         for (end, within) in [(End::Start, candidate.along), (End::Finish, candidate.length - candidate.along)] {
-            let at = self.boundary.side_ends[candidate.side as usize][end as usize];
+            let at = self.boundary.side_ends[candidate.side][end as usize];
             if within < band && at.edge == candidate.edge && at.corner == Corner::Convex {
                 let kept = |overlap: f64| within.max((overlap - band).min(0.0));
                 let is_past = candidate.is_held && within < 0.0;

@@ -1,7 +1,7 @@
 //! The vertex rule (theory §5): which of the sides near a node it may enter. A wrong choice locks blocks that should
 //! slide.
 
-use crate::contact::{ContactState, Corner, SideEnd};
+use crate::contact::{ContactState, Corner, EdgeId, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
 
 use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE, faces, right_of};
@@ -17,12 +17,12 @@ impl NarrowPhase<'_> {
     /// Rule 2: overlap (m) along the side of a node with the block before the start and the finish of the side, with
     /// springs unloaded. It is infinite at ends that are far or not corners, and `None` where there is no contact with
     /// this side.
-    pub(super) fn overlap_at_ends(&self, node: usize, candidate: &ContactCandidate) -> Option<[f64; 2]> {
+    pub(super) fn overlap_at_ends(&self, node: NodeId, candidate: &ContactCandidate) -> Option<[f64; 2]> {
         let p = self.node_position(node);
         let tolerance = self.corner_tolerance(candidate);
         let mut overlap = [f64::INFINITY; 2];
         for end in [End::Start, End::Finish] {
-            let at = self.boundary.side_ends[candidate.side as usize][end as usize];
+            let at = self.boundary.side_ends[candidate.side][end as usize];
             if at.corner == Corner::Reflex {
                 continue;
             }
@@ -34,7 +34,7 @@ impl NarrowPhase<'_> {
             if missed && !self.is_kept(node, candidate, end) {
                 return None;
             }
-            let corner = self.position[at.point as usize];
+            let corner = self.position[at.point];
             if (p - corner).norm_squared() < self.size * self.size {
                 overlap[end as usize] = self.overlap_round(node, candidate, p, end)?;
             }
@@ -50,11 +50,11 @@ impl NarrowPhase<'_> {
     /// well, or else (q, the side of p that turns towards it). The corner leaves through the less deep facet. The
     /// compression of springs, of this facet or of others beside it, does not count as depth. Parallel faces do not
     /// exclude each other; a sharp block may be pierced: the node is then beyond the facet round its tip.
-    fn overlap_round(&self, node: usize, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
+    fn overlap_round(&self, node: NodeId, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
-        let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side as usize][end as usize];
-        let meets = boundary.node_before[corner as usize] as usize;
-        let (q, outward) = (self.position[corner as usize], self.frames.edges[round as usize].normal());
+        let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side][end as usize];
+        let meets = boundary.node_before[corner];
+        let (q, outward) = (self.position[corner], self.frames.edges[round].normal());
         let frame = &self.frames.nodes[node];
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
@@ -73,7 +73,7 @@ impl NarrowPhase<'_> {
             return Some(depth / along);
         }
         let closure = if faces_round {
-            self.closure_with(node, boundary.side[round as usize])
+            self.closure_with(node, boundary.side[round])
         } else {
             self.closure_with(meets, self.boundary.sides_of_node(node)[end as usize])
         };
@@ -89,23 +89,23 @@ impl NarrowPhase<'_> {
 
     /// Distance (m) by which a node and a corner of another block separate along a direction, out of that block, when
     /// the springs of their other contacts are unloaded.
-    fn let_in_by_others(&self, node: usize, corner: usize, out: Vector) -> f64 {
+    fn let_in_by_others(&self, node: NodeId, corner: NodeId, out: Vector) -> f64 {
         let [own, others] = [node, corner].map(|node| self.boundary.sides_of_node(node));
         self.let_in(node, out, others).max(self.let_in(corner, -out, own))
     }
 
     /// Whether a contact that carries force is kept beyond an end of its side.
-    fn is_kept(&self, node: usize, candidate: &ContactCandidate, end: End) -> bool {
+    fn is_kept(&self, node: NodeId, candidate: &ContactCandidate, end: End) -> bool {
         candidate.is_held && self.overlap_at(node, candidate, end) >= 0.0
     }
 
     /// Depth (m) of the node inside the facet round an end of the side, or of the corner there inside both facets of
     /// the node, unless that corner is a contact itself; negative where the two have separated.
-    pub(super) fn overlap_at(&self, node: usize, candidate: &ContactCandidate, end: End) -> f64 {
-        let at = self.boundary.side_ends[candidate.side as usize][end as usize];
+    pub(super) fn overlap_at(&self, node: NodeId, candidate: &ContactCandidate, end: End) -> f64 {
+        let at = self.boundary.side_ends[candidate.side][end as usize];
         let frame = &self.frames.nodes[node];
-        let to = self.position[at.point as usize] - frame.position;
-        let inside = to.dot(&self.frames.edges[at.round as usize].normal());
+        let to = self.position[at.point] - frame.position;
+        let inside = to.dot(&self.frames.edges[at.round].normal());
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
         let depth = depths[0].min(depths[1]);
         let is_covered = frame.is_convex && depth > inside && !self.is_borne(node, at.point, end);
@@ -113,17 +113,17 @@ impl NarrowPhase<'_> {
     }
 
     /// Whether the corner at an end of a side carried force against the node's own side towards that end.
-    fn is_borne(&self, node: usize, corner: u32, end: End) -> bool {
-        self.carries(self.boundary.node_before[corner as usize], self.boundary.sides_of_node(node)[end as usize])
+    fn is_borne(&self, node: NodeId, corner: EdgeId, end: End) -> bool {
+        self.carries(self.boundary.node_before[corner], self.boundary.sides_of_node(node)[end as usize])
     }
 
     /// Whether a node carried force against a side in the last step.
-    fn carries(&self, node: u32, side: u32) -> bool {
-        self.known(node as usize).iter().any(|h| h.side == side && h.state != ContactState::Open)
+    fn carries(&self, node: NodeId, side: SideId) -> bool {
+        self.known(node).iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 
     /// Rule 1: both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
-    pub(super) fn enters(&self, node: usize, candidate: &ContactCandidate) -> bool {
+    pub(super) fn enters(&self, node: NodeId, candidate: &ContactCandidate) -> bool {
         let (normal, frame) = (right_of(candidate.tangent), &self.frames.nodes[node]);
         let outside = |k: usize| frame.to[k].dot(&normal) >= -self.rule.flush_sine * frame.distance[k];
         outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal, self.rule.flush_sine))
@@ -132,7 +132,7 @@ impl NarrowPhase<'_> {
     /// Rule 3: of the sides of one block that the node is over, it enters only one, unless they form a notch: the one
     /// that carries force, or else the less deep one. A node outside a near side is not inside a side behind it either.
     pub(super) fn choose_sides(&self, candidates: &mut [ContactCandidate]) {
-        let block = |p: &ContactCandidate| self.boundary.block[p.edge as usize];
+        let block = |p: &ContactCandidate| self.boundary.block[p.edge];
         for i in 0..candidates.len() {
             for j in i + 1..candidates.len() {
                 let (a, b) = (&candidates[i], &candidates[j]);
@@ -147,17 +147,17 @@ impl NarrowPhase<'_> {
     }
 
     /// Whether two sides meet in a notch.
-    fn is_notch(&self, s: u32, t: u32) -> bool {
-        let at = &self.boundary.side_ends[s as usize];
+    fn is_notch(&self, s: SideId, t: SideId) -> bool {
+        let at = &self.boundary.side_ends[s];
         self.end_between(s, t).is_some_and(|end| at[end as usize].corner == Corner::Reflex)
     }
 
     /// The end of side `s` at which it meets side `t`.
-    pub(super) fn end_between(&self, s: u32, t: u32) -> Option<End> {
-        if self.boundary.side_next[s as usize] == t {
+    pub(super) fn end_between(&self, s: SideId, t: SideId) -> Option<End> {
+        if self.boundary.side_next[s] == t {
             Some(End::Finish)
         } else {
-            (self.boundary.side_previous[s as usize] == t).then_some(End::Start)
+            (self.boundary.side_previous[s] == t).then_some(End::Start)
         }
     }
 

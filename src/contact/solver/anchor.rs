@@ -1,7 +1,8 @@
 //! Bodies under impulses: what a material point of a block moves by, and what its block keeps of them (Eq. 17).
 
 use crate::contact::Pair;
-use crate::geometry::{NONE, Vector};
+use crate::cover::{BlockId, CoverId};
+use crate::geometry::Vector;
 
 use super::SolverView;
 
@@ -26,23 +27,25 @@ pub struct Accumulators<'a> {
     /// √m times the velocity increment of each cover by its own impulses (kg½·m½/s).
     pub cover_impulse: &'a mut [Vector],
     /// First cover of the run.
-    pub first_cover: u32,
+    pub first_cover: CoverId,
     /// Impulse sums of the blocks.
     pub block_impulse: &'a mut [PackedImpulse],
     /// First block of the run.
-    pub first_block: u32,
+    pub first_block: BlockId,
 }
 
 impl Accumulators<'_> {
     /// Notes the turn in which a block of the run moves. Turns grow.
-    pub fn mark(&mut self, block: u32, turn: u32) {
-        self.block_impulse[(block - self.first_block) as usize][2].y = f64::from(turn);
+    pub fn mark(&mut self, block: BlockId, turn: u32) {
+        self.block_impulse[block.index() - self.first_block.index()][2].y = f64::from(turn);
     }
 
     /// The runs before and from a block whose first cover is `cover` on.
-    pub fn split(&mut self, block: u32, cover: u32) -> (Accumulators<'_>, Accumulators<'_>) {
-        let (cover_impulse, cover_impulse_rest) = self.cover_impulse.split_at_mut((cover - self.first_cover) as usize);
-        let (block_impulse, block_impulse_rest) = self.block_impulse.split_at_mut((block - self.first_block) as usize);
+    pub fn split(&mut self, block: BlockId, cover: CoverId) -> (Accumulators<'_>, Accumulators<'_>) {
+        let (cover_impulse, cover_impulse_rest) =
+            self.cover_impulse.split_at_mut(cover.index() - self.first_cover.index());
+        let (block_impulse, block_impulse_rest) =
+            self.block_impulse.split_at_mut(block.index() - self.first_block.index());
         let first =
             Accumulators { cover_impulse, block_impulse, first_cover: self.first_cover, first_block: self.first_block };
         let (first_cover, first_block) = (cover, block);
@@ -63,11 +66,11 @@ impl Accumulators<'_> {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Anchor {
     /// Covers.
-    pub covers: [u32; 3],
+    pub covers: [CoverId; 3],
     /// w/√m along each axis, 0 where held.
     pub weights: [Vector; 3],
     /// Block, or none when it is held: it then moves by its covers alone.
-    pub block: u32,
+    pub block: Option<BlockId>,
     /// J90·(arm from the block's centroid) (m).
     pub lever: Vector,
     /// z/M (m/kg).
@@ -83,19 +86,19 @@ impl Anchor {
     #[inline(always)]
     pub fn new(pair: &Pair, k: usize, view: &SolverView) -> Self {
         let SolverView { mass_matrix, roots } = view;
-        let (block, covers) = (pair.blocks[k] as usize, pair.covers[k]);
+        let (block, covers) = (pair.blocks[k], pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
-            weights[j] = roots[covers[j] as usize] * pair.weights[k][j];
+            weights[j] = roots[covers[j]] * pair.weights[k][j];
         }
         if !mass_matrix.is_free(block) {
-            return Self { covers, weights, block: NONE, ..Self::default() };
+            return Self { covers, weights, block: None, ..Self::default() };
         }
         let (lever, mass_share) = lever_and_share(pair, k, view);
         Self {
             covers,
             weights,
-            block: block as u32,
+            block: Some(block),
             lever,
             mass_share,
             common: common_share(view, block),
@@ -107,23 +110,22 @@ impl Anchor {
     pub fn velocity(&self, accumulators: &Accumulators) -> Vector {
         let cover_impulse = |j: usize| {
             self.weights[j]
-                .component_mul(&accumulators.cover_impulse[(self.covers[j] - accumulators.first_cover) as usize])
+                .component_mul(&accumulators.cover_impulse[self.covers[j].index() - accumulators.first_cover.index()])
         };
         let velocity = cover_impulse(0) + cover_impulse(1) + cover_impulse(2);
-        if self.block == NONE {
-            return velocity;
-        }
-        let [impulse, weighted, moment] = accumulators.block_impulse[(self.block - accumulators.first_block) as usize];
+        let Some(block) = self.block else { return velocity };
+        let [impulse, weighted, moment] = accumulators.block_impulse[block.index() - accumulators.first_block.index()];
         velocity + impulse * (self.common - self.mass_share) - weighted + self.lever * (self.spin * moment.x)
     }
 
     /// Takes an impulse (N·s/m).
     pub fn push(&self, impulse: Vector, accumulators: &mut Accumulators) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            accumulators.cover_impulse[(cover - accumulators.first_cover) as usize] += weight.component_mul(&impulse);
+            accumulators.cover_impulse[cover.index() - accumulators.first_cover.index()] +=
+                weight.component_mul(&impulse);
         }
-        if self.block != NONE {
-            let block_impulse = &mut accumulators.block_impulse[(self.block - accumulators.first_block) as usize];
+        if let Some(block) = self.block {
+            let block_impulse = &mut accumulators.block_impulse[block.index() - accumulators.first_block.index()];
             block_impulse[0] += impulse;
             block_impulse[1] += impulse * self.mass_share;
             block_impulse[2].x += self.lever.dot(&impulse);
@@ -134,7 +136,7 @@ impl Anchor {
 /// J90·(arm from the block's centroid) (m) and z/M (m/kg) of point `k` of a pair; 0 on a held block.
 #[inline(always)]
 pub fn lever_and_share(pair: &Pair, k: usize, view: &SolverView) -> (Vector, f64) {
-    let (block, arm) = (pair.blocks[k] as usize, pair.arms[k]);
+    let (block, arm) = (pair.blocks[k], pair.arms[k]);
     if !view.mass_matrix.is_free(block) {
         return (Vector::zeros(), 0.0);
     }
@@ -143,7 +145,7 @@ pub fn lever_and_share(pair: &Pair, k: usize, view: &SolverView) -> (Vector, f64
 
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.
 #[inline(always)]
-pub fn common_share(view: &SolverView, block: usize) -> f64 {
+pub fn common_share(view: &SolverView, block: BlockId) -> f64 {
     let inverse = view.mass_matrix.inverse_total[block];
     (1.0 + view.mass_matrix.square[block] * inverse) * inverse
 }

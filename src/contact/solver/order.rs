@@ -9,7 +9,8 @@ use std::cmp::Reverse;
 
 use enmm_lanes::{LANES, prefetch};
 
-use crate::contact::{Boundary, NearPair, VertexEdge};
+use crate::contact::{Boundary, EdgeId, NearPair, NodeId, SideId, VertexEdge};
+use crate::cover::{BlockId, CoverId};
 
 use super::SolverView;
 use super::wide_contact::AHEAD;
@@ -34,7 +35,7 @@ pub struct SolverOrder {
     /// Block pairs in the order in which they are solved.
     block_pairs: Vec<BlockPair>,
     /// First block of each run of blocks, and the number of blocks.
-    leaf_block: Vec<u32>,
+    leaf_block: Vec<BlockId>,
     entries: Vec<Entry>,
     leaf: Vec<u32>,
     colours: Colours,
@@ -48,7 +49,7 @@ pub struct SolverOrder {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
     subdomain: u32,
-    blocks: [u32; 2],
+    blocks: [BlockId; 2],
     key: u32,
 }
 
@@ -59,7 +60,7 @@ struct BlockPair {
     colour: u32,
     first: u32,
     end: u32,
-    blocks: [u32; 2],
+    blocks: [BlockId; 2],
 }
 
 /// Colours that free blocks and covers of held ones have got in a part, a bit each.
@@ -68,8 +69,8 @@ struct Colours {
     of_block: Vec<u64>,
     of_cover: Vec<u64>,
     /// Covers of held blocks of the block pair in hand, and all that have a colour.
-    covers: Vec<u32>,
-    seen: Vec<u32>,
+    covers: Vec<CoverId>,
+    seen: Vec<CoverId>,
 }
 
 /// Block pairs of a step in the order in which they are solved.
@@ -92,8 +93,10 @@ impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
         let Self { first_near_pair, block_pair, leaf, count, touching, leaf_block, .. } = self;
-        let lists = [first_near_pair, block_pair, leaf, count, touching, leaf_block];
-        let order = size_of_val(self.keys.as_slice()) + size_of_val(self.block_pairs.as_slice());
+        let lists = [first_near_pair, block_pair, leaf, count, touching];
+        let order = size_of_val(self.keys.as_slice())
+            + size_of_val(self.block_pairs.as_slice())
+            + size_of_val(leaf_block.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
         order + lists + colours + size_of_val(self.entries.as_slice())
@@ -110,7 +113,7 @@ impl SolverOrder {
     }
 
     /// First block of each run of blocks, and the number of blocks at the end.
-    pub fn leaf_block(&self) -> &[u32] {
+    pub fn leaf_block(&self) -> &[BlockId] {
         &self.leaf_block
     }
 
@@ -120,9 +123,9 @@ impl SolverOrder {
         self.first_near_pair.clear();
         self.entries.clear();
         let mut first = 0;
-        for run in near_pairs.chunk_by(|a, b| [a.node, a.side] == [b.node, b.side]) {
-            let point = boundary.node_point[run[0].node as usize] as usize;
-            let (own, other) = (boundary.block[point], boundary.block[run[0].edge as usize]);
+        for run in near_pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side)) {
+            let point = boundary.node_point[run[0].node];
+            let (own, other) = (boundary.block[point], boundary.block[run[0].edge]);
             let key = self.keys.len() as u32;
             self.keys.push(key_of(run[0].node, run[0].side));
             self.first_near_pair.push(first);
@@ -132,7 +135,7 @@ impl SolverOrder {
         self.first_near_pair.push(first);
         self.cut(view);
         for entry in &mut self.entries {
-            entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b as usize]));
+            entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b]));
         }
         self.entries.sort_unstable();
         self.colour(boundary, near_pairs, view);
@@ -151,20 +154,20 @@ impl SolverOrder {
         self.leaf.clear();
         self.leaf.resize(blocks, 0);
         for entry in &self.entries {
-            let [a, b] = entry.blocks.map(|b| b as usize);
+            let [a, b] = entry.blocks;
             self.leaf[if mass_matrix.is_free(a) { a } else { b }] += 1;
         }
         let leaves = self.entries.len().div_ceil(LEAF).next_power_of_two().min(LEAVES_MAX);
         let total = self.entries.len().max(1);
         let mut before = 0;
         self.leaf_block.clear();
-        for (block, leaf) in self.leaf.iter_mut().enumerate() {
+        for (block, leaf) in BlockId::all(blocks).zip(&mut self.leaf) {
             let kind = *leaf as usize;
             *leaf = (before * leaves / total).min(leaves - 1) as u32;
-            self.leaf_block.resize((*leaf as usize + 1).max(self.leaf_block.len()), block as u32);
+            self.leaf_block.resize((*leaf as usize + 1).max(self.leaf_block.len()), block);
             before += kind;
         }
-        self.leaf_block.resize(leaves + 1, blocks as u32);
+        self.leaf_block.resize(leaves + 1, BlockId::new(blocks));
     }
 
     /// Gives every block pair the first colour that no earlier one of its part has given to what they both push.
@@ -179,7 +182,7 @@ impl SolverOrder {
                 subdomain_first = first;
             }
             let [a, b] = run[0].blocks;
-            let blocks = if view.mass_matrix.is_free(a as usize) { [a, b] } else { [b, a] };
+            let blocks = if view.mass_matrix.is_free(a) { [a, b] } else { [b, a] };
             self.colours.covers.clear();
             for entry in run {
                 let range = [0, 1].map(|k| self.first_near_pair[entry.key as usize + k] as usize);
@@ -265,39 +268,39 @@ impl Colours {
 
     /// Another part begins after some entries.
     fn forget(&mut self, entries: &[Entry]) {
-        entries.iter().flat_map(|entry| entry.blocks).for_each(|block| self.of_block[block as usize] = 0);
-        self.seen.drain(..).for_each(|cover| self.of_cover[cover as usize] = 0);
+        entries.iter().flat_map(|entry| entry.blocks).for_each(|block| self.of_block[block] = 0);
+        self.seen.drain(..).for_each(|cover| self.of_cover[cover] = 0);
     }
 
     /// Covers of held blocks that a node and the near edges of a side may push.
     fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SolverView) {
-        let is_held = |point: usize| !view.mass_matrix.is_free(boundary.block[point] as usize);
-        let node = boundary.node_point[edges[0].node as usize] as usize;
+        let is_held = |point: EdgeId| !view.mass_matrix.is_free(boundary.block[point]);
+        let node = boundary.node_point[edges[0].node];
         if is_held(node) {
             self.covers.extend(boundary.covers[node]);
         }
-        for edge in edges.iter().map(|near_pair| near_pair.edge as usize).filter(|&edge| is_held(edge)) {
+        for edge in edges.iter().map(|near_pair| near_pair.edge).filter(|&edge| is_held(edge)) {
             self.covers.extend(boundary.covers_on(edge));
         }
     }
 
     /// The first colour that a block pair in hand may have.
-    fn give(&mut self, blocks: [u32; 2], view: &SolverView) -> u32 {
-        let free = blocks.map(|block| view.mass_matrix.is_free(block as usize));
-        let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k] as usize]);
-        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover as usize]);
+    fn give(&mut self, blocks: [BlockId; 2], view: &SolverView) -> u32 {
+        let free = blocks.map(|block| view.mass_matrix.is_free(block));
+        let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k]]);
+        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover]);
         let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);
         let colour = (!used).trailing_zeros().min(OVERFLOW);
-        (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k] as usize] |= 1 << colour);
-        self.covers.iter().for_each(|&cover| self.of_cover[cover as usize] |= 1 << colour);
+        (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k]] |= 1 << colour);
+        self.covers.iter().for_each(|&cover| self.of_cover[cover] |= 1 << colour);
         self.seen.extend_from_slice(&self.covers);
         colour
     }
 }
 
 /// What near nodes and sides are sorted by.
-fn key_of(node: u32, side: u32) -> u64 {
-    u64::from(node) << u32::BITS | u64::from(side)
+fn key_of(node: NodeId, side: SideId) -> u64 {
+    u64::from(node.number()) << u32::BITS | u64::from(side.number())
 }
 
 /// The smallest part of the tree that holds two leaves, by its slot in the order in which parts are swept: both halves

@@ -35,7 +35,7 @@ impl<'a> Impulses<'a> {
     /// Velocity (m/s) that they give to point `k` of a pair: all of Eq. 17 but v* of the start, which the springs know.
     fn velocity(&self, pair: &Pair, k: usize) -> Vector {
         let own = cover::sample(&pair.covers[k], &pair.weights[k], &self.increment);
-        let (block, masses) = (pair.blocks[k] as usize, self.mass_matrix);
+        let (block, masses) = (pair.blocks[k], self.mass_matrix);
         if !masses.is_free(block) {
             return own;
         }
@@ -48,9 +48,9 @@ impl<'a> Impulses<'a> {
     /// Point `k` of a pair takes an impulse (N·s/m).
     fn push(&mut self, pair: &Pair, k: usize, impulse: Vector) {
         for (&i, weight) in pair.covers[k].iter().zip(pair.weights[k]) {
-            self.increment[i as usize] += self.mass_matrix.inverse[i as usize].component_mul(&impulse) * weight;
+            self.increment[i] += self.mass_matrix.inverse[i].component_mul(&impulse) * weight;
         }
-        let block = pair.blocks[k] as usize;
+        let block = pair.blocks[k];
         if self.mass_matrix.is_free(block) {
             let sums = &mut self.block_impulse[block];
             sums.impulse += impulse;

@@ -2,6 +2,8 @@
 
 use enmm_lanes::{Kernel, LANES, Lanes, dispatch};
 
+use crate::cover::{BlockId, CoverId};
+
 use super::anchor::Accumulators;
 use super::wide_contact::{ContactView, WideContact};
 use super::wide_pairs::{ChangeMeasure, WidePairs};
@@ -54,7 +56,7 @@ pub struct Subdomain<'a> {
     /// Where the parts within this one end; itself is the last.
     pub ends: &'a [u32],
     /// First block and cover of each run of blocks, and their ends.
-    pub cuts: &'a [[u32; 2]],
+    pub cuts: &'a [(BlockId, CoverId)],
     pub accumulators: Accumulators<'a>,
 }
 
@@ -100,7 +102,7 @@ impl Subdomain<'_> {
         };
         let [row_count, row_between] = [row(self.wide_pairs, count), row(self.wide_pairs, between)];
         let middle = self.cuts.len() / 2;
-        let [block, cover] = self.cuts[middle];
+        let (block, cover) = self.cuts[middle];
         let (wide_pairs, wide_pairs_rest) = self.wide_pairs[..between].split_at_mut(count);
         let (rows, rows_rest) = self.rows[..row_between].split_at_mut(row_count);
         let (accumulators, accumulators_rest) = self.accumulators.split(block, cover);

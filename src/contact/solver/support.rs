@@ -1,14 +1,15 @@
 //! Supports in the iteration: between two sweeps over contacts they answer all together, by a direct solution.
 
 use crate::contact::{Support, SupportRow};
-use crate::geometry::{NONE, Vector};
+use crate::cover::CoverId;
+use crate::geometry::Vector;
 
 /// A support as the iteration sees it.
 #[derive(Debug, Clone, Copy, Default)]
 struct SupportEquation {
     /// Index among the rows of the step.
     row: u32,
-    covers: [u32; 3],
+    covers: [CoverId; 3],
     /// Direction times w/√m of each cover, 0 where held.
     weights: [Vector; 3],
     /// Force (N/m) at no velocity by impulses.
@@ -44,12 +45,12 @@ impl SupportSystem {
 
 impl SupportEquation {
     fn along(&self, cover_impulse: &[Vector]) -> f64 {
-        (0..3).map(|k| self.weights[k].dot(&cover_impulse[self.covers[k] as usize])).sum()
+        (0..3).map(|k| self.weights[k].dot(&cover_impulse[self.covers[k]])).sum()
     }
 
     fn push(&self, impulse: f64, cover_impulse: &mut [Vector]) {
         for (cover, weight) in self.covers.iter().zip(&self.weights) {
-            cover_impulse[*cover as usize] += weight * impulse;
+            cover_impulse[*cover] += weight * impulse;
         }
     }
 
@@ -66,20 +67,20 @@ impl SupportSystem {
         self.rows.clear();
         self.rows.extend((0..).zip(rows).map(|(k, row)| {
             let support = &supports[row.support as usize];
-            let along = |j: usize| roots[support.covers[j] as usize].component_mul(&support.direction);
+            let along = |j: usize| roots[support.covers[j]].component_mul(&support.direction);
             let weights = [0, 1, 2].map(|j| along(j) * support.weights[j]);
             SupportEquation { row: k, covers: support.covers, weights, ..SupportEquation::default() }
         }));
         let order = order_along_boundary(&self.rows, roots.len());
-        let sorted: Vec<SupportEquation> = order.iter().map(|&k| self.rows[k as usize]).collect();
+        let sorted: Vec<SupportEquation> = order.iter().map(|&k| self.rows[k]).collect();
         self.rows = sorted;
-        let mut seen = vec![NONE; roots.len()];
+        // First row of each cover.
+        let mut seen = vec![None; roots.len()];
         self.first.clear();
         self.end.clear();
         let mut end = 0;
         for (k, equation) in (0u32..).zip(&self.rows) {
-            equation.covers.iter().for_each(|&i| seen[i as usize] = seen[i as usize].min(k));
-            let first = equation.covers.iter().map(|&i| seen[i as usize]).min().unwrap_or(k);
+            let first = equation.covers.iter().map(|&i| *seen[i].get_or_insert(k)).min().unwrap_or(k);
             end += k + 1 - first;
             self.first.push(first);
             self.end.push(end);
@@ -174,32 +175,32 @@ impl SupportSystem {
 
 /// Supports one after the other along the boundaries: each before those that share a cover with it and have not had
 /// their turn.
-fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<u32> {
-    let mut last = vec![NONE; covers];
+fn order_along_boundary(rows: &[SupportEquation], covers: usize) -> Vec<usize> {
+    let mut last = vec![None; covers];
     // Rows of each cover as chains: the row before that has the cover as its k-th.
-    let mut before = vec![[NONE; 3]; rows.len()];
-    for (k, row) in (0u32..).zip(rows) {
+    let mut before = vec![[None; 3]; rows.len()];
+    for (k, row) in rows.iter().enumerate() {
         for (j, &cover) in row.covers.iter().enumerate() {
-            before[k as usize][j] = std::mem::replace(&mut last[cover as usize], k);
+            before[k][j] = last[cover].replace(k);
         }
     }
     let mut order = Vec::with_capacity(rows.len());
     let mut listed = vec![false; rows.len()];
     let mut next = 0;
-    for start in 0..rows.len() as u32 {
-        if !std::mem::replace(&mut listed[start as usize], true) {
+    for start in 0..rows.len() {
+        if !std::mem::replace(&mut listed[start], true) {
             order.push(start);
         }
         while let Some(&row) = order.get(next) {
             next += 1;
-            for &cover in &rows[row as usize].covers {
-                let mut other = last[cover as usize];
-                while other != NONE {
-                    if !std::mem::replace(&mut listed[other as usize], true) {
-                        order.push(other);
+            for &cover in &rows[row].covers {
+                let mut other = last[cover];
+                while let Some(row) = other {
+                    if !std::mem::replace(&mut listed[row], true) {
+                        order.push(row);
                     }
-                    let slot = rows[other as usize].covers.iter().position(|&i| i == cover);
-                    other = slot.map_or(NONE, |j| before[other as usize][j]);
+                    let slot = rows[row].covers.iter().position(|&i| i == cover);
+                    other = slot.and_then(|j| before[row][j]);
                 }
             }
         }

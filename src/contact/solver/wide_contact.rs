@@ -3,6 +3,7 @@
 use enmm_lanes::{LANES, Lanes, Places, Values, prefetch};
 
 use crate::contact::{Limits, Pair, SoftSpring, VertexEdge};
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 
 use super::anchor::lever_and_share;
@@ -89,7 +90,7 @@ impl WideContact {
         turns: [u32; 2],
         wide_pairs: &WidePairs,
         from: &ContactView,
-        first_cover: u32,
+        first_cover: CoverId,
     ) {
         self.turns = turns;
         for points in &mut self.points {
@@ -133,7 +134,7 @@ impl WideContact {
         contact: &VertexEdge,
         wide_pairs: &WidePairs,
         from: &ContactView,
-        first_cover: u32,
+        first_cover: CoverId,
     ) {
         for (answers, answer) in self.answers.iter_mut().zip(&contact.answers) {
             answers.take(lane, answer);
@@ -308,10 +309,10 @@ impl WideContact {
 
 impl Points {
     #[inline(always)]
-    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SolverView, first_cover: u32) {
+    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SolverView, first_cover: CoverId) {
         for (j, &cover) in pair.covers[k].iter().enumerate() {
-            let root = view.roots[cover as usize];
-            self.covers[j].set(lane, cover - first_cover);
+            let root = view.roots[cover];
+            self.covers[j].set(lane, cover.number() - first_cover.number());
             self.weights[j][lane] = pair.weights[k][j] * root.x.max(root.y);
             if root.x != root.y {
                 let axis = usize::from(root.y == 0.0);

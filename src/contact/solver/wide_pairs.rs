@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use enmm_lanes::{First, LANES, Lanes, Places, Values};
 
-use crate::geometry::NONE;
+use crate::cover::BlockId;
 
 use super::SolverView;
 use super::anchor::{Accumulators, common_share};
@@ -31,9 +31,9 @@ pub struct WidePairs {
     share: F64x8,
     shift: F64x8,
     /// Both blocks of each block pair that keep its impulses, a free one in the place of a held one.
-    blocks: [[u32; LANES]; 2],
+    blocks: [[BlockId; LANES]; 2],
     /// Block of the first points of its contacts.
-    first_block: [u32; LANES],
+    first_block: [BlockId; LANES],
     /// Where the sums of the blocks begin in a run of blocks.
     sums: [Places; 2],
     /// First row.
@@ -78,14 +78,18 @@ impl WidePairs {
     /// Block pairs by their blocks, a free one first when there is one, and numbers of contacts, the longest first;
     /// their rows begin at `first_row`.
     #[inline(always)]
-    pub fn new(first_row: u32, block_pairs: impl ExactSizeIterator<Item = ([u32; 2], u32)>, view: &SolverView) -> Self {
+    pub fn new(
+        first_row: u32,
+        block_pairs: impl ExactSizeIterator<Item = ([BlockId; 2], u32)>,
+        view: &SolverView,
+    ) -> Self {
         let mut wide_pairs = Self {
             first_row,
             rows: 0,
             wide: 0,
             contacts: 0,
-            blocks: [[NONE; LANES]; 2],
-            first_block: [NONE; LANES],
+            blocks: [[BlockId::default(); LANES]; 2],
+            first_block: [BlockId::default(); LANES],
             sums: [Places::default(); 2],
             common: [[0.0; LANES]; 2],
             spin: [[0.0; LANES]; 2],
@@ -107,9 +111,9 @@ impl WidePairs {
     }
 
     #[inline(always)]
-    fn take(&mut self, lane: usize, blocks: [u32; 2], contacts: u32, view: &SolverView) {
+    fn take(&mut self, lane: usize, blocks: [BlockId; 2], contacts: u32, view: &SolverView) {
         let [a, b] = blocks;
-        let free = blocks.map(|block| view.mass_matrix.is_free(block as usize));
+        let free = blocks.map(|block| view.mass_matrix.is_free(block));
         self.first_block[lane] = a;
         self.contacts += contacts;
         if lane == 1 {
@@ -122,10 +126,10 @@ impl WidePairs {
         for k in 0..2 {
             self.blocks[k][lane] = keepers[k];
             if k == 0 || a != b {
-                self.spin[k][lane] = view.mass_matrix.spin[blocks[k] as usize];
+                self.spin[k][lane] = view.mass_matrix.spin[blocks[k]];
             }
             if free[k] && a != b {
-                (self.common[k][lane], self.unit[k][lane]) = (common_share(view, blocks[k] as usize), 1.0);
+                (self.common[k][lane], self.unit[k][lane]) = (common_share(view, blocks[k]), 1.0);
             }
         }
     }
@@ -139,7 +143,7 @@ impl WidePairs {
 
     /// Whether a contact of two blocks has its second point first.
     #[inline(always)]
-    pub fn is_turned(&self, lane: usize, blocks: [u32; 2]) -> bool {
+    pub fn is_turned(&self, lane: usize, blocks: [BlockId; 2]) -> bool {
         blocks[0] != self.first_block[lane]
     }
 
@@ -162,7 +166,7 @@ impl WidePairs {
         accumulators: &mut Accumulators,
     ) {
         for (sums, blocks) in self.sums.iter_mut().zip(&self.blocks) {
-            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane] - accumulators.first_block)));
+            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane].number() - accumulators.first_block.number())));
         }
         for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
             row.load(lanes, [ends[0], ends[1]], self, from, accumulators.first_cover);

@@ -1,7 +1,8 @@
 //! Bolts of a case: the free lengths of their bars, found on the uncut reference.
 
 use crate::contact::BoltSegment;
-use crate::geometry::{NONE, Point, Vector};
+use crate::cover::ElementId;
+use crate::geometry::{Point, Vector};
 use crate::model::case::{Anchorage, Bolt, Case, Invalid};
 
 use super::locator::Locator;
@@ -45,14 +46,14 @@ struct Crossing {
     /// Distance from the head (m).
     along: f64,
     /// Elements before and after it.
-    elements: [usize; 2],
+    elements: [ElementId; 2],
 }
 
 /// A bolt on the reference configuration.
 struct Line<'a> {
     positions: &'a Locator<'a>,
     ends: [Point; 2],
-    elements: [usize; 2],
+    elements: [ElementId; 2],
     direction: Vector,
     length: f64,
     /// Where it meets joints and outlines: distance from the head (m), and whether both sides are one block there.
@@ -62,7 +63,7 @@ struct Line<'a> {
 impl<'a> Line<'a> {
     fn new(key: &str, bolt: &Bolt, positions: &'a Locator) -> Result<Self, Invalid> {
         let ends = bolt.points.map(Point::from);
-        let mut elements = [0; 2];
+        let mut elements = [ElementId::default(); 2];
         for (k, element) in elements.iter_mut().enumerate() {
             *element = positions.element(&format!("{key}.points[{k}]"), bolt.points[k])?;
         }
@@ -76,7 +77,7 @@ impl<'a> Line<'a> {
     /// Finds where the bolt meets pieces of block boundaries; positions that coincide become one.
     fn meet(&mut self) {
         let pieces = self.positions.outlines.pieces.iter();
-        for piece in pieces.filter(|p| p.opposite == NONE || p.element < p.opposite) {
+        for piece in pieces.filter(|p| p.opposite.is_none_or(|other| p.element < other)) {
             let [a, b] = [piece.a, piece.b].map(|p| self.direction.perp(&(p - self.ends[0])));
             if a * b > 0.0 || a == b {
                 continue;
@@ -100,7 +101,7 @@ impl<'a> Line<'a> {
         self.ends[0] + self.direction * along
     }
 
-    fn element_at(&self, along: f64) -> Option<usize> {
+    fn element_at(&self, along: f64) -> Option<ElementId> {
         self.positions.covers.element_near(self.at(along), self.positions.tolerance)
     }
 
@@ -113,7 +114,7 @@ impl<'a> Line<'a> {
             let beside = |room: f64| (0.25 * room).min(BESIDE * self.positions.covers.mesh.size);
             let sides = [along - beside(along - before), along + beside(after - along)].map(|at| self.element_at(at));
             let [Some(first), Some(second)] = sides else { continue };
-            let block = |e: usize| self.positions.covers.element_block[e];
+            let block = |e: ElementId| self.positions.covers.element_block[e];
             if block(first) != block(second) || partial && first != second {
                 crossings.push(Crossing { along, elements: [first, second] });
             }
@@ -139,14 +140,14 @@ impl<'a> Line<'a> {
         let covers = self.positions.covers;
         let free = bolt.free_length.unwrap_or(FREE_LENGTH * covers.mesh.size);
         let points = [-0.5, 0.5].map(|share| self.at(crossing.along + share * free));
-        self.segment(index, bolt, crossing.elements.map(|e| covers.host[e] as usize), points, free)
+        self.segment(index, bolt, crossing.elements.map(|e| covers.host[e]), points, free)
     }
 
     fn segment(
         &self,
         index: u32,
         bolt: &Bolt,
-        elements: [usize; 2],
+        elements: [ElementId; 2],
         points: [Point; 2],
         free_length: f64,
     ) -> BoltSegment {

@@ -1,13 +1,14 @@
 //! Outline, joints, joint sets and mesh edges in one arrangement.
 
+use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
-use crate::geometry::{Arrangement, GeometryError, Label, NONE, Point, Segment, arrange_within, polygon};
+use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::memory::Demand;
-use super::{BuildStage, index_of};
+use super::{BuildStage, law_of};
 
 /// The arranged plane of a case.
 pub(super) struct Plane {
@@ -20,8 +21,8 @@ pub(super) struct Plane {
 pub(super) struct Joints {
     /// Joint traces with their laws: those of the case first, then the loops of islands, so that rock that touches
     /// stays apart.
-    pub traces: Vec<(Vec<Point>, u32)>,
-    pub default_law: u32,
+    pub traces: Vec<(Vec<Point>, LawId)>,
+    pub default_law: LawId,
 }
 
 /// Points of a list of pairs.
@@ -41,7 +42,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let demand = Demand { case, low, high };
     demand.check_mesh()?;
     demand.check_sets()?;
-    let default_law = case.default_joint_law().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(0);
+    let default_law = case.default_joint_law().and_then(|name| law_of(case, name)).unwrap_or_default();
     let mut traces = traces(case, low, high, default_law)?;
     demand.check_traces(&traces)?;
     let user_traces = traces.len();
@@ -54,8 +55,8 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), default_law));
     traces.extend(islands);
     let mut segments = loops.segments();
-    for (k, (points, _)) in traces.iter().enumerate() {
-        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, k as u32)));
+    for (trace, (points, _)) in TraceId::all(traces.len()).zip(&traces) {
+        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))));
     }
     segments.extend(mesh.segments(low, high));
     tell(BuildStage::Arrangement);
@@ -64,12 +65,12 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_edges(&arrangement)?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
-    report.overlapping_traces.retain(|pair| pair.iter().all(|&t| (t as usize) < user_traces));
+    report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));
     Ok(Plane { mesh, arrangement, joints: Joints { traces, default_law } })
 }
 
-fn segment(a: Point, b: Point, outline: i8, trace: u32) -> Segment {
-    Segment { a, b, label: Label { outline, trace, mesh: NONE, mesh_reversed: false } }
+fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {
+    Segment { a, b, label: Label { outline, trace, mesh: None, mesh_reversed: false } }
 }
 
 /// Validated loops of rock (counter-clockwise) and holes.
@@ -105,7 +106,7 @@ impl Loops {
 
     fn segments(&self) -> Vec<Segment> {
         let directed = |loops: &[Vec<Point>], outline: i8| -> Vec<Segment> {
-            loops.iter().flat_map(|l| polygon::sides(l).map(move |(a, b)| segment(a, b, outline, NONE))).collect()
+            loops.iter().flat_map(|l| polygon::sides(l).map(move |(a, b)| segment(a, b, outline, None))).collect()
         };
         let mut segments = directed(&self.rock, 1);
         segments.extend(directed(&self.holes, -1));
@@ -114,10 +115,9 @@ impl Loops {
 }
 
 /// Joint traces of the case, then those of its sets, with their laws.
-fn traces(case: &Case, low: Point, high: Point, default_law: u32) -> Result<Vec<(Vec<Point>, u32)>, Invalid> {
-    let law =
-        |name: &Option<String>| name.as_ref().and_then(|name| index_of(&case.joint_laws, name)).unwrap_or(default_law);
-    let mut traces: Vec<(Vec<Point>, u32)> =
+fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<Vec<(Vec<Point>, LawId)>, Invalid> {
+    let law = |name: &Option<String>| name.as_ref().and_then(|name| law_of(case, name)).unwrap_or(default_law);
+    let mut traces: Vec<(Vec<Point>, LawId)> =
         case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
     let box_points = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
     for (k, set) in case.joint_sets.iter().enumerate() {

@@ -42,7 +42,7 @@ pub fn implicit(case: &Case, covers: &Covers, rocks: &[Elasticity], element_rock
     }
     let (low, high) = polygon::bounds(&covers.polygon_points);
     let ratio = solver.displacement_ratio * 0.5 * (high - low).y;
-    let element_mass = (0..covers.element_count()).map(|e| {
+    let element_mass = covers.elements().map(|e| {
         let centroid = covers.element_centroid[e];
         let moments = polygon::Moments::of(covers.polygon(e), centroid);
         let gradients = &covers.gradients[covers.element_triangle[e].set as usize];

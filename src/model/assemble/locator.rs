@@ -1,7 +1,7 @@
 //! Positions that a case names, found on the built covers.
 
-use crate::cover::{BoundaryPiece, Covers, Outlines, Weights};
-use crate::geometry::{NONE, Point, Vector, segment};
+use crate::cover::{BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
+use crate::geometry::{Point, Vector, segment};
 use crate::model::case::Invalid;
 
 /// Finds positions of a case on the covers of its model.
@@ -14,23 +14,23 @@ pub(super) struct Locator<'a> {
 
 /// A material point.
 pub(super) struct MaterialPoint {
-    pub block: u32,
-    pub covers: [u32; 3],
+    pub block: BlockId,
+    pub covers: [CoverId; 3],
     pub weights: Weights,
 }
 
 /// A piece of outer boundary.
 pub(super) struct OuterPiece {
-    pub block: u32,
-    pub covers: [u32; 3],
+    pub block: BlockId,
+    pub covers: [CoverId; 3],
     pub weights: [Weights; 2],
     pub piece: BoundaryPiece,
 }
 
 /// A material point with a support's stiffness (N/m per metre) and the force (N/m) that it bears from the start.
 pub(super) struct Hold {
-    pub block: u32,
-    pub covers: [u32; 3],
+    pub block: BlockId,
+    pub covers: [CoverId; 3],
     pub weights: Weights,
     pub stiffness: f64,
     pub preload: Vector,
@@ -66,7 +66,7 @@ impl OuterPiece {
 
 impl Locator<'_> {
     /// The element at a point.
-    pub fn element(&self, key: &str, point: [f64; 2]) -> Result<usize, Invalid> {
+    pub fn element(&self, key: &str, point: [f64; 2]) -> Result<ElementId, Invalid> {
         self.covers.element_near(Point::from(point), self.tolerance).ok_or_else(|| Invalid {
             key: key.into(),
             message: format!("there is no rock at ({}, {}): choose a point inside a block", point[0], point[1]),
@@ -74,8 +74,8 @@ impl Locator<'_> {
     }
 
     /// The block at a point.
-    pub fn block(&self, key: &str, point: [f64; 2]) -> Result<usize, Invalid> {
-        self.element(key, point).map(|e| self.covers.element_block[e] as usize)
+    pub fn block(&self, key: &str, point: [f64; 2]) -> Result<BlockId, Invalid> {
+        self.element(key, point).map(|e| self.covers.element_block[e])
     }
 
     /// The material point at a position.
@@ -92,7 +92,7 @@ impl Locator<'_> {
     pub fn boundary(&self, key: &str, edge: [[f64; 2]; 2]) -> Result<Vec<OuterPiece>, Invalid> {
         let [a, b] = edge.map(Point::from);
         let on_edge = |p: &&BoundaryPiece| {
-            p.opposite == NONE && [p.a, p.b].iter().all(|&q| segment::distance(q, a, b) <= self.tolerance)
+            p.opposite.is_none() && [p.a, p.b].iter().all(|&q| segment::distance(q, a, b) <= self.tolerance)
         };
         let pieces: Vec<OuterPiece> =
             self.outlines.pieces.iter().filter(on_edge).map(|p| self.outer_piece(p)).collect();
@@ -110,7 +110,7 @@ impl Locator<'_> {
     }
 
     fn outer_piece(&self, piece: &BoundaryPiece) -> OuterPiece {
-        let element = piece.element as usize;
+        let element = piece.element;
         OuterPiece {
             block: self.covers.element_block[element],
             covers: self.covers.element_covers[element],
@@ -120,21 +120,21 @@ impl Locator<'_> {
     }
 
     /// Physical covers whose area centroid lies in the box `[xmin, ymin, xmax, ymax]`.
-    pub fn covers_in(&self, key: &str, region: [f64; 4]) -> Result<Vec<u32>, Invalid> {
+    pub fn covers_in(&self, key: &str, region: [f64; 4]) -> Result<Vec<CoverId>, Invalid> {
         let covers = self.covers;
         let mut first = vec![Vector::zeros(); covers.cover_count()];
         let mut area = vec![0.0; covers.cover_count()];
-        for e in 0..covers.element_count() {
+        for e in covers.elements() {
             for &i in &covers.element_covers[e] {
-                first[i as usize] += covers.element_centroid[e] * covers.element_area[e];
-                area[i as usize] += covers.element_area[e];
+                first[i] += covers.element_centroid[e] * covers.element_area[e];
+                area[i] += covers.element_area[e];
             }
         }
-        let inside = |i: &usize| {
+        let inside = |i: &CoverId| {
             let c = first[*i] / area[*i];
             c.x >= region[0] && c.y >= region[1] && c.x <= region[2] && c.y <= region[3]
         };
-        let held: Vec<u32> = (0..covers.cover_count()).filter(inside).map(|i| i as u32).collect();
+        let held: Vec<CoverId> = CoverId::all(covers.cover_count()).filter(inside).collect();
         if held.is_empty() {
             return Err(Invalid {
                 key: key.into(),

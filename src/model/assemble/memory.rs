@@ -4,9 +4,10 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
+use crate::contact::LawId;
 use crate::cover::RegularMesh;
-use crate::geometry::grid::CellGrid;
-use crate::geometry::{Arrangement, GeometryError, NONE, Point, Vector, polygon};
+use crate::geometry::{Arrangement, GeometryError, Point, Vector, polygon};
+use crate::geometry::{VertexId, grid::CellGrid};
 use crate::model::case::{Case, Invalid, JointSet};
 use crate::step::CUTOFF;
 
@@ -252,7 +253,7 @@ impl Demand<'_> {
     }
 
     /// Refuses traces that cross too many mesh edges.
-    pub fn check_traces(&self, traces: &[(Vec<Point>, u32)]) -> Result<(), Invalid> {
+    pub fn check_traces(&self, traces: &[(Vec<Point>, LawId)]) -> Result<(), Invalid> {
         let length = |points: &Vec<Point>| -> f64 {
             let pieces = points.windows(2).filter_map(|pair| self.within(pair[0], pair[1]));
             pieces.map(|[a, b]| (b - a).norm()).sum()
@@ -302,7 +303,7 @@ impl Demand<'_> {
     /// Refuses traces that lie too close to each other in the rock, before they are cut.
     pub fn check_dense(
         &self,
-        traces: &[(Vec<Point>, u32)],
+        traces: &[(Vec<Point>, LawId)],
         tolerance: f64,
         is_rock: impl Fn(Point) -> bool,
     ) -> Result<(), Invalid> {
@@ -310,7 +311,7 @@ impl Demand<'_> {
     }
 
     /// The pieces into which the mesh alone cuts traces; traces that become one at this snap tolerance (m) count once.
-    fn dense(&self, traces: &[(Vec<Point>, u32)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
+    fn dense(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
         let (step, merged) = (CUTOFF * self.size(), MERGED * tolerance);
         let mut samples = Vec::new();
         for (points, _) in traces {
@@ -332,7 +333,7 @@ impl Demand<'_> {
     /// Refuses traces that cross each other too often in the rock, before they are cut.
     pub fn check_crossings(
         &self,
-        traces: &[(Vec<Point>, u32)],
+        traces: &[(Vec<Point>, LawId)],
         tolerance: f64,
         is_rock: impl Fn(Point) -> bool,
     ) -> Result<(), Invalid> {
@@ -341,7 +342,7 @@ impl Demand<'_> {
 
     /// Crossings of traces in the rock, of many traces those of a sample. A crossing makes two edges, of which the half
     /// is taken, since dead ends are none in the end.
-    fn crossed(&self, traces: &[(Vec<Point>, u32)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
+    fn crossed(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
         let merged = MERGED * tolerance;
         let pieces: Vec<&[Point]> = traces.iter().flat_map(|(points, _)| points.windows(2)).collect();
         let count = pieces.len().min(SAMPLE);
@@ -362,10 +363,12 @@ impl Demand<'_> {
 
     /// The edges of blocks, counted one by one.
     fn cut(&self, arrangement: &Arrangement) -> Near {
-        let point = |vertex: u32| arrangement.points[vertex as usize];
-        let edges = (0u32..)
-            .zip(&arrangement.edges)
-            .filter(|(k, edge)| edge.label.outline != 0 || edge.label.trace != NONE && arrangement.in_rock(*k));
+        let point = |vertex: VertexId| arrangement.points[vertex];
+        let edges = arrangement
+            .edges
+            .iter()
+            .enumerate()
+            .filter(|(k, edge)| edge.label.outline != 0 || edge.label.trace.is_some() && arrangement.in_rock(*k));
         let positions: Vec<Point> = edges.map(|(_, edge)| (point(edge.a) + point(edge.b)) * 0.5).collect();
         self.near(&positions, 1.0)
     }

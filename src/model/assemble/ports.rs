@@ -1,7 +1,7 @@
 //! Ports and water of a case, found on the boundary of the blocks.
 
-use crate::contact::Boundary;
-use crate::geometry::{NONE, Point, Vector, segment};
+use crate::contact::{Boundary, EdgeId};
+use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::LoadedFace;
 use crate::model::case::{Case, Invalid, Load};
 use crate::state::{Port, PortKind, Water};
@@ -16,7 +16,7 @@ pub(super) struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn lies_on(&self, edge: usize, [a, b]: [[f64; 2]; 2]) -> bool {
+    fn lies_on(&self, edge: EdgeId, [a, b]: [[f64; 2]; 2]) -> bool {
         let ends = [edge, self.boundary.after(edge)].map(|k| self.boundary.reference[k]);
         ends.iter().all(|&p| segment::distance(p, Point::from(a), Point::from(b)) <= self.tolerance)
     }
@@ -24,7 +24,7 @@ impl Faces<'_> {
     /// What a load of kind `joint` presses on: joint faces or the parts of them that lie on its segment.
     pub fn loaded(&self, key: &str, load: &Load) -> Result<Vec<LoadedFace>, Invalid> {
         let segment = load.edge.unwrap_or_default();
-        let joints = (0..self.boundary.len()).filter(|&k| self.boundary.trace[k] != NONE);
+        let joints = self.boundary.edges().filter(|&k| self.boundary.trace[k].is_some());
         let faces: Vec<LoadedFace> = joints.filter_map(|k| self.loaded_face(k, segment, load)).collect();
         if faces.is_empty() {
             return Err(nothing_on(&format!("{key}.edge"), segment, true));
@@ -33,13 +33,13 @@ impl Faces<'_> {
     }
 
     /// The part of an edge on a segment with the pressure at both of its ends.
-    fn loaded_face(&self, edge: usize, segment: [[f64; 2]; 2], load: &Load) -> Option<LoadedFace> {
+    fn loaded_face(&self, edge: EdgeId, segment: [[f64; 2]; 2], load: &Load) -> Option<LoadedFace> {
         let boundary = self.boundary;
         let [a, b] = segment.map(Point::from);
         let (length, along) = ((b - a).norm(), (b - a).normalize());
         let ends = [edge, boundary.after(edge)];
         let at = ends.map(|k| (boundary.reference[k] - a).dot(&along));
-        let off = |k: usize| (boundary.reference[k] - a).perp(&along).abs() > self.tolerance;
+        let off = |k: EdgeId| (boundary.reference[k] - a).perp(&along).abs() > self.tolerance;
         let inside = at.map(|s| s.clamp(0.0, length));
         if ends.into_iter().any(off) || (inside[1] - inside[0]).abs() <= self.tolerance {
             return None;
@@ -55,9 +55,9 @@ impl Faces<'_> {
     }
 
     /// Edges on a segment, of joints or of the outer boundary.
-    fn on(&self, key: &str, segment: [[f64; 2]; 2], joints: bool) -> Result<Vec<u32>, Invalid> {
-        let wanted = |k: &usize| (self.boundary.trace[*k] != NONE) == joints && self.lies_on(*k, segment);
-        let edges: Vec<u32> = (0..self.boundary.len()).filter(wanted).map(|k| k as u32).collect();
+    fn on(&self, key: &str, segment: [[f64; 2]; 2], joints: bool) -> Result<Vec<EdgeId>, Invalid> {
+        let wanted = |k: &EdgeId| self.boundary.trace[*k].is_some() == joints && self.lies_on(*k, segment);
+        let edges: Vec<EdgeId> = self.boundary.edges().filter(wanted).collect();
         if edges.is_empty() {
             return Err(nothing_on(key, segment, joints));
         }
@@ -88,8 +88,8 @@ pub(super) fn ports(case: &Case, positions: &Locator, faces: &Faces) -> Result<V
             (PortKind::Block, Vec::new(), port.force, port.moment)
         };
         let block = match edges.first() {
-            Some(&edge) => faces.boundary.block[edge as usize],
-            None => positions.block(&key("block"), port.block.unwrap_or_default())? as u32,
+            Some(&edge) => faces.boundary.block[edge],
+            None => positions.block(&key("block"), port.block.unwrap_or_default())?,
         };
         ports.push(Port { name: port.name.clone(), kind, block, edges, force: Vector::from(force), scalar });
     }
@@ -104,7 +104,7 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         Some(segments) => {
             for (k, &segment) in segments.iter().enumerate() {
                 let edges = faces.on(&format!("water.faces[{k}]"), segment, false)?;
-                edges.into_iter().for_each(|edge| wet[edge as usize] = true);
+                edges.into_iter().for_each(|edge| wet[edge] = true);
             }
         }
         None => {
@@ -112,16 +112,16 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
             let beside = case.free_fields.iter().map(|side| side.edge);
             let held: Vec<[[f64; 2]; 2]> =
                 case.fixes.iter().filter_map(|fix| fix.edge).chain(quiet).chain(beside).collect();
-            for (edge, wet) in wet.iter_mut().enumerate() {
-                let outer = faces.boundary.trace[edge] == NONE;
+            for (edge, wet) in faces.boundary.edges().zip(&mut wet) {
+                let outer = faces.boundary.trace[edge].is_none();
                 *wet = outer && !held.iter().any(|&segment| faces.lies_on(edge, segment));
             }
         }
     }
-    for (edge, wet) in wet.iter_mut().enumerate() {
-        *wet |= water.joints && faces.boundary.trace[edge] != NONE;
+    for (edge, wet) in faces.boundary.edges().zip(&mut wet) {
+        *wet |= water.joints && faces.boundary.trace[edge].is_some();
     }
-    let edges = (0..wet.len()).filter(|&k| wet[k]).map(|k| k as u32).collect();
+    let edges = faces.boundary.edges().filter(|&k| wet[k]).collect();
     let table = super::geometry::points(water.table.as_deref().unwrap_or_default());
     Ok(Some(Water { density: water.density, level: water.start_level(), table, edges }))
 }

@@ -128,7 +128,7 @@ impl Ground<'_> {
     /// piece they would be twice as many, and give back 7 % more of a wave that comes in under 30°.
     fn dashpots(&self, piece: &OuterPiece, quiet: u32, fix: u32) -> [Support; 2] {
         let along = (piece.piece.b - piece.piece.a) / piece.length();
-        let impedance = self.rocks[self.element_rock[piece.piece.element as usize] as usize].impedances();
+        let impedance = self.rocks[self.element_rock[piece.piece.element] as usize].impedances();
         let directions = [Vector::new(along.y, -along.x), along];
         [0, 1].map(|kind| Support {
             fix,
@@ -183,7 +183,7 @@ impl Ground<'_> {
 
     /// What a column gives to the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. 51).
     fn beside(&self, column: &Column, piece: &OuterPiece, first: u32, dashpots: &[Support]) -> Vec<FreeFieldPoint> {
-        let rock = &self.rocks[self.element_rock[piece.piece.element as usize] as usize];
+        let rock = &self.rocks[self.element_rock[piece.piece.element] as usize];
         let (a, b) = (piece.piece.a, piece.piece.b);
         let ends = [column.position(a.y), column.position(b.y)];
         // Outward normal (dy, −dx)/l: a side that is walked upwards has the free field at its right.

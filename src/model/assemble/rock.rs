@@ -1,6 +1,6 @@
 //! Which rock each element is made of, and the strength of rock.
 
-use crate::cover::Covers;
+use crate::cover::{Covers, ElementId};
 use crate::geometry::polygon;
 use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
@@ -46,7 +46,7 @@ pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16
         return Vec::new();
     };
     let rocks: Vec<&Rock> = case.rocks.values().collect();
-    let of_element = |e: usize| {
+    let of_element = |e: ElementId| {
         let (rock, height) = (rocks[element_rock[e] as usize], covers.element_centroid[e].y - field.y_reference);
         let in_plane = field.sxx + field.syy + (field.gradient[0] + field.gradient[1]) * height;
         match rock.plane {
@@ -54,20 +54,20 @@ pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16
             Plane::Strain => field.szz.map_or(rock.poisson * in_plane, |szz| szz + field.szz_gradient * height),
         }
     };
-    (0..covers.element_count()).map(of_element).collect()
+    covers.elements().map(of_element).collect()
 }
 
 /// A warning where the in-situ stress is beyond the strength of the rock: how many elements, where, and by how much.
 pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     case.in_situ.as_ref()?;
-    let excess = |e: usize| {
+    let excess = |e: ElementId| {
         let strength = model.strength_of(e)?;
         let stress = model.pre_stress_and_out(e);
         let size = stress.iter().fold(strength.cohesion, |a, s| a.max(s.abs()));
         let excess = strength.surface(1.0).excess(stress);
         (excess > 1e-9 * size).then_some((e, excess))
     };
-    let beyond: Vec<(usize, f64)> = (0..model.covers.element_count()).filter_map(excess).collect();
+    let beyond: Vec<(ElementId, f64)> = model.covers.elements().filter_map(excess).collect();
     let &(worst, most) = beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let position = model.covers.element_centroid[worst];
     let name = case.rocks.keys().nth(model.element_rock[worst] as usize).map_or("", String::as_str);
@@ -108,8 +108,8 @@ pub(super) fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Inval
     for (k, (name, rock)) in case.rocks.iter().enumerate() {
         let Some(region) = &rock.region else { continue };
         let region = points(region);
-        let inside = |e: &usize| polygon::contains(&region, positions.covers.element_centroid[*e]);
-        for e in (0..owner.len()).filter(inside) {
+        let inside = |e: &ElementId| polygon::contains(&region, positions.covers.element_centroid[*e]);
+        for e in positions.covers.elements().filter(inside) {
             claim(&mut owner, e, k, case, &format!("rock.{name}.region"), positions)?;
         }
     }
@@ -117,12 +117,14 @@ pub(super) fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Inval
     for (k, (name, rock)) in case.rocks.iter().enumerate() {
         for (n, &point) in rock.blocks.iter().enumerate() {
             let key = format!("rock.{name}.blocks[{n}]");
-            for e in positions.covers.elements_of(positions.block(&key, point)?) {
+            for e in ElementId::range(positions.covers.elements_of(positions.block(&key, point)?)) {
                 claim(&mut by_block, e, k, case, &key, positions)?;
             }
         }
     }
-    (0..owner.len())
+    positions
+        .covers
+        .elements()
         .map(|e| {
             let rock = by_block[e].or(owner[e]).or(background).ok_or_else(|| unassigned(positions, e))?;
             Ok(rock as u16)
@@ -132,7 +134,7 @@ pub(super) fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Inval
 
 fn claim(
     owner: &mut [Option<usize>],
-    element: usize,
+    element: ElementId,
     rock: usize,
     case: &Case,
     key: &str,
@@ -153,7 +155,7 @@ fn claim(
     Ok(())
 }
 
-fn unassigned(positions: &Locator, element: usize) -> Invalid {
+fn unassigned(positions: &Locator, element: ElementId) -> Invalid {
     let at = positions.covers.element_centroid[element];
     Invalid {
         key: "rock".into(),

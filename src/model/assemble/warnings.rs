@@ -1,6 +1,7 @@
 //! What the user should know of a model that can be built: what its geometry became, and values beyond the usual ranges
 //! of rock and soil, which are mostly slips in a unit or a sign.
 
+use crate::contact::LawId;
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
 use crate::model::case::{Case, Integrator, Invalid, Solver};
@@ -22,7 +23,7 @@ const TENSION_SHARE: f64 = 0.01;
 const NAMED: usize = 5;
 
 /// What the noder did; `traces` are the joints, those of the case first.
-pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Point>, u32)]) -> Vec<String> {
+pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Point>, LawId)]) -> Vec<String> {
     let mut warnings = Vec::new();
     if noding.merged_vertices > 0 {
         warnings.push(format!(

@@ -7,6 +7,7 @@ use std::ops::Range;
 use enmm_lanes::{Kernel, LANES, Lanes, Table, dispatch, prefetch};
 
 use crate::contact::BlockImpulse;
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{Common, End, Own, Reference, Span, Spread, Wants, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Chunk, Chunks, Damping, KickStep, MassMatrix, element_lanes};
@@ -121,11 +122,11 @@ pub(super) struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    fn step(&self, block: usize) -> KickStep {
+    fn step(&self, block: BlockId) -> KickStep {
         KickStep { acceleration: self.acceleration, damping: self.damping[block], kick: self.kick }
     }
 
-    fn span(&self, block: usize, covers: Range<usize>) -> Span<'_> {
+    fn span(&self, block: BlockId, covers: Range<usize>) -> Span<'_> {
         Span {
             star: &self.model.covers.star_position[covers.clone()],
             displacement: &self.state.displacement[covers.clone()],
@@ -135,12 +136,12 @@ impl Pass<'_> {
         }
     }
 
-    fn reference(&self, block: usize) -> Reference {
+    fn reference(&self, block: BlockId) -> Reference {
         self.span(block, self.model.covers.covers_of(block)).reference()
     }
 
     /// How the covers of a block in a chunk are written.
-    fn own(&self, chunk: usize, block: usize, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+    fn own(&self, chunk: usize, block: BlockId, covers: Range<usize>, step: &KickStep) -> Own<'_> {
         let held = !self.mass_matrix.is_free(block);
         let (factor, masked) = match step.damping {
             Damping::Deformation(factor) => (factor, factor < 1.0),
@@ -176,7 +177,7 @@ impl Pass<'_> {
         let (local, behind) = local.split_at_mut(own + halo.len());
         local[..own].copy_from_slice(&u[chunk.covers.clone()]);
         for (pair, &cover) in local[own..].iter_mut().zip(halo) {
-            *pair = u[cover as usize];
+            *pair = u[cover];
         }
         // Missing elements of a row may reach beyond the last slot.
         behind.fill(Vector::zeros());
@@ -280,7 +281,7 @@ impl Work for Pass<'_> {
         let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
         sums.fastest = 0.0;
         let fixed = match chunk.part_of {
-            Some(block) => self.mass_matrix.fixed[block as usize],
+            Some(block) => self.mass_matrix.fixed[block],
             None => chunk.blocks.clone().all(|b| self.mass_matrix.fixed[b]),
         };
         if fixed {
@@ -293,10 +294,10 @@ impl Work for Pass<'_> {
         self.push_elements(lanes, chunk, next, tables);
         let force = tables[1].first(chunk.covers.len());
         if let Some(block) = chunk.part_of {
-            self.kick_part(lanes, (number, block as usize), force, predicted, sums);
+            self.kick_part(lanes, (number, block), force, predicted, sums);
             return;
         }
-        for (k, block) in chunk.blocks.clone().enumerate() {
+        for (k, block) in BlockId::range(chunk.blocks.clone()).enumerate() {
             let covers = self.model.covers.covers_of(block);
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
@@ -310,7 +311,7 @@ impl Pass<'_> {
     fn kick_block<L: Lanes>(
         &self,
         lanes: L,
-        (chunk, block): (usize, usize),
+        (chunk, block): (usize, BlockId),
         force: &[Vector],
         predicted: &mut [Vector],
         fastest: &mut f64,
@@ -336,7 +337,7 @@ impl Pass<'_> {
     fn kick_part<L: Lanes>(
         &self,
         lanes: L,
-        (chunk, block): (usize, usize),
+        (chunk, block): (usize, BlockId),
         force: &[Vector],
         predicted: &mut [Vector],
         sums: &mut PatchSums,
@@ -365,7 +366,7 @@ impl Pass<'_> {
     /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
     fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
         let chunks = &self.model.chunks;
-        let block = chunks.get(first).blocks.start;
+        let block = BlockId::new(chunks.get(first).blocks.start);
         if self.mass_matrix.fixed[block] {
             return false;
         }
@@ -411,7 +412,7 @@ impl Work for Exposed<'_> {
     fn chunk<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
         let Pass { model, mass_matrix, movable, exposed, .. } = *self.pass;
         let chunk = model.chunks.get(k);
-        let Some(block) = chunk.part_of.map(|b| b as usize).filter(|b| !mass_matrix.fixed[*b]) else { return };
+        let Some(block) = chunk.part_of.filter(|&b| !mass_matrix.fixed[b]) else { return };
         if let Some(spread) = spread(mass_matrix, (chunk, block), movable[k], exposed, &self.sums[k].common) {
             let from = &self.start[block].from;
             self.pass.span(block, chunk.covers.clone()).spread(lanes, from, &spread, predicted);
@@ -422,7 +423,7 @@ impl Work for Exposed<'_> {
 /// What covers of a part of a block that can move have in common with the others of the block.
 fn spread<'a>(
     mass_matrix: &'a MassMatrix,
-    (part, block): (&Chunk, usize),
+    (part, block): (&Chunk, BlockId),
     movable: bool,
     exposed: &'a [bool],
     common: &'a Common,
@@ -492,8 +493,8 @@ impl Work for Finish<'_> {
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
         let common = sums.common;
-        let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b as usize..b as usize + 1);
-        for block in blocks.filter(|b| !self.mass_matrix.fixed[*b]) {
+        let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b.index()..b.index() + 1);
+        for block in BlockId::range(blocks).filter(|&b| !self.mass_matrix.fixed[b]) {
             let own = self.model.covers.covers_of(block);
             let covers = own.start.max(chunk.covers.start)..own.end.min(chunk.covers.end);
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
@@ -527,7 +528,7 @@ impl Work for Finish<'_> {
 
 impl Finish<'_> {
     #[inline(always)]
-    fn block<L: Lanes>(&self, lanes: L, block: usize, end: &mut End) -> (WorkSums, [f64; 2], f64) {
+    fn block<L: Lanes>(&self, lanes: L, block: BlockId, end: &mut End) -> (WorkSums, [f64; 2], f64) {
         let (mass_matrix, push, from) = (self.mass_matrix, &self.push[block], &self.start[block].from);
         let is_pushed = *push != BlockImpulse::default() && mass_matrix.is_free(block);
         let mut common = Common::default();
@@ -545,7 +546,7 @@ impl Finish<'_> {
         end.finish(lanes, from, &common, wants)
     }
 
-    fn damping_work(&self, block: usize, works: &WorkSums) -> f64 {
+    fn damping_work(&self, block: BlockId, works: &WorkSums) -> f64 {
         let damping = self.damping[block];
         if !is_damping(damping) {
             return 0.0;
@@ -569,7 +570,7 @@ impl Finish<'_> {
         for first in chunks.cut_blocks() {
             let mut works = WorkSums::default();
             chunks.parts(first).for_each(|part| works += sums[part].works);
-            let block = chunks.get(first).blocks.start;
+            let block = BlockId::new(chunks.get(first).blocks.start);
             if !self.mass_matrix.fixed[block] {
                 totals.damping += self.damping_work(block, &works);
             }
@@ -592,7 +593,7 @@ pub(super) struct Totals {
 }
 
 /// Masses by which covers count in the centroid of a block: those of a held one are its lumped ones, read once.
-fn inertial(mass_matrix: &MassMatrix, block: usize) -> &[f64] {
+fn inertial(mass_matrix: &MassMatrix, block: BlockId) -> &[f64] {
     if mass_matrix.is_free(block) { &mass_matrix.inertial } else { &mass_matrix.mass }
 }
 
@@ -604,7 +605,7 @@ fn is_damping(damping: Damping) -> bool {
 
 /// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
 /// lighter by the root of that faster (Eq. 76).
-pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Damping, block: usize) -> Damping {
+pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Damping, block: BlockId) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
             Damping::Deformation((-(ratio_dt * model.block_frequency[block]).min(DECAY_MAX)).exp())

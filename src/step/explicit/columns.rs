@@ -1,5 +1,6 @@
 //! Free-field columns, which move beside the model.
 
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnDrive, Foot};
 
@@ -19,7 +20,7 @@ impl Step<'_> {
                 Foot::Quiet(quiet) => applied::wave(model, self.regime, state, window, quiet),
             };
             let drive = ColumnDrive { acceleration, wave, kick };
-            let decay = |block: u32| (-(damping * dt * model.block_frequency[block as usize]).min(DECAY_MAX)).exp();
+            let decay = |block: BlockId| (-(damping * dt * model.block_frequency[block]).min(DECAY_MAX)).exp();
             column.kick(&state.columns[k], &drive, decay, &mut self.workspace.columns[k]);
         }
     }

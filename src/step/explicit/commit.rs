@@ -91,7 +91,7 @@ impl Step<'_> {
     fn fill_damped(&mut self) {
         let (model, state) = (self.model, &*self.state);
         let Workspace { mass_matrix, damped, .. } = &mut *self.workspace;
-        for block in 0..model.covers.block_count() {
+        for block in model.covers.blocks() {
             let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
             let out = &mut damped[model.covers.covers_of(block)];
             if mass_matrix.fixed[block] {

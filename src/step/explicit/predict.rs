@@ -54,7 +54,7 @@ impl Step<'_> {
         let Workspace { mass_matrix, damping: of_blocks, damping_of, .. } = &mut *self.workspace;
         if *damping_of != Some(damping) {
             *damping_of = Some(damping);
-            let blocks = 0..model.covers.block_count();
+            let blocks = model.covers.blocks();
             of_blocks.clear();
             of_blocks.extend(blocks.map(|block| blocks::block_damping(model, mass_matrix, damping, block)));
         }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::cover::{CoverId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, PlasticStrain, YieldSurface};
 use crate::state::{Model, State, Workspace};
@@ -47,9 +48,9 @@ impl Pass<'_> {
     fn run(&self, first: usize, plastic: &mut [PlasticStrain]) -> f64 {
         let covers = &self.model.covers;
         let mut energy = 0.0;
-        for (element, plastic) in (first..).zip(plastic) {
+        for (element, plastic) in ElementId::range(first..first + plastic.len()).zip(plastic) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
-            if self.removed[covers.element_block[element] as usize] {
+            if self.removed[covers.element_block[element]] {
                 continue;
             }
             let (at, pre) =
@@ -64,9 +65,9 @@ impl Pass<'_> {
     }
 
     /// Deformation of an element one step ago.
-    fn before(&self, element: usize) -> Deformation {
+    fn before(&self, element: ElementId) -> Deformation {
         let covers = &self.model.covers;
-        let position = |i: u32| self.displacement[i as usize] - self.velocity[i as usize] * self.dt_last;
+        let position = |i: CoverId| self.displacement[i] - self.velocity[i] * self.dt_last;
         let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
         Deformation::new(covers.element_covers[element].map(position), gradients)
     }

@@ -1,6 +1,7 @@
 //! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
 
 use crate::contact::{ContactState, VertexEdge};
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_block};
 
@@ -31,10 +32,10 @@ impl Step<'_> {
         let covers = &self.model.covers;
         let boundary = &self.model.boundary;
         let buffers = &mut self.workspace.implicit;
-        let free = |i: u32| !(buffers.held[2 * i as usize] && buffers.held[2 * i as usize + 1]);
+        let free = |i: CoverId| !(buffers.held[2 * i.index()] && buffers.held[2 * i.index() + 1]);
         let pairs = &mut buffers.pairs;
         pairs.clear();
-        let mut couple = |a: u32, b: u32| {
+        let mut couple = |a: CoverId, b: CoverId| {
             if a != b && free(a) && free(b) {
                 pairs.push([a.min(b), a.max(b)]);
             }
@@ -43,9 +44,9 @@ impl Step<'_> {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
         for near in &self.state.neighbours.pairs {
-            let node = boundary.covers[boundary.node_point[near.node as usize] as usize];
+            let node = boundary.covers[boundary.node_point[near.node]];
             for a in node {
-                boundary.covers_on(near.edge as usize).for_each(|b| couple(a, b));
+                boundary.covers_on(near.edge).for_each(|b| couple(a, b));
             }
         }
         pairs.sort_unstable();
@@ -88,7 +89,7 @@ impl Step<'_> {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &model.rocks[model.element_rock[e] as usize];
-            let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
+            let u = ids.map(|i| state.displacement[i] + buffers.moved[i]);
             let deformation = Deformation::new(u, gradients);
             let turned = gradients.map(|g| deformation.turn_vector(g));
             let area = covers.element_area[e] * stiffness;
@@ -146,7 +147,7 @@ impl Step<'_> {
 }
 
 /// Covers of the node and of the edge.
-fn six(contact: &VertexEdge) -> [u32; 6] {
+fn six(contact: &VertexEdge) -> [CoverId; 6] {
     std::array::from_fn(|k| contact.pair.covers[k / 3][k % 3])
 }
 

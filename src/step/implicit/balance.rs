@@ -12,15 +12,15 @@ impl Step<'_> {
         let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
         buffers.internal.fill(Vector::zeros());
-        for e in 0..covers.element_count() {
+        for e in covers.elements() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &model.rocks[model.element_rock[e] as usize];
-            let u = ids.map(|i| state.displacement[i as usize] + buffers.moved[i as usize]);
+            let u = ids.map(|i| state.displacement[i] + buffers.moved[i]);
             let deformation = Deformation::new(u, gradients);
             let forces = deformation.forces(gradients, covers.element_area[e], rock, &model.pre_stress_of(e));
             for (i, f) in ids.into_iter().zip(forces) {
-                buffers.internal[i as usize] += f;
+                buffers.internal[i] += f;
             }
         }
     }
@@ -72,7 +72,7 @@ impl Step<'_> {
             *sum += applied + internal;
         }
         for (mass, ids) in inertia.element_mass.iter().zip(&model.covers.element_covers) {
-            push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+            push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
         if !inertia.rests {
             let momentum = buffers.field.iter().zip(&model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());

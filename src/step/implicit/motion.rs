@@ -1,5 +1,6 @@
 //! Velocities with the consistent mass: energy, damping of deformation, the first acceleration of the trapezoidal rule.
 
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{MassMatrix, push_mass};
 use crate::state::{Implicit, Model, State};
@@ -8,16 +9,13 @@ use super::{Inertia, Step};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
 pub fn kinetic_energy(model: &Model, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {
-    (0..model.covers.block_count())
-        .filter(|&b| !mass_matrix.fixed[b])
-        .map(|b| block_energy(model, implicit, velocity, b))
-        .sum()
+    model.covers.blocks().filter(|&b| !mass_matrix.fixed[b]).map(|b| block_energy(model, implicit, velocity, b)).sum()
 }
 
 /// Kinetic energy (J/m) of one block by the consistent mass.
-pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], block: usize) -> f64 {
+pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], block: BlockId) -> f64 {
     let of_element = |e: usize| {
-        let [v0, v1, v2] = model.covers.element_covers[e].map(|i| velocity[i as usize]);
+        let [v0, v1, v2] = model.covers.element_covers[e].map(|i| velocity[i]);
         let [m00, m11, m22, m01, m02, m12] = implicit.element_mass[e];
         0.5 * (m00 * v0.norm_squared() + m11 * v1.norm_squared() + m22 * v2.norm_squared())
             + m01 * v0.dot(&v1)
@@ -29,7 +27,7 @@ pub fn block_energy(model: &Model, implicit: &Implicit, velocity: &[Vector], blo
 
 /// Takes the velocities of a static stage, which its steps do not use, and their energy, which its reports hold.
 pub fn stop(model: &Model, implicit: &Implicit, state: &mut State) {
-    let moving = (0..model.covers.block_count()).filter(|&b| !state.removed[b]);
+    let moving = model.covers.blocks().filter(|&b| !state.removed[b]);
     let energy: f64 = moving.map(|b| block_energy(model, implicit, &state.velocity, b)).sum();
     state.ledger.damping -= energy;
     state.velocity.fill(Vector::zeros());
@@ -63,7 +61,7 @@ impl Step<'_> {
         }
         let model = self.model;
         let mut taken = 0.0;
-        for block in 0..model.covers.block_count() {
+        for block in model.covers.blocks() {
             if self.workspace.mass_matrix.fixed[block] {
                 continue;
             }
@@ -75,7 +73,7 @@ impl Step<'_> {
         taken
     }
 
-    fn damp_block(&mut self, implicit: &Implicit, block: usize, factor: f64) {
+    fn damp_block(&mut self, implicit: &Implicit, block: BlockId, factor: f64) {
         let model = self.model;
         let (state, buffers) = (&mut *self.state, &mut self.workspace.implicit);
         let range = model.covers.covers_of(block);
@@ -90,7 +88,7 @@ impl Step<'_> {
         }
         let [spun, inertia] = [&state.velocity, &buffers.field].map(|field| {
             let of_element = |e: usize| {
-                let ids = model.covers.element_covers[e].map(|i| i as usize);
+                let ids = model.covers.element_covers[e];
                 turned_product(&implicit.element_mass[e], ids, &buffers.field, field)
             };
             model.covers.elements_of(block).map(of_element).sum::<f64>()
@@ -110,13 +108,13 @@ impl Step<'_> {
         let buffers = &mut self.workspace.implicit;
         buffers.residual.fill(Vector::zeros());
         for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
-            push_mass(mass, ids.map(|i| i as usize), &buffers.field, &mut buffers.residual);
+            push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
     }
 }
 
 /// aᵀ·M·b of one element.
-fn turned_product(mass: &[f64; 6], ids: [usize; 3], a: &[Vector], b: &[Vector]) -> f64 {
+fn turned_product(mass: &[f64; 6], ids: [CoverId; 3], a: &[Vector], b: &[Vector]) -> f64 {
     let [m00, m11, m22, m01, m02, m12] = *mass;
     let product = |p: usize, q: usize| a[ids[p]].dot(&b[ids[q]]);
     m00 * product(0, 0)

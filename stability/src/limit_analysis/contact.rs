@@ -1,7 +1,8 @@
 //! Where two blocks can press on each other: the shared straight pieces of their faces, and points.
 
-use enmm::cover::{BoundaryPiece, Outlines};
-use enmm::geometry::{NONE, Point, Vector};
+use enmm::contact::LawId;
+use enmm::cover::{BlockId, BoundaryPiece, Outlines};
+use enmm::geometry::{Point, Vector};
 
 use super::model::Strengths;
 
@@ -9,7 +10,7 @@ use super::model::Strengths;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// First and second block.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Both ends (m), the same place for a point.
     pub ends: [Point; 2],
     /// Unit vector from the first block to the second, normal to the face.
@@ -34,27 +35,30 @@ impl Contact {
     }
 }
 
-/// Block of an element, `NONE` outside the rock.
-pub fn block_of(element_block: &[u32], element: u32) -> u32 {
-    if element == NONE { NONE } else { element_block[element as usize] }
-}
-
 /// The straight interfaces of all blocks: pieces that follow each other on one line are one interface, because a
 /// rigid face bears any distribution of pressure by a force at each end (Eq. 77).
-pub fn interfaces(outlines: &Outlines, element_block: &[u32], strengths: &Strengths, tolerance: f64) -> Vec<Contact> {
+pub fn interfaces(
+    outlines: &Outlines,
+    element_block: &[BlockId],
+    strengths: &Strengths,
+    tolerance: f64,
+) -> Vec<Contact> {
     let mut contacts = Vec::new();
     for k in 0..outlines.len() {
         let mut run: Option<Run> = None;
         for piece in outlines.of_loop(k) {
-            let blocks = [piece.element, piece.opposite].map(|e| block_of(element_block, e));
+            let own = element_block[piece.element];
+            let other = piece.opposite.map(|element| element_block[element]);
             // Each face is seen from both sides; the block that comes first speaks.
-            let counts = blocks[0] < blocks[1] && blocks[1] != NONE && strengths.can_act(blocks);
+            let blocks = other.filter(|&other| own < other).map(|other| [own, other]);
+            let blocks = blocks.filter(|&blocks| strengths.can_act(blocks));
             let law = strengths.law(piece.trace);
-            let longer = run.as_ref().and_then(|run| run.with(piece, blocks, law, tolerance)).filter(|_| counts);
+            let goes_on = run.as_ref().zip(blocks);
+            let longer = goes_on.and_then(|(run, blocks)| run.with(piece, blocks, law, tolerance));
             if longer.is_none() {
                 contacts.extend(run.take().map(|run| run.contact(strengths)));
             }
-            run = longer.or_else(|| counts.then(|| Run { blocks, law, points: vec![piece.a, piece.b] }));
+            run = longer.or_else(|| blocks.map(|blocks| Run { blocks, law, points: vec![piece.a, piece.b] }));
         }
         contacts.extend(run.map(|run| run.contact(strengths)));
     }
@@ -64,14 +68,14 @@ pub fn interfaces(outlines: &Outlines, element_block: &[u32], strengths: &Streng
 /// Pieces on one line between the same blocks under the same law.
 #[derive(Clone)]
 struct Run {
-    blocks: [u32; 2],
-    law: u32,
+    blocks: [BlockId; 2],
+    law: LawId,
     points: Vec<Point>,
 }
 
 impl Run {
     /// With one piece more, when it goes on straight.
-    fn with(&self, piece: &BoundaryPiece, blocks: [u32; 2], law: u32, tolerance: f64) -> Option<Self> {
+    fn with(&self, piece: &BoundaryPiece, blocks: [BlockId; 2], law: LawId, tolerance: f64) -> Option<Self> {
         let (first, last) = (self.points[0], *self.points.last()?);
         let along = piece.b - first;
         let goes_on = along.dot(&(last - first)) > 0.0 && along.dot(&(piece.b - piece.a)) > 0.0;

@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use enmm::cover::Outlines;
-use enmm::geometry::{Point, Vector};
+use enmm::cover::{BlockId, Outlines};
+use enmm::geometry::{Point, TraceId, Vector};
 
-use super::contact::{Contact, block_of, outward};
+use super::contact::{Contact, outward};
 use super::model::Strengths;
 
 /// Angle (rad) within which a corner counts as straight.
@@ -23,17 +23,17 @@ pub struct Corner {
 #[derive(Debug, Clone, Copy)]
 struct Sector {
     at: Point,
-    block: u32,
+    block: BlockId,
     /// Ends of the face that leaves the point and of the one that comes to it, rock on their left.
     far: [Point; 2],
     /// Joint traces of both.
-    traces: [u32; 2],
+    traces: [Option<TraceId>; 2],
     /// Angle of the rock (rad).
     angle: f64,
 }
 
 /// Point contacts that act in any case, and pairs of facing corners of which one facet acts.
-pub fn corners(outlines: &Outlines, element_block: &[u32], strengths: &Strengths) -> (Vec<Contact>, Vec<Corner>) {
+pub fn corners(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths) -> (Vec<Contact>, Vec<Corner>) {
     let (mut points, mut corners) = (Vec::new(), Vec::new());
     let sectors = sectors(outlines, element_block, strengths);
     for group in sectors.chunk_by(|a, b| a.at == b.at).filter(|group| group.len() > 2 || lie_apart(group)) {
@@ -56,12 +56,12 @@ fn lie_apart(group: &[Sector]) -> bool {
 }
 
 /// All sectors of blocks that are there, those about the same point one after the other.
-fn sectors(outlines: &Outlines, element_block: &[u32], strengths: &Strengths) -> Vec<Sector> {
+fn sectors(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths) -> Vec<Sector> {
     let mut sectors = Vec::new();
     for k in 0..outlines.len() {
         let pieces = outlines.of_loop(k);
         for (before, after) in pieces.iter().cycle().skip(pieces.len() - 1).zip(pieces) {
-            let block = block_of(element_block, after.element);
+            let block = element_block[after.element];
             if strengths.is_gone(block) {
                 continue;
             }
@@ -142,7 +142,7 @@ impl Sector {
         let pick = |k: usize, sign: f64| {
             if sign * own[k].perp(&across[k]) > 0.0 { (own[k], self.traces[k]) } else { (across[k], other.traces[k]) }
         };
-        let facet = |(ray, trace): (Vector, u32), side: f64| {
+        let facet = |(ray, trace): (Vector, Option<TraceId>), side: f64| {
             strengths.point([self.block, other.block], self.at, outward(ray) * side, trace)
         };
         let facets = [facet(pick(0, 1.0), 1.0), facet(pick(1, -1.0), -1.0)];

@@ -1,6 +1,8 @@
 //! Rigid blocks with the forces on them, and what their joints, bolts and fixities can bear.
 
-use enmm::geometry::{NONE, Point, Vector};
+use enmm::contact::LawId;
+use enmm::cover::BlockId;
+use enmm::geometry::{Point, TraceId, Vector};
 use enmm::model::Simulation;
 use enmm::step;
 
@@ -65,7 +67,7 @@ impl Body {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bar {
     /// Blocks of both ends.
-    pub blocks: [u32; 2],
+    pub blocks: [BlockId; 2],
     /// Positions of both ends (m).
     pub ends: [Point; 2],
     /// Tension (N/m) at which it yields; infinite for never.
@@ -81,7 +83,7 @@ pub fn bodies(simulation: &Simulation) -> Vec<Body> {
     let gravity = if acceleration.norm() > 0.0 { acceleration.norm() } else { STANDARD_GRAVITY };
     let mut pushes = vec![Vector::zeros(); covers.cover_count()];
     step::push_forces(model, state, time, 1.0, &mut pushes);
-    let body = |b: usize| {
+    let body = |b: BlockId| {
         let mass = model.mass_matrix.total[b];
         let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * model.mass_matrix.row_sum[i]).sum();
         let centre = sum / mass;
@@ -98,7 +100,7 @@ pub fn bodies(simulation: &Simulation) -> Vec<Body> {
             is_gone: state.removed[b],
         }
     };
-    let mut bodies: Vec<Body> = (0..covers.block_count()).map(body).collect();
+    let mut bodies: Vec<Body> = covers.blocks().map(body).collect();
     hold(simulation, &mut bodies);
     let free = bodies.iter().filter(|body| body.is_free());
     let least = LEAST_WEIGHT * free.clone().map(|body| body.weight).sum::<f64>() / free.count().max(1) as f64;
@@ -110,21 +112,17 @@ pub fn bodies(simulation: &Simulation) -> Vec<Body> {
 fn hold(simulation: &Simulation, bodies: &mut [Body]) {
     let (model, state) = (simulation.model(), simulation.state());
     let covers = &model.covers;
-    let mut block_of_cover = vec![0; covers.cover_count()];
-    for b in 0..covers.block_count() {
-        covers.covers_of(b).for_each(|i| block_of_cover[i] = b);
-    }
     let axes = [Vector::x(), Vector::y()];
     for (fixity, _) in model.fixities.iter().zip(&state.fix_active).filter(|(_, active)| **active) {
         for &(cover, held) in &fixity.covers {
-            let body = &mut bodies[block_of_cover[cover as usize]];
-            let at = covers.star_position[cover as usize];
+            let body = &mut bodies[covers.cover_block[cover]];
+            let at = covers.star_position[cover];
             (0..2).filter(|&k| held[k]).for_each(|k| body.hold(at, axes[k]));
         }
     }
     for support in model.supports.iter().filter(|s| state.fix_active[s.fix as usize]) {
-        let at = support.covers.iter().zip(support.weights).map(|(&i, w)| covers.star_position[i as usize] * w).sum();
-        bodies[support.block as usize].hold(at, support.direction);
+        let at = support.covers.iter().zip(support.weights).map(|(&i, w)| covers.star_position[i] * w).sum();
+        bodies[support.block].hold(at, support.direction);
     }
 }
 
@@ -153,25 +151,25 @@ impl<'a> Strengths<'a> {
     }
 
     /// Law of faces that a joint trace has made, after switches.
-    pub fn law(&self, trace: u32) -> u32 {
+    pub fn law(&self, trace: Option<TraceId>) -> LawId {
         let model = self.simulation.model();
-        let law = if trace == NONE { model.default_law } else { model.trace_law[trace as usize] };
-        self.simulation.state().law_switch[law as usize]
+        let law = trace.map_or(model.default_law, |trace| model.trace_law[trace]);
+        self.simulation.state().law_switch[law]
     }
 
     /// Whether a block has been excavated.
-    pub fn is_gone(&self, block: u32) -> bool {
-        self.bodies[block as usize].is_gone
+    pub fn is_gone(&self, block: BlockId) -> bool {
+        self.bodies[block].is_gone
     }
 
     /// Whether two blocks are both there, and one of them can move.
-    pub fn can_act(&self, blocks: [u32; 2]) -> bool {
-        !blocks.iter().any(|&b| self.is_gone(b)) && blocks.iter().any(|&b| self.bodies[b as usize].is_free())
+    pub fn can_act(&self, blocks: [BlockId; 2]) -> bool {
+        !blocks.iter().any(|&b| self.is_gone(b)) && blocks.iter().any(|&b| self.bodies[b].is_free())
     }
 
     /// An interface from one end to the other, the first block on its left.
-    pub fn face(&self, blocks: [u32; 2], ends: [Point; 2], law: u32) -> Contact {
-        let law = &self.simulation.state().laws[law as usize];
+    pub fn face(&self, blocks: [BlockId; 2], ends: [Point; 2], law: LawId) -> Contact {
+        let law = &self.simulation.state().laws[law];
         let along = ends[1] - ends[0];
         let length = along.norm();
         let normal = outward(along);
@@ -180,8 +178,8 @@ impl<'a> Strengths<'a> {
     }
 
     /// A corner against a face that some trace has made: it has friction, and no length for cohesion.
-    pub fn point(&self, blocks: [u32; 2], at: Point, normal: Vector, trace: u32) -> Contact {
-        let law = &self.simulation.state().laws[self.law(trace) as usize];
+    pub fn point(&self, blocks: [BlockId; 2], at: Point, normal: Vector, trace: Option<TraceId>) -> Contact {
+        let law = &self.simulation.state().laws[self.law(trace)];
         Contact { blocks, ends: [at; 2], normal, friction: law.friction, cohesion: 0.0, tension: 0.0 }
     }
 }

@@ -3,6 +3,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 
 use super::contact::Contact;
@@ -95,9 +96,9 @@ impl Program {
 
     /// Velocity of the second block relative to the first at a position.
     pub fn parting(&self, motions: &[Motion], contact: &Contact) -> Vector {
-        let at = |b: u32| {
-            let (velocity, spin) = motions[b as usize];
-            let arm: Vector = contact.ends[0] - self.bodies[b as usize].centre;
+        let at = |b: BlockId| {
+            let (velocity, spin) = motions[b];
+            let arm: Vector = contact.ends[0] - self.bodies[b].centre;
             velocity + Vector::new(-arm.y, arm.x) * spin
         };
         at(contact.blocks[1]) - at(contact.blocks[0])
@@ -165,7 +166,7 @@ impl Rows {
             unit,
         };
         rows.balances(&program.bodies);
-        for (b, body) in program.bodies.iter().enumerate().filter(|(_, body)| body.is_free()) {
+        for (b, body) in BlockId::all(program.bodies.len()).zip(&program.bodies).filter(|(_, body)| body.is_free()) {
             for hold in &body.holds {
                 let column = rows.unknown();
                 rows.push(&program.bodies, b, *hold, column);
@@ -209,7 +210,7 @@ impl Rows {
     }
 
     /// An unknown force acts on a block by these shares.
-    fn push(&mut self, bodies: &[Body], block: usize, shares: [f64; 3], column: usize) {
+    fn push(&mut self, bodies: &[Body], block: BlockId, shares: [f64; 3], column: usize) {
         let Some(first) = self.first[block] else { return };
         let scale = self.unit / bodies[block].weight;
         for (k, share) in shares.into_iter().enumerate().filter(|(_, share)| *share != 0.0) {
@@ -219,10 +220,10 @@ impl Rows {
     }
 
     /// An unknown force acts on the second block along `direction`, and against it on the first.
-    fn pair(&mut self, bodies: &[Body], blocks: [u32; 2], at: [Point; 2], direction: Vector) -> usize {
+    fn pair(&mut self, bodies: &[Body], blocks: [BlockId; 2], at: [Point; 2], direction: Vector) -> usize {
         let column = self.unknown();
         for (k, sign) in [(0, -1.0), (1, 1.0)] {
-            let b = blocks[k] as usize;
+            let b = blocks[k];
             self.push(bodies, b, bodies[b].share(at[k], direction * sign), column);
         }
         column

@@ -1,5 +1,6 @@
 //! One way to fail after the other: the next is looked for when the blocks of the last have gone.
 
+use enmm::cover::BlockId;
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Stage, StageKind};
 
@@ -73,7 +74,7 @@ fn goes_on(found: &[Reduction], last: &Reduction, which: MechanismOptions) -> bo
 /// A static stage after those that there are, as long as the last, in which blocks are cleared away.
 fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) -> Stage {
     let last = &stages[stages.len() - 1];
-    let inside = |block: &FailingBlock| simulation.model().covers.point_inside(block.block as usize);
+    let inside = |block: &FailingBlock| simulation.model().covers.point_inside(BlockId::new(block.block as usize));
     Stage {
         convergence: last.convergence,
         excavate: failing.iter().map(|block| inside(block).into()).collect(),

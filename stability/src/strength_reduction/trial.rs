@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::judge::{self, Sample, Scales, Verdict};
 use super::{FailingBlock, Trial};
 use enmm::contact::ContactHistory;
+use enmm::cover::BlockId;
 use enmm::geometry::{Vector, polygon};
 use enmm::model::Simulation;
 use enmm::state::Ledger;
@@ -60,8 +61,8 @@ impl Base {
     pub fn free_area(&self) -> f64 {
         let model = self.simulation.model();
         let mut held = vec![false; model.covers.block_count()];
-        model.supports.iter().for_each(|support| held[support.block as usize] = true);
-        let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
+        model.supports.iter().for_each(|support| held[support.block] = true);
+        let area = |is_in: &dyn Fn(BlockId) -> bool| -> f64 {
             self.moving().filter(|&b| is_in(b)).map(|b| model.covers.block_area(b)).sum()
         };
         let free = area(&|b| !held[b]);
@@ -69,13 +70,13 @@ impl Base {
     }
 
     /// Blocks that can move.
-    fn moving(&self) -> impl Iterator<Item = usize> {
-        self.free.iter().enumerate().filter(|(_, free)| **free).map(|(b, _)| b)
+    fn moving(&self) -> impl Iterator<Item = BlockId> {
+        BlockId::all(self.free.len()).filter(|&b| self.free[b])
     }
 
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
     fn positions(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
-        let position = |b: usize| {
+        let position = |b: BlockId| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
             Vector3::new(motion.displacement.x, motion.displacement.y, turn)
@@ -147,7 +148,7 @@ impl Base {
     }
 
     /// Largest displacement (m) of a block's covers since the trial began.
-    fn moved(&self, simulation: &Simulation, block: usize) -> f64 {
+    fn moved(&self, simulation: &Simulation, block: BlockId) -> f64 {
         let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
         simulation.model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
     }
@@ -158,11 +159,11 @@ impl Base {
         let (model, state) = (simulation.model(), simulation.state());
         let boundary = &model.boundary;
         let bolts = model.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
-        let tied: Vec<[u32; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
+        let tied: Vec<[BlockId; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
         let mut before = self.simulation.state().contacts.iter().peekable();
         let counts = |contact: &&ContactHistory| {
-            let points = [boundary.node_point[contact.node as usize], contact.edge];
-            let blocks = points.map(|point| boundary.block[point as usize]);
+            let points = [boundary.node_point[contact.node], contact.edge];
+            let blocks = points.map(|point| boundary.block[point]);
             !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
         };
         let slipped = state.contacts.iter().filter(counts).map(|contact| {
@@ -182,7 +183,7 @@ impl Base {
                 let (_, velocity, spin, _) = block_motion(model, state, mass_matrix, b);
                 let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
-                    block: b as u32,
+                    block: b.number(),
                     position: model.covers.block_centroid(b),
                     area: model.covers.block_area(b),
                     mass: model.mass_matrix.total[b],

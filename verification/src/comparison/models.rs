@@ -1,5 +1,6 @@
 //! The models of the comparison: a beam, a block on an incline, a fractured slope.
 
+use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::model::case::Integrator;
@@ -187,12 +188,12 @@ pub(super) fn failure(integrator: Integrator, spacing: f64, known: &mut Option<T
 /// Mean displacement of every block (m).
 pub(crate) fn block_displacements(simulation: &Simulation) -> Vec<Vector> {
     let slope = simulation.model();
-    let of = |b: usize| {
+    let of = |b: BlockId| {
         let covers = slope.covers.covers_of(b);
         let sum: Vector = covers.map(|i| simulation.state().displacement[i] * slope.mass_matrix.row_sum[i]).sum();
         sum / slope.mass_matrix.total[b]
     };
-    (0..slope.covers.block_count()).map(of).collect()
+    slope.covers.blocks().map(of).collect()
 }
 
 /// Root mean square of the difference of two displacement fields over that of the second.

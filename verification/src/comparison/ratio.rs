@@ -158,7 +158,7 @@ impl Runner {
 
     fn compare(&mut self, column: &Column) {
         let (slope, state, time) = (self.simulation.model(), self.simulation.state(), self.simulation.time());
-        for element in (0..slope.covers.element_count()).step_by(STRIDE) {
+        for element in slope.covers.elements().step_by(STRIDE) {
             let place = slope.covers.element_centroid[element];
             let found = slope.sample(element, place, &state.displacement);
             let exact = column.displacement(place.y, time);

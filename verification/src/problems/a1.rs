@@ -1,5 +1,6 @@
 //! A1: patch tests on covers that any joints cut.
 
+use enmm::cover::ElementId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::State;
@@ -80,11 +81,11 @@ fn moved(simulation: &Simulation, field: impl Fn(Vector) -> Vector) -> State {
 /// Largest difference (Pa) of the stress of any element from an expected one.
 fn worst(simulation: &Simulation, state: &State, expected: [f64; 3]) -> f64 {
     let slope = simulation.model();
-    let of = |e: usize| {
+    let of = |e: ElementId| {
         let found = slope.stress(state, e);
         (0..3).map(|k| (found[k] - expected[k]).abs()).fold(0.0, f64::max)
     };
-    (0..slope.covers.element_count()).map(of).fold(0.0, f64::max)
+    slope.covers.elements().map(of).fold(0.0, f64::max)
 }
 
 /// Stress (Pa) of plane strain by Hooke's law.

@@ -1,5 +1,6 @@
 //! A2: free fall.
 
+use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::step::{StepReport, block_motion};
 
@@ -84,10 +85,9 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let fall = Vector::new(c, s) * (0.5 * g * t * t);
     let (slope, state) = (simulation.model(), simulation.state());
     let off = state.displacement.iter().map(|u| (u - fall).norm()).fold(0.0, f64::max);
-    let stress =
-        (0..slope.covers.element_count()).flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
-    let spin = |b: usize| block_motion(slope, state, &simulation.workspace().mass_matrix, b).2.abs();
-    let spin = (0..slope.covers.block_count()).map(spin).fold(0.0, f64::max);
+    let stress = slope.covers.elements().flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
+    let spin = |b: BlockId| block_motion(slope, state, &simulation.workspace().mass_matrix, b).2.abs();
+    let spin = slope.covers.blocks().map(spin).fold(0.0, f64::max);
     let rows = vec![
         Row::new("fall of the first cover", "m", state.displacement[0].norm(), fall.norm())
             .within(Tolerance::Relative(1e-10), "exact under constant acceleration; rounding of each step adds up"),

@@ -1,5 +1,7 @@
 //! A3: free spin.
 
+use enmm::contact::EdgeId;
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::block_motion;
@@ -63,8 +65,8 @@ fn shape(setup: &Setup) -> Vec<[f64; 2]> {
 /// Area (m²) of the boundary loop now, and the way from its first point to the one opposite.
 fn now(simulation: &Simulation) -> (f64, Vector) {
     let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
-    let corner = |k: usize| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
-    ((0..places.len()).map(corner).sum(), places[places.len() / 2] - places[0])
+    let corner = |k: EdgeId| (places[k] - places[0]).perp(&(places[boundary.after(k)] - places[0])) / 2.0;
+    (boundary.edges().map(corner).sum(), places[places.len() / 2] - places[0])
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
@@ -93,7 +95,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let turns = if setup.quick { setup.get("turns").min(0.5) } else { setup.get("turns") };
     let steps = simulation.steps_in(turns * std::f64::consts::TAU / w0);
     let every = (steps / 400).max(1);
-    let motion = |s: &Simulation| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, 0);
+    let motion = |s: &Simulation| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, BlockId::new(0));
     let (momentum, (_, _, spin, kinetic)) = (simulation.momentum().1, motion(&simulation));
     let (mut angle, mut arm, mut curve) = (0.0, now(&simulation).1, Vec::new());
     for k in 1..=steps {

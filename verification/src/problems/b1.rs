@@ -127,7 +127,7 @@ fn stress_error(simulation: &Simulation, beam: &Beam, q: f64) -> f64 {
         if x.abs() > 0.25 * beam.length {
             continue;
         }
-        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i as usize]);
+        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i]);
         let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
         let computed = Deformation::new(u, gradients).stress(&slope.rocks[0], &[0.0; 3])[0];
         sum += covers.element_area[e] * (computed - beam.uniform_stress(q, x, p.y)).powi(2);

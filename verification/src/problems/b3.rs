@@ -88,7 +88,7 @@ fn stresses(simulation: &Simulation) -> Vec<[f64; 2]> {
     let slope = simulation.model();
     let covers = &slope.covers;
     let of = |e: usize| {
-        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i as usize]);
+        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i]);
         let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
         let stress = Deformation::new(u, gradients).stress(&slope.rocks[0], &[0.0; 3]);
         [stress[0], stress[1]]

@@ -110,7 +110,7 @@ impl Block {
         let side = upright + head.0 - toe.0;
         let turned = side.dot(&across).atan2(side.dot(&upright) / self.height);
         let (slope, element) = (simulation.model(), simulation.built().monitors[1].0);
-        let block = slope.covers.element_block[element] as usize;
+        let block = slope.covers.element_block[element];
         // Counter-clockwise is uphill.
         let spin = -block_motion(slope, simulation.state(), &simulation.workspace().mass_matrix, block).2;
         Fate { time: simulation.time(), turned, spin, slides: toe.1.dot(&down) }

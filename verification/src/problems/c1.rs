@@ -2,6 +2,7 @@
 
 use super::incline::{G, rock, turn};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
@@ -103,7 +104,7 @@ impl Incline {
         let covers = &simulation.model().covers;
         let middle = turn(&[[0.52 * self.long(), 0.48]], -self.slope)[0];
         let element = covers.element_at(Point::from(middle)).ok_or(Trouble("the block is not there".to_owned()))?;
-        let block = covers.element_block[element] as usize;
+        let block = covers.element_block[element];
         if speed != 0.0 {
             let mut state = simulation.state().clone();
             let kick = self.down() * speed;
@@ -120,7 +121,7 @@ impl Incline {
 /// A block under way.
 struct Slide {
     simulation: Simulation,
-    block: usize,
+    block: BlockId,
     down: Vector,
     start: f64,
     report: StepReport,

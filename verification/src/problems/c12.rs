@@ -113,7 +113,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
     let middle = Point::from(turned(&[[0.5 * BLOCK[0], 0.5 * BLOCK[1]]], slope)[0]);
     let covers = &simulation.model().covers;
     let element = covers.element_near(middle, 0.1).ok_or_else(|| Trouble("no rock in the block".into()))?;
-    let block = covers.element_block[element] as usize;
+    let block = covers.element_block[element];
     let third = simulation.steps_in(TRIAL / 3.0);
     let mut places = Vec::new();
     let mut report = StepReport::default();

@@ -1,6 +1,7 @@
 //! C3: two equal blocks on an incline, the upper pushing the lower.
 
 use enmm::contact::VertexEdge;
+use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
@@ -107,14 +108,10 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     let (s, c) = slope.to_radians().sin_cos();
     let covers = &simulation.model().covers;
     let block = |p: [f64; 2]| covers.element_near(Point::from(p), 0.1).map(|e| covers.element_block[e]);
-    let blocks: Vec<u32> = middles.iter().filter_map(|p| block(*p)).collect();
+    let blocks: Vec<BlockId> = middles.iter().filter_map(|p| block(*p)).collect();
     let along = |simulation: &Simulation, k: usize| {
-        let motion = block_motion(
-            simulation.model(),
-            simulation.state(),
-            &simulation.workspace().mass_matrix,
-            blocks[k] as usize,
-        );
+        let motion =
+            block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, blocks[k]);
         motion.0.dot(&Vector::new(c, -s))
     };
     let start = [0, 1].map(|k| along(simulation, k));

@@ -134,7 +134,7 @@ fn moving(columns: &Columns, reduction: &Reduction) -> Vec<Mode> {
     let failing = reduction.first_unstable().map_or(&[][..], |trial| &trial.failing);
     let of = |(k, middle): (usize, &[f64; 2])| {
         let element = covers.element_at((*middle).into());
-        let block = element.map(|e| covers.element_block[e]);
+        let block = element.map(|e| covers.element_block[e].number());
         let Some(motion) = failing.iter().find(|f| Some(f.block) == block) else { return Mode::Stable };
         let reach = columns.height(k + 1).hypot(columns.width);
         if motion.rotation.abs() * reach > 0.5 * motion.displacement { Mode::Topples } else { Mode::Slides }

@@ -121,10 +121,10 @@ pub fn stress_at(simulation: &Simulation, point: Point) -> [f64; 3] {
     let covers = &slope.covers;
     let reach = REACH * covers.mesh.size;
     let (mut matrix, mut right) = ([[0.0; 6]; 6], [[0.0; 6]; 3]);
-    for e in 0..covers.element_count() {
+    for e in covers.elements() {
         let d = (covers.element_centroid[e] - point) / reach;
         let nearness = 1.0 - d.norm_squared();
-        if nearness <= 0.0 || state.removed[covers.element_block[e] as usize] {
+        if nearness <= 0.0 || state.removed[covers.element_block[e]] {
             continue;
         }
         let weight = covers.element_area[e] * nearness * nearness;
@@ -170,7 +170,7 @@ pub fn stress_error(simulation: &Simulation, reach: f64, field: Field) -> f64 {
     let (slope, state) = (simulation.model(), simulation.state());
     let covers = &slope.covers;
     let (mut sum, mut area) = (0.0, 0.0);
-    for e in (0..covers.element_count()).filter(|&e| covers.element_centroid[e].norm() < reach) {
+    for e in covers.elements().filter(|&e| covers.element_centroid[e].norm() < reach) {
         let (found, exact) = (slope.stress(state, e), field(covers.element_centroid[e]));
         let square: f64 = (0..3).map(|k| (found[k] - exact[k]).powi(2)).sum();
         sum += covers.element_area[e] * square;

@@ -85,7 +85,7 @@ impl Slider<'_> {
         let middle = Point::new(cos * 1.02 + sin * 0.48, cos * 0.48 - sin * 1.02);
         let covers = &simulation.model().covers;
         let element = covers.element_near(middle, 1e-6).ok_or_else(|| Trouble("there is no block".into()))?;
-        let block = covers.element_block[element] as usize;
+        let block = covers.element_block[element];
         let motion = |simulation: &enmm::model::Simulation| {
             let (slope, state) = (simulation.model(), simulation.state());
             let (centre, velocity, ..) = block_motion(slope, state, &simulation.workspace().mass_matrix, block);

@@ -1,7 +1,8 @@
 //! What hosts read, in the structures of C.
 
-use engine::contact::ContactState;
+use engine::contact::{ContactState, EdgeId};
 use engine::cosimulation::{EventKind, PortKind, Totals};
+use engine::cover::BlockId;
 use engine::geometry::{Point, polygon};
 use engine::model::BlockState;
 use engine::state::Ledger;
@@ -35,7 +36,7 @@ impl Model {
         let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
             let history = &contact.history;
-            let position = places[boundary.node_point[history.node as usize] as usize];
+            let position = places[boundary.node_point[history.node]];
             enmm_contact {
                 struct_size: size_of::<enmm_contact>(),
                 state: match history.state {
@@ -43,9 +44,9 @@ impl Model {
                     ContactState::Slip => enmm_contact_state::ENMM_CONTACT_SLIP,
                     ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
                 },
-                law: contact.law,
-                node_block: contact.pair.blocks[0],
-                edge_block: contact.pair.blocks[1],
+                law: contact.law.number(),
+                node_block: contact.pair.blocks[0].number(),
+                edge_block: contact.pair.blocks[1].number(),
                 position_x: position.x,
                 position_y: position.y,
                 normal_x: contact.normal.x,
@@ -90,7 +91,7 @@ impl Model {
                 Err(Failure::new(enmm_status::ENMM_NOT_FOUND, message))
             }
             Some(false) => {
-                let mut loops = self.loops(|of| of == block);
+                let mut loops = self.loops(|of| of.number() == block);
                 let mut loops: Vec<_> = loops.drain(..).map(|(_, points)| points).collect();
                 loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
                 Ok(loops)
@@ -107,32 +108,34 @@ impl Model {
             return Err(Failure::invalid(format!("x, y: are {}, {}, must be finite numbers (m)", p.x, p.y)));
         }
         let removed = &self.inner.simulation().state().removed;
-        let loops = self.loops(|block| !removed[block as usize]);
-        let mut around: Vec<u32> =
+        let loops = self.loops(|block| !removed[block]);
+        let mut around: Vec<BlockId> =
             loops.iter().filter(|(_, points)| polygon::contains(points, p)).map(|(block, _)| *block).collect();
         around.sort_unstable();
         // A point in a hole is inside the outer loop and the loop of the hole: rock is where the count is odd.
         let found = around.chunk_by(|a, b| a == b).find(|same| same.len() % 2 == 1);
-        found.map(|same| same[0]).ok_or_else(|| {
+        found.map(|same| same[0].number()).ok_or_else(|| {
             Failure::new(enmm_status::ENMM_NOT_FOUND, format!("there is no rock at ({}, {}) m now", p.x, p.y))
         })
     }
 
     /// Boundary loops of the `wanted` blocks at their current places.
-    fn loops(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, Vec<Point>)> {
+    fn loops(&self, wanted: impl Fn(BlockId) -> bool) -> Vec<(BlockId, Vec<Point>)> {
         let simulation = self.inner.simulation();
         let boundary = &simulation.model().boundary;
         let places = simulation.positions();
         let mut loops = Vec::new();
         let mut k = 0;
         while k < boundary.len() {
-            let first = k;
-            while boundary.after(k) != first {
-                k = boundary.after(k);
+            let first = EdgeId::new(k);
+            let mut last = first;
+            while boundary.after(last) != first {
+                last = boundary.after(last);
             }
-            k += 1;
+            let points = k..last.index() + 1;
+            k = points.end;
             if wanted(boundary.block[first]) {
-                loops.push((boundary.block[first], places[first..k].to_vec()));
+                loops.push((boundary.block[first], places[points].to_vec()));
             }
         }
         loops
@@ -180,7 +183,7 @@ impl Model {
     /// No such port.
     pub fn port_block(&self, port: u32) -> Result<u32, Failure> {
         self.check_port(port)?;
-        Ok(self.inner.ports()[port as usize].block)
+        Ok(self.inner.ports()[port as usize].block.number())
     }
 
     /// State of a port.

@@ -94,7 +94,7 @@ fn attempt(text: &str, base: &Path, trace: &mut Trace) -> Result<Outcome, String
 fn watched(mut model: Simulation, loaded: &LoadedCase, trace: &mut Trace) -> Result<Outcome, String> {
     model.set_serial(true);
     model.validate_stages().map_or_else(|error| told(&error.to_string()), Ok)?;
-    let areas: Vec<f64> = (0..model.model().covers.block_count()).map(|b| model.model().covers.block_area(b)).collect();
+    let areas: Vec<f64> = model.model().covers.blocks().map(|b| model.model().covers.block_area(b)).collect();
     if let Some(b) = areas.iter().position(|&area| !(area.is_finite() && area > 0.0)) {
         return Err(format!("block {b} has an area of {}", areas[b]));
     }

@@ -58,7 +58,7 @@ fn attempt(random: &mut Random, trace: &mut Trace) -> Result<Outcome, String> {
         }
     };
     let (covers, noding) = (&model.model().covers, &model.built().noding);
-    let blocks: f64 = (0..covers.block_count()).map(|b| covers.block_area(b)).sum();
+    let blocks: f64 = covers.blocks().map(|b| covers.block_area(b)).sum();
     let elements: f64 = covers.element_area.iter().sum();
     let [wanted, around] = measures(outline);
     // The noder draws an outline by a few tolerances, on all of its length; places far away have less digits.

@@ -1,7 +1,7 @@
 use serde_json::json;
 
 use super::*;
-use crate::geometry::{Label, Segment, arrange};
+use crate::geometry::{Label, Segment, TraceId, arrange};
 
 /// Side of the square that networks are laid in (m), and the snap tolerance (m).
 const SIDE: f64 = 10.0;
@@ -69,15 +69,19 @@ fn no_network_that_fits_when_it_is_cut_is_refused_by_an_estimate() {
     let mut numbers = Numbers(3);
     let (mut most, mut floods) = (0.0f64, 0);
     for round in 0..300 {
-        let traces: Vec<(Vec<Point>, u32)> =
-            (0..1 + round % 4).flat_map(|_| numbers.joints()).map(|points| (points, 0)).collect();
+        let traces: Vec<(Vec<Point>, LawId)> =
+            (0..1 + round % 4).flat_map(|_| numbers.joints()).map(|points| (points, LawId::new(0))).collect();
         let (size, rock) = (0.5 + 2.0 * numbers.next(), outline(round % 3));
         let (low, high) = (Point::zeros(), Point::repeat(SIDE));
         let mesh = RegularMesh::new(size, numbers.next(), Point::zeros(), low, high);
         let mut segments: Vec<Segment> =
             polygon::sides(&rock).map(|(a, b)| Segment { a, b, label: Label::OUTLINE }).collect();
         for (k, (points, _)) in traces.iter().enumerate() {
-            segments.extend(points.windows(2).map(|p| Segment { a: p[0], b: p[1], label: Label::trace(k as u32) }));
+            segments.extend(points.windows(2).map(|p| Segment {
+                a: p[0],
+                b: p[1],
+                label: Label::trace(TraceId::new(k)),
+            }));
         }
         segments.extend(mesh.segments(low, high));
         let arrangement = arrange(&segments, TOLERANCE).expect("an arrangement");
