@@ -7,7 +7,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def test_every_promised_file_is_there(results):
-    names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm"]
+    names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm", "report.html", "film.bin"]
     for name in names:
         assert (results / name).stat().st_size > 0, name
     assert sorted(results.glob("frames/*.vtu"))

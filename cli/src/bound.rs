@@ -1,19 +1,41 @@
 //! `enmm bound`: limit analysis of a case, a second opinion on its factor of safety.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use enmm_run::{BoundFailure, bound_record};
+use clap::Args;
+use enmm_run::{BoundFailure, bound_record, write_bound_page};
 use enmm_stability::limit_analysis::{Bound, Collapse};
 
+use crate::run::directory_of;
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
-/// Finds the bounds of a case and prints them.
-pub fn bound(path: &Path, json: bool) -> ExitCode {
-    let found = enmm_io::load_case(path).map_err(BoundFailure::from).and_then(|loaded| enmm_run::bound(&loaded));
-    match found {
-        Ok(bound) if json => print_line(&bound_record(&bound).to_string()),
-        Ok(bound) => print_line(&text(&bound)),
+/// Arguments of `enmm bound`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Case file (TOML); the model is looked at in the last of the static stages that it begins with.
+    case: PathBuf,
+    /// Directory for report.html; default: the name of the case file, here.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Finds the bounds of a case, prints them and writes their page.
+pub fn bound(arguments: &Arguments) -> ExitCode {
+    let Arguments { case, output, json } = arguments;
+    let json = *json;
+    let found = enmm_io::load_case(case).map_err(BoundFailure::from);
+    match found.and_then(|loaded| enmm_run::bound(&loaded).map(|bound| (loaded, bound))) {
+        Ok((loaded, bound)) => {
+            print_line(&if json { bound_record(&bound).to_string() } else { text(&bound) });
+            let directory = output.clone().unwrap_or_else(|| directory_of(case));
+            if let Err(error) = write_bound_page(&directory, &loaded, &bound) {
+                return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
+            }
+        }
         Err(error) => {
             if json {
                 print_line(&serde_json::json!({ "error": error.to_string() }).to_string());

@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod run;
 mod verify;
+mod view;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -52,13 +53,9 @@ enum Command {
     /// Finds the factor of safety of a case by dividing its strength until it fails.
     Fos(fos::Arguments),
     /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
-    Bound {
-        /// Case file (TOML); the model is looked at in the last of the static stages that it begins with.
-        case: PathBuf,
-        /// Print one JSON object.
-        #[arg(long)]
-        json: bool,
-    },
+    Bound(bound::Arguments),
+    /// Shows a run in a browser while it goes on.
+    View(view::Arguments),
     /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
     Bench(bench::Arguments),
     /// Prints the JSON Schema of the case file.
@@ -79,7 +76,8 @@ fn execute(command: Command) -> ExitCode {
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
-        Command::Bound { case, json } => bound::bound(&case, json),
+        Command::Bound(arguments) => bound::bound(&arguments),
+        Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),
     }

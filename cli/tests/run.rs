@@ -16,7 +16,7 @@ fn every_promised_file_is_there_and_whole() {
     assert_eq!(answer.status, Some(0), "{answer:?}");
     assert!(answer.stdout.contains("deformed.png"), "{answer:?}");
     assert_eq!(place.names(), ["case", "case.toml"], "results go to the name of the case");
-    let names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm"];
+    let names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm", "report.html", "film.bin"];
     for name in names.into_iter().chain(["model.png", "deformed.png", "history.png", "frames/elements_0000.vtu"]) {
         assert!(fs::metadata(place.path("case").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
     }
@@ -50,7 +50,8 @@ fn quiet_runs_print_nothing_and_threads_change_nothing() {
         assert_eq!((answer.status, answer.stdout.as_str(), answer.stderr.as_str()), (Some(0), "", ""));
     }
     let frames = ["frames/elements_0003.vtu", "frames/joints_0003.vtu"];
-    for name in ["blocks.csv", "history.csv", "deformed.png", "checkpoint.enmm"].into_iter().chain(frames) {
+    let names = ["blocks.csv", "history.csv", "deformed.png", "checkpoint.enmm", "film.bin", "report.html"];
+    for name in names.into_iter().chain(frames) {
         let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
         assert!(read("1") == read("2"), "{name}");
     }
@@ -69,7 +70,7 @@ fn a_numerical_failure_exits_with_3_and_keeps_the_last_good_state() {
     assert!(failure["cause"].as_str().expect("a cause").contains("solver.penetration_limit"));
     assert!(failure["time"].as_f64() > summary["time"].as_f64(), "the checkpoint is older than the failure");
     assert_eq!(failure["place"].as_array().expect("a place").len(), 2);
-    for name in ["checkpoint.enmm", "history.csv", "blocks.csv", "run.pvd"] {
+    for name in ["checkpoint.enmm", "history.csv", "blocks.csv", "run.pvd", "report.html"] {
         assert!(fs::metadata(place.path("case").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
     }
     let again = place.enmm(&["run", "case.toml", "--resume", "case/checkpoint.enmm", "--quiet"]);

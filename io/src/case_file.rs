@@ -56,6 +56,7 @@ impl LoadedCase {
 #[derive(Debug, Clone, Default)]
 pub struct CaseSource {
     file: String,
+    text: String,
     lines: LineMap,
     geometry_file: String,
     geometry_lines: LineMap,
@@ -69,6 +70,11 @@ impl CaseSource {
     /// Returns the case file as the user named it.
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// Returns the text of the case file; empty when the case was not read from one.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
@@ -112,7 +118,7 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
 pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<LoadedCase, CaseError> {
     let (mut case, lines) = reader::read(text, file_name)?;
     let file = file_name.to_string();
-    let mut source = CaseSource { file, lines, ..CaseSource::default() };
+    let mut source = CaseSource { file, text: text.to_owned(), lines, ..CaseSource::default() };
     let warnings = merge_geometry_file(&mut case, &mut source, base_dir)?;
     merge_record_files(&mut case, &mut source, base_dir)?;
     LoadedCase::checked(case, source, warnings)

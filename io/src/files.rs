@@ -38,7 +38,7 @@ pub fn write_atomic_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Re
 }
 
 /// A name in the directory of `path` that no other write of this or another process uses.
-fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
+pub fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
     let mut hidden = std::ffi::OsString::from(".");
@@ -52,7 +52,7 @@ fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// Kinds of files that runs and searches leave.
-const KINDS: [&str; 6] = ["csv", "enmm", "json", "png", "pvd", "vtu"];
+const KINDS: [&str; 8] = ["bin", "csv", "enmm", "html", "json", "png", "pvd", "vtu"];
 
 /// Removes temporary files that killed programs left in a directory; a missing directory has none.
 ///

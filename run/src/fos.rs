@@ -10,6 +10,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use super::bound::bound_record;
+use super::mechanism_page::write_fos_page;
 use enmm::engine_version;
 use enmm_io::CaseError;
 use enmm_io::LoadedCase;
@@ -157,6 +158,7 @@ pub fn fos(
     let found = Found { searches, which };
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
     write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
+    write_fos_page(&options.directory, loaded, &found).map_err(FosError::Output)?;
     Ok(found)
 }
 

@@ -4,8 +4,10 @@
 pub mod blocks;
 mod bound;
 pub mod check;
+mod film;
 pub mod fos;
 pub mod history;
+mod mechanism_page;
 mod run;
 pub mod summary;
 pub mod vtu;
@@ -13,5 +15,6 @@ pub mod vtu;
 pub use bound::{BoundFailure, bound, bound_record};
 pub use check::check;
 pub use fos::{FosError, FosOptions, fos};
+pub use mechanism_page::write_bound_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use summary::{RunStatus, Summary};

@@ -17,6 +17,7 @@ use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
 use program::{Program, Unsolved};
+pub use refusal::staged;
 use search::{Limit, Search};
 
 /// Least and greatest factor that are told from none and from no end.

@@ -15,6 +15,11 @@ const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
+/// Test of the pages of results, which needs a browser.
+const BROWSER_TEST: &str = "python_tests/test_report.py";
+/// Chromium by the names that systems give it, as `python_tests/browser.py` looks for it.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
 /// All Python tests.
 pub const ALL: &str = "python_tests";
 
@@ -30,6 +35,10 @@ pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> 
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = command(repository)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places);
+    if !has_browser() {
+        println!("SKIPPED {BROWSER_TEST}: there is no Chromium on this machine (Debian: apt-get install chromium)");
+        pytest.args(["--ignore", BROWSER_TEST]);
+    }
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
     pytest.env("ENMM_EXAMPLE", repository.example("cosimulation"));
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
@@ -38,6 +47,23 @@ pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> 
         return Err("pytest failed without a failed test".to_owned());
     }
     Ok(counts)
+}
+
+/// Whether there is a Chromium; where Debian's packages can be installed it is installed first.
+fn has_browser() -> bool {
+    let found = || BROWSERS.iter().any(|name| succeeds(Command::new(name).arg("--version")));
+    let is_root = || Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout.trim_ascii() == b"0");
+    if found() || !is_root() {
+        return found();
+    }
+    println!("installing Chromium for {BROWSER_TEST}");
+    let apt = |args: &[&str]| succeeds(Command::new("apt-get").args(args).env("DEBIAN_FRONTEND", "noninteractive"));
+    let install = ["install", "--yes", "--no-install-recommends", "chromium"];
+    (apt(&install) || (apt(&["update"]) && apt(&install))) && found()
+}
+
+fn succeeds(command: &mut Command) -> bool {
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
 /// Packs the FMUs of the tests; returns their folder.
@@ -93,10 +119,9 @@ fn environment(repository: &Repository) -> Result<PathBuf, String> {
 
 fn make_environment(system: &str, place: &Path) -> Result<(), String> {
     let mut make = Command::new(system);
-    make.args(["-m", "venv", "--clear"]).arg(place).stdout(Stdio::null()).stderr(Stdio::null());
-    let made = make.status().is_ok_and(|status| status.success());
+    make.args(["-m", "venv", "--clear"]).arg(place);
     let problem = || format!("{system} -m venv {} failed: install Python's venv module {REMEDY}", place.display());
-    if made { Ok(()) } else { Err(problem()) }
+    if succeeds(&mut make) { Ok(()) } else { Err(problem()) }
 }
 
 /// The first Python 3 on the path, with its version.

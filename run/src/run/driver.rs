@@ -8,6 +8,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::blocks::write_blocks;
+use crate::film::{Film, Opening};
 use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::PvdWriter;
@@ -21,6 +22,7 @@ use enmm::state::{Ledger, Seconds, State};
 use enmm::step::{StepError, StepReport};
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
+use enmm_report::{Axis, FILM, Note, Quantity};
 
 use super::results::Past;
 use super::rows::{self, Plan};
@@ -93,6 +95,7 @@ struct Driver<'a> {
     good: Saved,
     history: HistoryWriter,
     frames: Option<PvdWriter>,
+    film: Film,
     clock: Instant,
     stage_clock: Instant,
     warnings: Vec<String>,
@@ -115,7 +118,7 @@ pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observe
         if !driver.simulation.next_stage().map_err(invalid)? {
             return driver.close(RunStatus::Finished, None);
         }
-        driver.begin_stage();
+        driver.begin_stage().map_err(RunError::Output)?;
     }
 }
 
@@ -156,6 +159,7 @@ impl<'a> Driver<'a> {
         warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
         warnings.iter().for_each(|warning| observer.warn(warning));
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
+        let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
         let progress = good.progress.clone();
         let stage_clock = Instant::now();
         let mut driver = Self {
@@ -167,22 +171,42 @@ impl<'a> Driver<'a> {
             good,
             history,
             frames,
+            film,
             clock,
             stage_clock,
             warnings,
         };
         if !resumed {
-            driver.begin_stage();
+            driver.begin_stage().map_err(RunError::Directory)?;
         }
         Ok(driver)
     }
 
-    fn begin_stage(&mut self) {
+    fn begin_stage(&mut self) -> io::Result<()> {
         self.stage_clock = Instant::now();
         self.begin_row();
         self.progress.unsettled_before = self.simulation.state().counters.unsettled;
         self.progress.potential_start = None;
         self.progress.penetration_max = 0.0;
+        self.note_stage(None, "")
+    }
+
+    /// Tells the film that the stage begins, or how it ended.
+    fn note_stage(&mut self, end: Option<f64>, outcome: &str) -> io::Result<()> {
+        let (stage, state) = (self.simulation.stage(), self.simulation.state());
+        let kind = match stage.kind {
+            StageKind::Static => "static",
+            StageKind::Dynamic => "dynamic",
+        };
+        let note = Note::Stage {
+            number: state.stage,
+            name: stage.name.clone(),
+            kind: kind.to_owned(),
+            start: state.stage_start,
+            end,
+            outcome: outcome.to_owned(),
+        };
+        self.film.note(self.simulation.time(), &note)
     }
 
     /// Runs the stage in progress to its end, unless a checkpoint says that it is over.
@@ -209,6 +233,9 @@ impl<'a> Driver<'a> {
         }
         if plan.frame_due(step) {
             self.push_frame().map_err(Err)?;
+        }
+        if plan.film_due(step) {
+            self.film.frame(&self.simulation).map_err(|error| Err(RunError::Output(error)))?;
         }
         self.tell();
         self.step(plan)
@@ -270,13 +297,14 @@ impl<'a> Driver<'a> {
         let after = rows::monitors(&self.simulation);
         let dt = [dt_before, self.simulation.model().dt];
         let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
-        self.history.row(&row).map_err(RunError::Output)
+        self.history.row(&row).and_then(|()| self.film.row(&row)).map_err(RunError::Output)
     }
 
     /// Row and frame of the end of a stage, and its record; the step that the row needs is taken back.
     fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
         self.keep_good();
         self.push_frame()?;
+        self.film.frame(&self.simulation).map_err(RunError::Output)?;
         let dt_before = self.simulation.state().dt_last;
         let before = rows::monitors(&self.simulation);
         let sweeps_mean = self.sweeps_mean();
@@ -289,27 +317,39 @@ impl<'a> Driver<'a> {
         }
         self.simulation.return_to(&self.good.state);
         if !recorded {
-            self.warn_of_stage(converged);
+            self.warn_of_stage(converged)?;
+            let rests = self.simulation.stage().kind == StageKind::Static;
+            let outcome = if !rests {
+                "over"
+            } else if converged {
+                "at rest"
+            } else {
+                "NOT at rest"
+            };
+            self.note_stage(Some(self.simulation.time()), outcome).map_err(RunError::Output)?;
             let record = self.stage_record(Some(converged));
             self.progress.done.push(record);
         }
         Ok(StageEnd::Over)
     }
 
-    fn warn_of_stage(&mut self, converged: bool) {
+    fn warn_of_stage(&mut self, converged: bool) -> Result<(), RunError> {
         let stage = self.simulation.stage();
         if stage.kind == StageKind::Static && !converged {
             let (name, time, ratio) = (&stage.name, stage.duration, self.progress.unbalanced);
             self.warn(format!(
                 "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}): \
                  the slope moves, or the stage needs a longer duration"
-            ));
+            ))?;
         }
+        Ok(())
     }
 
-    fn warn(&mut self, message: String) {
+    fn warn(&mut self, message: String) -> Result<(), RunError> {
         self.observer.warn(&message);
+        let note = Note::Warning { text: message.clone() };
         self.warnings.push(message);
+        self.film.note(self.simulation.time(), &note).map_err(RunError::Output)
     }
 
     fn stage_record(&self, converged: Option<bool>) -> StageRecord {
@@ -396,6 +436,7 @@ impl<'a> Driver<'a> {
         let ended = status == RunStatus::Finished;
         let doubt = self.simulation.doubt(&self.progress.ledger).filter(|_| ended);
         self.warnings.extend(doubt.clone());
+        self.close_film(status, failure, doubt.as_ref()).map_err(RunError::Output)?;
         let record = RunRecord {
             case_file: self.loaded.source.file(),
             case_hash: &self.loaded.hash,
@@ -413,6 +454,24 @@ impl<'a> Driver<'a> {
     }
 }
 
+impl Driver<'_> {
+    /// Writes the page of the run.
+    fn close_film(&mut self, status: RunStatus, failure: Option<&StepError>, doubt: Option<&String>) -> io::Result<()> {
+        let time = self.simulation.time();
+        if let Some(doubt) = doubt {
+            self.film.note(time, &Note::Warning { text: doubt.clone() })?;
+        }
+        let status = match (status, failure) {
+            (RunStatus::Finished, _) => "finished".to_owned(),
+            (RunStatus::Interrupted, _) => "interrupted".to_owned(),
+            (RunStatus::Failed, failure) => {
+                failure.map_or_else(|| "failed".to_owned(), |error| format!("failed: {error}"))
+            }
+        };
+        self.film.close(time, status)
+    }
+}
+
 /// Begins histories and frames, or continues those of the past of a restored state.
 fn writers(simulation: &Simulation, directory: &Path, resumed: bool) -> io::Result<(HistoryWriter, Option<PvdWriter>)> {
     let (path, columns) = (directory.join("history.csv"), rows::columns(simulation.case()));
@@ -425,6 +484,30 @@ fn writers(simulation: &Simulation, directory: &Path, resumed: bool) -> io::Resu
     let until = kept_until(simulation);
     let history = HistoryWriter::open_for_append(&path, &columns, until)?;
     Ok((history, frames.then(|| PvdWriter::open_for_append(directory, until)).transpose()?))
+}
+
+/// Begins the film of a run, or continues that of a restored state. Its first notes are the warnings so far.
+fn film(
+    loaded: &LoadedCase,
+    simulation: &Simulation,
+    directory: &Path,
+    resumed: bool,
+    warnings: &[String],
+) -> io::Result<Film> {
+    let columns = rows::columns(simulation.case());
+    let opening = Opening {
+        command: "run",
+        film: directory.join(FILM),
+        axis: Axis::time(),
+        quantities: vec![Quantity::Velocity, Quantity::Stress],
+        columns: &columns,
+    };
+    let until = resumed.then(|| kept_until(simulation));
+    let mut film = Film::open(directory, loaded, simulation, opening, until)?;
+    for text in warnings {
+        film.note(simulation.time(), &Note::Warning { text: text.clone() })?;
+    }
+    Ok(film)
 }
 
 /// What a user should know whose histories begin at a checkpoint.

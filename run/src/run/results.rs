@@ -10,6 +10,7 @@ use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, sweep_temporaries};
 use enmm_picture::model_annotations;
 use enmm_picture::{displacement_picture, history_picture, model_picture};
+use enmm_report::FILM;
 
 use super::rows;
 
@@ -70,6 +71,10 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
         fs::copy(path, &to).map(drop).map_err(at_path(&to))
     };
     copy(&beside.join("history.csv"))?;
+    let film = beside.join(FILM);
+    if film.is_file() {
+        copy(&film)?;
+    }
     let collection = beside.join("run.pvd");
     if collection.is_file() && beside.join("frames").is_dir() {
         frames(beside)?.iter().try_for_each(|frame| copy(frame))?;

@@ -12,6 +12,8 @@ use enmm_picture::Series;
 
 /// Frames of a stage that names no interval.
 const FRAMES: f64 = 20.0;
+/// Least and most frames of the film of a stage that lasts as long as it may.
+const FILM_FRAMES: [f64; 2] = [60.0, 200.0];
 
 /// What a row tells of its step behind the energies.
 const REPORTED: [Quantity<StepReport>; 4] = [
@@ -26,6 +28,7 @@ const REPORTED: [Quantity<StepReport>; 4] = [
 pub struct Plan {
     cadence: Cadence,
     frame: u64,
+    film: u64,
     checkpoint: Option<u64>,
     first: bool,
 }
@@ -37,6 +40,7 @@ impl Plan {
         Self {
             cadence: Cadence::of(simulation),
             frame: simulation.steps_in(output.frame_interval.unwrap_or(stage.duration / FRAMES)),
+            film: simulation.steps_in(film_interval(stage.duration, output.frame_interval)),
             checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
             first: simulation.state().stage == 0,
         }
@@ -52,6 +56,11 @@ impl Plan {
         step.is_multiple_of(self.frame) && self.begins(step)
     }
 
+    /// Whether a frame of the film is due at the start of a step.
+    pub fn film_due(&self, step: u64) -> bool {
+        step.is_multiple_of(self.film) && self.begins(step)
+    }
+
     /// Whether a checkpoint is due at the start of a step.
     pub fn checkpoint_due(&self, step: u64) -> bool {
         step > 0 && self.checkpoint.is_some_and(|every| step.is_multiple_of(every))
@@ -65,6 +74,12 @@ impl Plan {
     fn begins(&self, step: u64) -> bool {
         step > 0 || self.first
     }
+}
+
+/// Time (s) between two frames of the film: that of the frames, unless a film would be too coarse or too long by it.
+fn film_interval(duration: f64, frames: Option<f64>) -> f64 {
+    let [least, most] = FILM_FRAMES;
+    frames.unwrap_or(f64::INFINITY).clamp(duration / most, duration / least)
 }
 
 /// Names and units of the columns.

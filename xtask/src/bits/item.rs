@@ -96,7 +96,7 @@ impl Maker<'_> {
             Act::Run => self.run_case(Path::new(&case(item.name)), &place),
             Act::Model(duration) => self.run_case(&self.model_case(item.name, duration)?, &place),
             Act::Fos(name) => self.fos(name, &place),
-            Act::Bound(name) => self.told("bound.json", &["bound", &case(name), "--json"]),
+            Act::Bound(name) => self.bound(name, &place),
             Act::Fmu(name, version) => self.fmu(name, version, &place),
             Act::Verify(problems) => self.verify(problems),
         };
@@ -121,7 +121,7 @@ impl Maker<'_> {
     fn run_case(&self, case: &Path, place: &Path) -> Result<Results, String> {
         let mut run = self.command(&["run", "--quiet"]);
         repository::run(run.arg(case).arg("-o").arg(place).stderr(Stdio::null()))?;
-        let mut results = repository::files_of(place)?;
+        let mut results = results_of(place)?;
         clean(&mut results, "summary.json")?;
         Ok(results)
     }
@@ -144,7 +144,7 @@ impl Maker<'_> {
     fn fos(&self, name: &str, place: &Path) -> Result<Results, String> {
         let mut fos = self.command(&["fos", &case(name), "--json", "-o"]);
         repository::capture(fos.arg(place).stderr(Stdio::null()))?;
-        let mut results = repository::files_of(place)?;
+        let mut results = results_of(place)?;
         // The table has a column of wall times; fos.json has the same rows.
         results.remove("fos.csv");
         clean(&mut results, "fos.json")?;
@@ -152,9 +152,10 @@ impl Maker<'_> {
     }
 
     /// What the program prints.
-    fn told(&self, name: &str, words: &[&str]) -> Result<Results, String> {
-        let mut results = Results::from([(name.to_owned(), repository::capture(&mut self.command(words))?)]);
-        clean(&mut results, name)?;
+    fn bound(&self, name: &str, place: &Path) -> Result<Results, String> {
+        let mut bound = self.command(&["bound", &case(name), "--json", "-o"]);
+        let mut results = Results::from([("bound.json".to_owned(), repository::capture(bound.arg(place))?)]);
+        clean(&mut results, "bound.json")?;
         Ok(results)
     }
 
@@ -180,6 +181,13 @@ impl Maker<'_> {
         }
         Ok(results)
     }
+}
+
+/// Files of results without the page and its film, which show what is in the others with the release and the viewer.
+fn results_of(place: &Path) -> Result<Results, String> {
+    let mut results = repository::files_of(place)?;
+    results.retain(|name, _| !["report.html", "film.bin"].contains(&name.as_str()));
+    Ok(results)
 }
 
 fn case(name: &str) -> String {

@@ -1,0 +1,286 @@
+"""`report.html` in a real browser: it loads without an error, plays, and answers clicks with the numbers of the run."""
+
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+import urllib.error
+import urllib.request
+
+import browser
+import pytest
+from conftest import from_environment
+from PIL import Image
+
+# Weights of the units that the page shows.
+UNITS = {"m": 1, "mm": 1e-3, "m/s": 1, "mm/s": 1e-3, "Pa": 1, "kPa": 1e3, "MPa": 1e6, "m²": 1, "kg/m": 1, "t/m": 1e3}
+UNITS |= {"°": 3.141592653589793 / 180, "°/s": 3.141592653589793 / 180, "": 1}
+# Numbers of a block: name in the page, column of blocks.csv.
+OF_BLOCK = [
+    ("Area", "area [m2]"),
+    ("Mass", "mass [kg/m]"),
+    ("Centroid x", "centroid_x [m]"),
+    ("Centroid y", "centroid_y [m]"),
+    ("Rotation", "rotation [rad]"),
+    ("Angular velocity", "angular_velocity [rad/s]"),
+    ("σxx", "mean_stress_xx [Pa]"),
+    ("σyy", "mean_stress_yy [Pa]"),
+    ("σxy", "mean_stress_xy [Pa]"),
+]
+# The same of components: number of their row under a name.
+PARTS = [("Displacement", "displacement_x [m]", "displacement_y [m]"), ("Speed", "velocity_x [m/s]", "velocity_y [m/s]")]
+
+
+@pytest.fixture(scope="module")
+def program() -> str:
+    found = browser.find()
+    if not found:
+        pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
+    return found
+
+
+@pytest.fixture
+def page(program, tmp_path):
+    opened = browser.Browser(program, tmp_path / "profile")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def report(page, results):
+    """The page of the short run, at its end."""
+    page.open((results / "report.html").as_uri())
+    page.painted()
+    return page
+
+
+def quiet(page) -> None:
+    """Nothing went wrong in the page, and it asked nobody for anything."""
+    assert page.errors == []
+    assert page.requests == []
+
+
+def number(shown: str) -> float:
+    """A number as the page shows it, in SI units."""
+    value, unit = re.fullmatch(r"([−+\de.]+)\s*(\S*)", shown.replace("e−", "e-").replace("e+", "e")).groups()
+    return float(value.replace("−", "-")) * UNITS[unit]
+
+
+def shown(page) -> list[tuple[str, str]]:
+    """Names and values of the table of what is chosen."""
+    rows = "[...document.querySelectorAll('#choice tr')].map(row => [...row.children].map(cell => cell.textContent))"
+    return [(name, value) for name, value in page.run(rows)]
+
+
+def table(path) -> list[dict[str, str]]:
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def place(page, x: float, y: float) -> tuple[float, float]:
+    """The pixel of a place in the model (m), by the camera of the page."""
+    script = f"""(() => {{
+        const shape = enmm.film.shape, box = document.getElementById("slope").getBoundingClientRect();
+        const [px, py] = enmm.slope.toScreen({x!r} - shape.originX, {y!r} - shape.originY);
+        return [px + box.x, py + box.y];
+    }})()"""
+    return tuple(page.run(script))
+
+
+def close(found: float, wanted: float) -> bool:
+    """Equal to the four digits that the page shows."""
+    return abs(found - wanted) <= 6e-4 * abs(wanted) + 1e-12
+
+
+@pytest.mark.parametrize("number_of_block", [0, 1])
+def test_a_click_on_a_block_shows_the_numbers_of_blocks_csv(report, results, number_of_block):
+    block = table(results / "blocks.csv")[number_of_block]
+    report.click(*place(report, float(block["centroid_x [m]"]), float(block["centroid_y [m]"])))
+    assert report.run("document.querySelector('#choice h2').textContent") == f"Block {block['id']}"
+    rows = shown(report)
+    found = dict(rows)
+    for name, column in OF_BLOCK:
+        assert close(number(found[name]), float(block[column])), (name, found[name], block[column])
+    names = [name for name, _ in rows]
+    for name, *columns in PARTS:
+        at = names.index(name)
+        for (_, value), column in zip(rows[at + 1 : at + 3], columns):
+            assert close(number(value), float(block[column])), (name, value, block[column])
+    quiet(report)
+
+
+def test_a_click_on_a_monitor_shows_its_numbers(report, results):
+    last = table(results / "history.csv")[-1]
+    x, y = 1.5 + float(last["top_ux [m]"]), 1.9 + float(last["top_uy [m]"])
+    report.click(*place(report, x, y))
+    assert report.run("document.querySelector('#choice h2').textContent") == "Monitor top"
+    rows = [number(value) for _, value in shown(report)]
+    assert close(rows[0], 1.5) and close(rows[1], 1.9)
+    assert close(rows[3], float(last["top_ux [m]"]))
+    assert close(rows[4], float(last["top_uy [m]"]))
+    quiet(report)
+
+
+def test_a_click_in_the_air_lets_go(report):
+    report.click(*place(report, 1.5, 1.5))
+    assert len(shown(report)) > 5
+    report.click(*place(report, 4.0, 1.8))
+    assert shown(report) == []
+
+
+def test_it_plays_to_the_end_and_moves_the_rock(report, results):
+    end = float(table(results / "history.csv")[-1]["time [s]"])
+    assert abs(report.run("enmm.film.end") - end) < 1e-9
+    report.run("enmm.player.seek(0)")
+    report.painted()
+    before = report.run("Array.from(enmm.slope.x)")
+    report.run("document.getElementById('play').focus()")
+    report.click(*middle(report, "#play"))
+    report.wait("!enmm.player.playing")
+    report.painted()
+    after = report.run("Array.from(enmm.slope.x)")
+    # The block slides 0.5 m/s × 0.05 s, less what friction takes; the base is held.
+    assert 0.015 < max(b - a for a, b in zip(before, after)) < 0.025
+    assert min(abs(b - a) for a, b in zip(before, after)) < 1e-3
+    assert report.run("document.getElementById('clock').textContent").startswith("time 0.050 s, stage slide")
+    quiet(report)
+
+
+def middle(page, selector: str) -> tuple[float, float]:
+    box = page.run(f"(({{x, y, width, height}}) => [x + width / 2, y + height / 2])"
+                   f"(document.querySelector({selector!r}).getBoundingClientRect())")
+    return tuple(box)
+
+
+def test_keys_play_step_zoom_and_colour(report):
+    frames = report.run("enmm.film.frames.length")
+    at = "enmm.player.moment().from"
+    report.press("Home")
+    assert report.run(at) == 0
+    report.press("ArrowRight")
+    assert report.run(at) == 1
+    report.press("ArrowLeft")
+    assert report.run(at) == 0
+    report.press("End")
+    assert report.run(at) == frames - 1
+    report.press("Home")
+    report.press(" ", "Space")
+    report.wait("enmm.player.time > enmm.film.start")
+    for key, name in zip("12345", ["displacement", "velocity", "stress", "block", "joint"]):
+        report.press(key)
+        assert report.run("document.querySelector('[data-colour][aria-checked=true]').dataset.colour") == name
+    scale = report.run("enmm.slope.camera.scale")
+    report.press("+")
+    assert report.run("enmm.slope.camera.scale") == pytest.approx(1.5 * scale)
+    report.press("0")
+    assert report.run("enmm.slope.camera.scale") == pytest.approx(scale)
+    quiet(report)
+
+
+def test_the_tabulator_reaches_every_control_and_shows_where_it_is(report):
+    wanted = report.run("document.querySelectorAll('button, select, input, summary, canvas[tabindex]').length")
+    script = """(() => {
+        const at = document.activeElement, style = getComputedStyle(at);
+        if (at === document.body) return null;
+        at.dataset.seen = "1";
+        return style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2;
+    })()"""
+    for _ in range(2 * wanted):
+        report.press("Tab")
+        assert report.run(script) in (None, True)
+    missed = report.run("""[...document.querySelectorAll('button, select, input, summary, canvas[tabindex]')]
+        .filter(control => !control.dataset.seen && control.offsetParent !== null)
+        .map(control => control.id || control.textContent)""")
+    assert missed == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
+    report.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+    report.open((results / "report.html").as_uri())
+    report.press("4")
+    picture = Image.open(io.BytesIO(report.screenshot())).convert("RGB")
+    pixel = lambda x, y: picture.getpixel(tuple(round(part) for part in place(report, x, y)))
+    air, base = pixel(4.0, 1.7), pixel(4.5, 0.5)
+    assert (sum(air) > 3 * 220) == (theme == "light")
+    # The free block has the first colour of Okabe and Ito, whitened by 0.4, the held base a neutral one.
+    assert pixel(1.5, 1.3) == (240, 197, 102)
+    assert base != air and max(base) - min(base) < 30
+    quiet(report)
+
+
+def test_a_hostile_title_stays_text(enmm, page, tmp_path, short_case):
+    text = short_case.read_text().replace("Short run for the Python tests", "</script><script>window.stolen = 1</script>")
+    case = tmp_path / "case.toml"
+    case.write_text(text)
+    answer = enmm("run", case, "-o", tmp_path / "out", "--quiet")
+    assert answer.returncode == 0, answer.stderr
+    page.open((tmp_path / "out" / "report.html").as_uri())
+    assert page.run("window.stolen") is None
+    assert page.run("document.getElementById('title').textContent").startswith("</script>")
+    quiet(page)
+
+
+def test_bound_marks_the_mechanism(enmm, page, tmp_path, cases):
+    answer = enmm("bound", cases / "plane_slide.toml", "-o", tmp_path, "--json")
+    assert answer.returncode == 0, answer.stderr
+    level = json.loads(answer.stdout)["level_tops"]
+    page.open((tmp_path / "report.html").as_uri())
+    marked = page.run("enmm.film.of('marked').map(({blocks}) => blocks)")
+    assert marked == [[moving["block"] for moving in level["mechanism"]]]
+    assert f"{level['factor']:.4f}" in page.run("document.getElementById('panel').textContent")
+    quiet(page)
+
+
+@pytest.fixture
+def served(results, tmp_path):
+    """A folder with the first half of a film, `enmm view` on it, its address, and all bytes of the film."""
+    film = (results / "film.bin").read_bytes()
+    (tmp_path / "film.bin").write_bytes(film[: len(film) // 2])
+    command = [from_environment("ENMM_BIN"), "view", tmp_path]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        address = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline()).group()
+        yield tmp_path, address, film
+        process.terminate()
+
+
+def test_view_follows_a_run_that_goes_on(served, page):
+    folder, address, film = served
+    page.open(address)
+    early = page.run("enmm.film.frames.length")
+    assert page.run("document.getElementById('status').textContent") == "still running"
+    with (folder / "film.bin").open("ab") as file:
+        file.write(film[len(film) // 2 :])
+    page.wait("enmm.film.of('end').length > 0")
+    page.painted()
+    assert page.run("enmm.film.frames.length") > early > 0
+    assert page.run("enmm.player.time === enmm.film.end")
+    assert page.run("document.getElementById('status').textContent") == ""
+    assert page.errors == []
+    assert all(request.startswith(address) for request in page.requests)
+
+
+def test_view_serves_the_film_and_nothing_else(served):
+    _, address, film = served
+    with urllib.request.urlopen(f"{address}film?from=8") as answer:
+        assert answer.read() == film[8 : len(film) // 2]
+    refusals = [("../short.toml", {}, 404), (f"film?from={10 * len(film)}", {}, 416), ("film?from=x", {}, 400)]
+    refusals.append(("", {"Host": "rocks.example"}, 403))
+    for path, headers, status in refusals:
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(urllib.request.Request(address + path, headers=headers))
+        assert refused.value.code == status
+
+
+def test_view_makes_the_page_of_a_killed_run(enmm, results, tmp_path, page):
+    shutil.copy(results / "film.bin", tmp_path)
+    whole = (tmp_path / "film.bin").read_bytes()
+    (tmp_path / "film.bin").write_bytes(whole[: 2 * len(whole) // 3])
+    answer = enmm("view", tmp_path, "--page")
+    assert answer.returncode == 0, answer.stderr
+    page.open((tmp_path / "report.html").as_uri())
+    assert page.run("document.getElementById('status').textContent") == "not finished"
+    assert page.run("enmm.film.frames.length") > 0
+    quiet(page)

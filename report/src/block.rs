@@ -1,0 +1,204 @@
+//! Outlines and frames as bytes. `format.md` has the layout and the errors.
+//!
+//! A stiff block hardly deforms, so a frame holds the rigid motion of every block, in single precision, and of each
+//! corner only what the rigid motion leaves, in whole quanta: mostly zeros, which take no room.
+
+use crate::data::{BlockFrame, Frame, Outline};
+use crate::error::FilmError;
+use crate::number::{Width, push_integer, push_planes, single};
+
+/// Largest quantum over the size of the model: a corner is drawn at most half of it away from where it is.
+pub const QUANTUM: f64 = 1.0 / 262_144.0;
+/// Largest quantum over the largest displacement of a corner in the frame.
+const QUANTUM_OF_MOTION: f64 = 1.0 / 1024.0;
+/// Smallest quantum over the size of the model: below, single precision of the reference ends.
+const QUANTUM_LEAST: f64 = 1e-12;
+
+/// Corners and centroids of all blocks as a reader of the film has them.
+#[derive(Debug)]
+pub struct Shape {
+    /// Greater side of the box round all corners (m).
+    size: f64,
+    /// Corner behind the last of each block.
+    ends: Vec<usize>,
+    /// Arm from the centroid of its block to each corner (m).
+    arms: Vec<[f64; 2]>,
+}
+
+/// Bytes of the outlines, and what frames need to know of them.
+///
+/// # Errors
+/// The first number that is not finite, with its block.
+pub fn outlines(outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+    let points = || outlines.iter().flat_map(|block| block.loops.iter().flatten());
+    for block in outlines {
+        let numbers = [block.area, block.mass].into_iter().chain(block.centroid);
+        let all = numbers.chain(block.loops.iter().flatten().copied().flatten());
+        for value in all {
+            finite(value, 0.0, || format!("area, mass, centroid or corner of block {}", block.id))?;
+        }
+    }
+    let (low, high) = bounds(points());
+    let origin = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+    let mut bytes = Vec::new();
+    [outlines.len(), points().count()].iter().for_each(|&n| bytes.extend((n as u32).to_le_bytes()));
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    [origin[0], origin[1], size].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    for block in outlines {
+        bytes.extend(block.id.to_le_bytes());
+        bytes.extend([u8::from(block.fixed), 0]);
+        bytes.extend(block.rock.to_le_bytes());
+        [block.area, block.mass].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+        bytes.extend((block.loops.len() as u32).to_le_bytes());
+        block.loops.iter().for_each(|points| bytes.extend((points.len() as u32).to_le_bytes()));
+    }
+    let shape = push_places(outlines, origin, size, &mut bytes);
+    Ok((bytes, shape))
+}
+
+/// Appends centroids and corners relative to the origin in single precision.
+fn push_places(outlines: &[Outline], origin: [f64; 2], size: f64, bytes: &mut Vec<u8>) -> Shape {
+    let near = |place: [f64; 2]| [(place[0] - origin[0]) as f32, (place[1] - origin[1]) as f32];
+    let mut shape = Shape { size, ends: Vec::new(), arms: Vec::new() };
+    let (mut centroids, mut corners) = (Vec::new(), Vec::new());
+    for block in outlines {
+        let centroid = near(block.centroid);
+        centroids.push(centroid);
+        for corner in block.loops.iter().flatten().map(|&corner| near(corner)) {
+            corners.push(corner);
+            shape.arms.push([0, 1].map(|axis| f64::from(corner[axis]) - f64::from(centroid[axis])));
+        }
+        shape.ends.push(shape.arms.len());
+    }
+    for places in [centroids, corners] {
+        for axis in [0, 1] {
+            let numbers: Vec<f32> = places.iter().map(|place| place[axis]).collect();
+            push_planes(&numbers, Width::Full, bytes);
+        }
+    }
+    shape
+}
+
+fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]) {
+    let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let (low, high) = points
+        .fold(start, |(low, high), p| ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]));
+    if low[0] <= high[0] { (low, high) } else { ([0.0; 2], [0.0; 2]) }
+}
+
+impl Shape {
+    /// Bytes of a frame.
+    ///
+    /// # Errors
+    /// A list of the wrong length, or the first number that is not finite, with its block and the time.
+    pub fn frame(&self, frame: &Frame, monitors: usize) -> Result<Vec<u8>, FilmError> {
+        let corners = self.arms.len();
+        expect("blocks of a frame", frame.blocks.len(), self.ends.len())?;
+        expect("corners of a frame", frame.corners.len(), corners)?;
+        expect("edges of a frame", frame.edges.len(), if frame.edges.is_empty() { 0 } else { corners })?;
+        expect("monitors of a frame", frame.monitors.len(), monitors)?;
+        finite(frame.time, frame.time, || "the time of a frame".to_owned())?;
+        let quantum = self.quantum(frame)?;
+        let mut bytes = Vec::with_capacity(32 * frame.blocks.len() + 3 * corners);
+        bytes.extend(frame.stage.to_le_bytes());
+        bytes.extend([u8::from(!frame.edges.is_empty()), 0, 0, 0]);
+        bytes.extend(quantum.to_le_bytes());
+        bytes.extend(frame.blocks.iter().map(|block| u8::from(block.removed)));
+        bytes.extend(frame.edges.iter().map(|&state| state as u8));
+        let motion = push_numbers(frame, &mut bytes)?;
+        push_monitors(frame, &mut bytes)?;
+        self.push_corners(frame, &motion, quantum, &mut bytes);
+        Ok(bytes)
+    }
+
+    /// The largest power of two that is fine enough for the model and for the motion (m).
+    fn quantum(&self, frame: &Frame) -> Result<f64, FilmError> {
+        let mut most = 0.0_f64;
+        for (corner, displacement) in frame.corners.iter().enumerate() {
+            for &part in displacement {
+                let block = || self.ends.partition_point(|&end| end <= corner);
+                finite(part, frame.time, || format!("displacement of corner {corner}, in block {}", block()))?;
+                most = most.max(part.abs());
+            }
+        }
+        let wanted = if most > 0.0 { most * QUANTUM_OF_MOTION } else { f64::INFINITY };
+        let least = (self.size * QUANTUM_LEAST).max(f64::MIN_POSITIVE);
+        Ok(wanted.min(self.size * QUANTUM).max(least).log2().floor().exp2())
+    }
+
+    /// Appends what the rigid motion of its block leaves of each corner's displacement, in quanta.
+    fn push_corners(&self, frame: &Frame, motion: &[[f32; 3]], quantum: f64, bytes: &mut Vec<u8>) {
+        let mut rest: [Vec<u8>; 2] = [Vec::new(), Vec::new()];
+        let mut corner = 0;
+        for (&[x, y, turn], &end) in motion.iter().zip(&self.ends) {
+            let (sine, cosine) = f64::from(turn).sin_cos();
+            while corner < end {
+                let [a, b] = self.arms[corner];
+                let rigid =
+                    [f64::from(x) + a * (cosine - 1.0) - b * sine, f64::from(y) + a * sine + b * (cosine - 1.0)];
+                for axis in [0, 1] {
+                    let left = frame.corners[corner][axis] - rigid[axis];
+                    push_integer((left / quantum).round() as i64, &mut rest[axis]);
+                }
+                corner += 1;
+            }
+        }
+        rest.iter().for_each(|numbers| bytes.extend(numbers));
+    }
+}
+
+/// Numbers of a block, in the order of the film: name, width, getter.
+type Quantity = (&'static str, Width, fn(&BlockFrame) -> f64);
+const QUANTITIES: [Quantity; 9] = [
+    ("displacement x", Width::Full, |block| block.displacement[0]),
+    ("displacement y", Width::Full, |block| block.displacement[1]),
+    ("rotation", Width::Short, |block| block.rotation),
+    ("velocity x", Width::Short, |block| block.velocity[0]),
+    ("velocity y", Width::Short, |block| block.velocity[1]),
+    ("angular velocity", Width::Short, |block| block.angular_velocity),
+    ("stress xx", Width::Short, |block| block.stress[0]),
+    ("stress yy", Width::Short, |block| block.stress[1]),
+    ("stress xy", Width::Short, |block| block.stress[2]),
+];
+
+/// Appends the numbers of all blocks; returns the rigid motion of each as a reader will have it.
+fn push_numbers(frame: &Frame, bytes: &mut Vec<u8>) -> Result<Vec<[f32; 3]>, FilmError> {
+    let mut motion = vec![[0.0_f32; 3]; frame.blocks.len()];
+    for (k, (name, width, get)) in QUANTITIES.iter().enumerate() {
+        let mut numbers = Vec::with_capacity(frame.blocks.len());
+        for (number, block) in frame.blocks.iter().enumerate() {
+            numbers.push(finite(get(block), frame.time, || format!("{name} of block {number}"))?);
+        }
+        push_planes(&numbers, *width, bytes);
+        if k < 3 {
+            motion.iter_mut().zip(numbers).for_each(|(motion, number)| motion[k] = width.kept(number));
+        }
+    }
+    Ok(motion)
+}
+
+fn push_monitors(frame: &Frame, bytes: &mut Vec<u8>) -> Result<(), FilmError> {
+    for (k, monitor) in frame.monitors.iter().enumerate() {
+        for value in monitor.displacement.into_iter().chain(monitor.velocity) {
+            let number = finite(value, frame.time, || format!("displacement or velocity of monitor {k}"))?;
+            bytes.extend(number.to_le_bytes());
+        }
+    }
+    Ok(())
+}
+
+/// A number in single precision.
+///
+/// # Errors
+/// A number that is not finite there, with what it is.
+pub fn finite(value: f64, time: f64, what: impl FnOnce() -> String) -> Result<f32, FilmError> {
+    single(value).ok_or_else(|| FilmError::NotFinite { what: what(), value, time })
+}
+
+/// Whether a list has its length.
+///
+/// # Errors
+/// Both lengths, when it has not.
+pub fn expect(what: &'static str, found: usize, expected: usize) -> Result<(), FilmError> {
+    if found == expected { Ok(()) } else { Err(FilmError::Count { what, found, expected }) }
+}

@@ -1,0 +1,242 @@
+//! What a film is made of, as plain data. SI units, y up, tension positive, counter-clockwise angles.
+
+use serde::Serialize;
+
+/// What a film begins with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Head {
+    /// Title of the case.
+    pub title: String,
+    /// The command that made the film, such as `run`.
+    pub command: String,
+    /// Version of the engine.
+    pub version: String,
+    /// Name of the case file as the user gave it.
+    pub case_file: String,
+    /// Text of the case file.
+    pub case_text: String,
+    /// What the slider moves along.
+    pub axis: Axis,
+    /// What frames hold of blocks beside their displacement; the page shows nothing else.
+    pub quantities: Vec<Quantity>,
+    /// Columns of the histories; the first is the time (s).
+    pub columns: Vec<Column>,
+    /// Monitored points.
+    pub monitors: Vec<MonitorPlace>,
+    /// Names of the rocks that [`Outline::rock`] counts.
+    pub rocks: Vec<String>,
+}
+
+/// A quantity of blocks beside their displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Velocity and angular velocity.
+    Velocity,
+    /// Mean stress.
+    Stress,
+}
+
+/// What the slider moves along.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    /// Quantity, such as `time`.
+    pub name: String,
+    /// Unit, such as `s`; empty for a pure number.
+    pub unit: String,
+}
+
+impl Axis {
+    /// Simulated time in seconds.
+    pub fn time() -> Self {
+        Self { name: "time".to_owned(), unit: "s".to_owned() }
+    }
+}
+
+/// A column of the histories.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Column {
+    /// Name, such as `crest_ux`.
+    pub name: String,
+    /// Quantity that the chart names, such as `Displacement`; columns of one quantity and unit share a chart.
+    pub quantity: String,
+    /// Unit; empty for a pure number.
+    pub unit: String,
+}
+
+/// A monitored point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MonitorPlace {
+    /// Name.
+    pub name: String,
+    /// Reference position (m).
+    pub place: [f64; 2],
+}
+
+/// A block in the reference configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// Id that the user sees.
+    pub id: u32,
+    /// Whether the block is held.
+    pub fixed: bool,
+    /// Index of its rock in [`Head::rocks`].
+    pub rock: u16,
+    /// Area (m²).
+    pub area: f64,
+    /// Mass (kg/m).
+    pub mass: f64,
+    /// Centroid (m).
+    pub centroid: [f64; 2],
+    /// Corners of each loop (m), outer loop first.
+    pub loops: Vec<Vec<[f64; 2]>>,
+}
+
+/// What an edge of an outline does in a frame: the edge behind corner `k` runs from corner `k` to the next of its loop.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum EdgeState {
+    /// No joint: a free face.
+    #[default]
+    Free,
+    /// A joint without contact force.
+    Open,
+    /// A joint that slips.
+    Slip,
+    /// A joint below its shear limit.
+    Lock,
+}
+
+/// A block in a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockFrame {
+    /// Whether the block has been excavated.
+    pub removed: bool,
+    /// Displacement of the centroid (m).
+    pub displacement: [f64; 2],
+    /// Rotation (rad).
+    pub rotation: f64,
+    /// Velocity of the centroid (m/s).
+    pub velocity: [f64; 2],
+    /// Angular velocity (rad/s).
+    pub angular_velocity: f64,
+    /// Area mean of the stress xx, yy, xy (Pa).
+    pub stress: [f64; 3],
+}
+
+/// A monitored point in a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MonitorFrame {
+    /// Displacement (m).
+    pub displacement: [f64; 2],
+    /// Velocity (m/s).
+    pub velocity: [f64; 2],
+}
+
+/// One instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    /// Where on the axis of the film (s for a film of time); not less than in the frame before.
+    pub time: f64,
+    /// Number of the stage, from 0.
+    pub stage: u32,
+    /// All blocks, in the order of their outlines.
+    pub blocks: &'a [BlockFrame],
+    /// Displacement (m) of all corners, loop by loop, in the order of the outlines.
+    pub corners: &'a [[f64; 2]],
+    /// State of the edge behind each corner; empty when a film tells nothing of joints.
+    pub edges: &'a [EdgeState],
+    /// All monitored points, in the order of [`Head::monitors`].
+    pub monitors: &'a [MonitorFrame],
+}
+
+/// Something to tell beside the frames; appended when it is known.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "note", rename_all = "snake_case")]
+pub enum Note {
+    /// A stage begins, or, with the same number again, has ended.
+    Stage {
+        /// Number, from 0.
+        number: u32,
+        /// Name.
+        name: String,
+        /// `static` or `dynamic`.
+        kind: String,
+        /// Time of its start (s).
+        start: f64,
+        /// Time of its end (s); none while it lasts.
+        end: Option<f64>,
+        /// How it ended, such as `at rest`; empty while it lasts.
+        outcome: String,
+    },
+    /// What the user should know.
+    Warning {
+        /// The warning.
+        text: String,
+    },
+    /// Trials of a factor of safety.
+    Trials(TrialTable),
+    /// Blocks to mark on the slope, such as a failing mass.
+    Marked(Marked),
+    /// A short table of names and values.
+    Facts {
+        /// Head of the table.
+        title: String,
+        /// Rows.
+        rows: Vec<Fact>,
+    },
+    /// The film is complete.
+    End {
+        /// `finished`, `interrupted`, or why it failed.
+        status: String,
+    },
+}
+
+/// A row of [`Note::Facts`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fact {
+    /// What.
+    pub name: String,
+    /// Its value with the unit, as it is shown.
+    pub value: String,
+}
+
+/// Trials of a factor of safety.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrialTable {
+    /// What was found, in one line.
+    pub result: String,
+    /// Trials, ascending in the factor.
+    pub trials: Vec<Trial>,
+}
+
+/// One trial of a factor of safety.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Trial {
+    /// Factor by which the strength was divided.
+    pub factor: f64,
+    /// `stable`, `unstable` or `caught`.
+    pub verdict: String,
+    /// Why.
+    pub reason: String,
+    /// Simulated time (s).
+    pub time: f64,
+    /// Largest displacement (m).
+    pub displacement: f64,
+    /// Largest speed (m/s).
+    pub speed: f64,
+    /// Failing blocks.
+    pub failing: u32,
+    /// Their area (m²).
+    pub area: f64,
+}
+
+/// Blocks to mark on the slope.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Marked {
+    /// What they are, such as `failing mass`.
+    pub name: String,
+    /// Their ids.
+    pub blocks: Vec<u32>,
+    /// Lines about them, such as area, mass and share.
+    pub rows: Vec<Fact>,
+}

@@ -1,0 +1,31 @@
+//! The film of a slope, and the page that shows it.
+//!
+//! A run appends each frame to a film while it goes on ([`FilmWriter`]). [`write_page`] makes `report.html` of a film:
+//! one file that needs no network and no other file. [`serve`] shows a film that still grows. The crate knows nothing
+//! of the engine: whoever writes a film fills in plain data ([`Head`], [`Outline`], [`Frame`], [`Note`]).
+//!
+//! `format.md` beside this crate's sources describes every byte of a film and how accurate it is.
+
+mod block;
+mod chunk;
+mod data;
+mod error;
+mod number;
+mod page;
+mod serve;
+mod writer;
+
+pub use block::QUANTUM;
+pub use data::{
+    Axis, BlockFrame, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame, MonitorPlace, Note, Outline,
+    Quantity, Trial, TrialTable,
+};
+pub use error::FilmError;
+pub use page::{live_page, write_page};
+pub use serve::Server;
+pub use writer::FilmWriter;
+
+/// Name of the film in the directory of a run.
+pub const FILM: &str = "film.bin";
+/// Name of the page in the directory of a run.
+pub const PAGE: &str = "report.html";

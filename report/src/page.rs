@@ -1,0 +1,89 @@
+//! `report.html`: the viewer with a film in it, or without one for a film that is served.
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::Path;
+
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
+
+use crate::chunk::{Chunks, MAGIC};
+use crate::error::FilmError;
+use crate::writer::temporary_beside;
+
+const PAGE: &str = include_str!("../viewer/viewer.html");
+const STYLE: &str = include_str!("../viewer/viewer.css");
+/// Scripts in the order in which a page runs them.
+const SCRIPTS: [&str; 7] = [
+    include_str!("../viewer/film.js"),
+    include_str!("../viewer/colour.js"),
+    include_str!("../viewer/slope.js"),
+    include_str!("../viewer/chart.js"),
+    include_str!("../viewer/panel.js"),
+    include_str!("../viewer/player.js"),
+    include_str!("../viewer/viewer.js"),
+];
+
+/// Places in the page that are filled in.
+const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
+
+/// Writes the page of a film; a film without an end is shown as far as it goes.
+///
+/// # Errors
+/// A file that is no film, or what the file system refuses.
+pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
+    let no_film = |error: io::Error| FilmError::NoFilm { path: film.to_owned(), problem: error.to_string() };
+    let mut chunks = File::open(film)
+        .map_err(FilmError::at(film))
+        .and_then(|file| Chunks::new(BufReader::new(file)).map_err(no_film))?;
+    let temporary = temporary_beside(page);
+    let at = FilmError::at(&temporary);
+    let mut out = BufWriter::new(File::create(&temporary).map_err(&at)?);
+    let [before, after] = halves();
+    out.write_all(before.as_bytes()).map_err(&at)?;
+    out.write_all(b"<script type=\"application/octet-stream;base64\" id=\"film\">").map_err(&at)?;
+    let mut text = EncoderWriter::new(&mut out, &STANDARD);
+    text.write_all(&MAGIC).map_err(&at)?;
+    while let Some(chunk) = chunks.next().map_err(no_film)? {
+        text.write_all(&chunk.bytes).map_err(&at)?;
+    }
+    text.finish().map_err(&at)?;
+    drop(text);
+    out.write_all(b"</script>").map_err(&at)?;
+    out.write_all(after.as_bytes()).map_err(&at)?;
+    out.into_inner().map_err(|error| at(error.into_error()))?;
+    std::fs::rename(&temporary, page).map_err(FilmError::at(page))
+}
+
+/// The page without a film, which asks its server for one.
+pub fn live_page() -> String {
+    halves().concat()
+}
+
+/// The page before and behind the film.
+fn halves() -> [String; 2] {
+    let [style, script, film] = HOLES;
+    let page = PAGE.replace(style, STYLE).replace(script, &SCRIPTS.concat());
+    let (before, after) = page.split_once(film).unwrap_or((&page, ""));
+    [before.to_owned(), after.to_owned()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_hole_of_the_page_is_there_once() {
+        for hole in HOLES {
+            assert_eq!(PAGE.matches(hole).count(), 1, "{hole}");
+            assert!(!live_page().contains(hole), "{hole} is left");
+        }
+    }
+
+    #[test]
+    fn the_page_asks_no_other_host() {
+        for word in ["http:", "https:", "@import", " src=", "url("] {
+            assert!(!live_page().contains(word), "{word}");
+        }
+    }
+}

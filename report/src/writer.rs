@@ -1,0 +1,172 @@
+//! Appends to a film while a run goes on.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crate::block::{self, Shape, expect, finite};
+use crate::chunk::{self, Chunks, Kind, MAGIC};
+use crate::data::{Frame, Head, Note, Outline};
+use crate::error::FilmError;
+use crate::number::{Width, push_planes};
+
+/// Rows that are gathered before they are written, unless a frame comes first.
+const ROWS: usize = 256;
+
+/// A film that grows. Every chunk reaches the file system as soon as it is complete.
+#[derive(Debug)]
+pub struct FilmWriter {
+    path: PathBuf,
+    file: File,
+    shape: Shape,
+    columns: Vec<String>,
+    monitors: usize,
+    rows: Vec<Vec<f64>>,
+}
+
+impl FilmWriter {
+    /// Begins a film; one that is there is replaced.
+    ///
+    /// # Errors
+    /// A number that is not finite, or what the file system refuses.
+    pub fn create(path: &Path, head: &Head, outlines: &[Outline]) -> Result<Self, FilmError> {
+        let (bytes, shape) = checked(head, outlines)?;
+        let mut file = File::create(path).map_err(FilmError::at(path))?;
+        file.write_all(&MAGIC).map_err(FilmError::at(path))?;
+        let mut film = Self::of(path, file, shape, head);
+        film.append(Kind::Head, 0.0, &json(head, path)?)?;
+        film.append(Kind::Outlines, 0.0, &bytes)?;
+        Ok(film)
+    }
+
+    /// Continues a film: frames, rows and notes later than `until` (s) and a torn end leave it. A missing one is begun.
+    ///
+    /// # Errors
+    /// A file that is no film, else as [`FilmWriter::create`].
+    pub fn resume(path: &Path, head: &Head, outlines: &[Outline], until: f64) -> Result<Self, FilmError> {
+        if !path.exists() {
+            return Self::create(path, head, outlines);
+        }
+        let (_, shape) = checked(head, outlines)?;
+        let shortened = temporary_beside(path);
+        keep(path, &shortened, until)?;
+        std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
+        let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
+        Ok(Self::of(path, file, shape, head))
+    }
+
+    fn of(path: &Path, file: File, shape: Shape, head: &Head) -> Self {
+        let columns = head.columns.iter().map(|column| column.name.clone()).collect();
+        Self { path: path.to_owned(), file, shape, columns, monitors: head.monitors.len(), rows: Vec::new() }
+    }
+
+    /// Appends a frame, behind the rows that were gathered before.
+    ///
+    /// # Errors
+    /// A list of the wrong length, a number that is not finite, or what the file system refuses.
+    pub fn frame(&mut self, frame: &Frame) -> Result<(), FilmError> {
+        let bytes = self.shape.frame(frame, self.monitors)?;
+        self.flush()?;
+        self.append(Kind::Frame, frame.time, &bytes)
+    }
+
+    /// Takes a row of the histories: one number per column, the time (s) first.
+    ///
+    /// # Errors
+    /// As [`FilmWriter::frame`].
+    pub fn row(&mut self, row: &[f64]) -> Result<(), FilmError> {
+        expect("numbers of a row", row.len(), self.columns.len())?;
+        let time = row.first().copied().unwrap_or_default();
+        for (&value, name) in row.iter().zip(&self.columns) {
+            finite(value, time, || format!("{name} of a row"))?;
+        }
+        self.rows.push(row.to_vec());
+        if self.rows.len() < ROWS { Ok(()) } else { self.flush() }
+    }
+
+    /// Appends a note at a time (s).
+    ///
+    /// # Errors
+    /// What the file system refuses.
+    pub fn note(&mut self, time: f64, note: &Note) -> Result<(), FilmError> {
+        let bytes = json(note, &self.path)?;
+        self.flush()?;
+        self.append(Kind::Note, time, &bytes)
+    }
+
+    /// Writes the rows that are gathered.
+    ///
+    /// # Errors
+    /// What the file system refuses.
+    pub fn flush(&mut self) -> Result<(), FilmError> {
+        let Some(time) = self.rows.last().and_then(|row| row.first()).copied() else { return Ok(()) };
+        let mut bytes = Vec::new();
+        [self.rows.len(), self.columns.len()].iter().for_each(|&n| bytes.extend((n as u32).to_le_bytes()));
+        self.rows.iter().for_each(|row| bytes.extend(row[0].to_le_bytes()));
+        for column in 1..self.columns.len() {
+            let numbers: Vec<f32> = self.rows.iter().map(|row| row[column] as f32).collect();
+            push_planes(&numbers, Width::Full, &mut bytes);
+        }
+        self.rows.clear();
+        self.append(Kind::Rows, time, &bytes)
+    }
+
+    fn append(&mut self, kind: Kind, time: f64, body: &[u8]) -> Result<(), FilmError> {
+        let written = chunk::pack(kind, time, body).and_then(|bytes| self.file.write_all(&bytes));
+        written.map_err(FilmError::at(&self.path))
+    }
+}
+
+/// Bytes and shape of the outlines of a film, and whether its head is one.
+fn checked(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+    for monitor in &head.monitors {
+        for value in monitor.place {
+            finite(value, 0.0, || format!("place of monitor {:?}", monitor.name))?;
+        }
+    }
+    block::outlines(outlines)
+}
+
+fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError> {
+    serde_json::to_vec(value).map_err(io::Error::from).map_err(FilmError::at(path))
+}
+
+/// A name for a file that is not whole yet: runs sweep such names of programs that were killed.
+pub fn temporary_beside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.{}-0.tmp", std::process::id()))
+}
+
+/// Copies the chunks of a film up to a time (s).
+fn keep(from: &Path, to: &Path, until: f64) -> Result<(), FilmError> {
+    let no_film = |error: io::Error| FilmError::NoFilm { path: from.to_owned(), problem: error.to_string() };
+    let film = File::open(from).map_err(FilmError::at(from))?;
+    let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
+    let mut kept = BufWriter::new(File::create(to).map_err(FilmError::at(to))?);
+    kept.write_all(&MAGIC).map_err(FilmError::at(to))?;
+    while let Some(chunk) = chunks.next().map_err(no_film)? {
+        let begins = matches!(chunk.kind, Kind::Head | Kind::Outlines);
+        if begins || chunk.time <= until {
+            kept.write_all(&chunk.bytes).map_err(FilmError::at(to))?;
+        } else if chunk.kind == Kind::Rows {
+            let body = chunk.body().map_err(no_film)?;
+            let Some((time, rows)) = rows_until(&body, until) else { continue };
+            let bytes = chunk::pack(Kind::Rows, time, &rows).map_err(FilmError::at(to))?;
+            kept.write_all(&bytes).map_err(FilmError::at(to))?;
+        }
+    }
+    kept.flush().map_err(FilmError::at(to))
+}
+
+/// The rows up to a time (s) of a body of rows, and the time of the last of them; none when there is no such row.
+fn rows_until(body: &[u8], until: f64) -> Option<(f64, Vec<u8>)> {
+    let count = u32::from_le_bytes(*body.first_chunk()?) as usize;
+    let (times, planes) = body.get(8..)?.split_at_checked(8 * count)?;
+    let times = times.chunks_exact(8).filter_map(|bytes| bytes.first_chunk().copied().map(f64::from_le_bytes));
+    let times: Vec<f64> = times.take_while(|&time| time <= until).collect();
+    let mut kept = (times.len() as u32).to_le_bytes().to_vec();
+    kept.extend(&body[4..8]);
+    times.iter().for_each(|time| kept.extend(time.to_le_bytes()));
+    planes.chunks_exact(count).for_each(|plane| kept.extend(&plane[..times.len()]));
+    times.last().map(|&time| (time, kept))
+}

@@ -1,0 +1,233 @@
+//! A film gives back what was put in, within the errors that it claims, and is small.
+
+mod support;
+
+use std::path::Path;
+
+use enmm_report::{EdgeState, FilmError, FilmWriter, Note, QUANTUM, write_page};
+use support::{Chunk, MONITOR, Moment, Reader, Slope, chunks, head};
+use tempfile::tempdir;
+
+/// Single precision and five digits (the last byte is left out).
+const FULL: f64 = 1.0 / (1 << 24) as f64;
+const SHORT: f64 = 1.0 / (1 << 16) as f64;
+
+/// Numbers of a frame as a reader has them.
+struct Decoded {
+    quantum: f64,
+    numbers: Vec<Vec<f32>>,
+    corners: Vec<[f64; 2]>,
+    edges: Vec<u8>,
+    monitor: [f32; 4],
+}
+
+/// Arms of all corners about their centroids, from the outlines.
+fn arms(body: &[u8]) -> Vec<(usize, [f64; 2])> {
+    let mut reader = Reader(body);
+    let [blocks, corners] = [reader.u32() as usize, reader.u32() as usize];
+    reader.take(24);
+    let mut owner = Vec::new();
+    for block in 0..blocks {
+        reader.take(24);
+        let loops = reader.u32();
+        let points: u32 = (0..loops).map(|_| reader.u32()).sum();
+        owner.extend(std::iter::repeat_n(block, points as usize));
+    }
+    let [cx, cy] = [reader.planes(blocks, 4), reader.planes(blocks, 4)];
+    let [x, y] = [reader.planes(corners, 4), reader.planes(corners, 4)];
+    let arm = |(k, block): (usize, usize)| {
+        let about = |place: f32, centre: f32| f64::from(place) - f64::from(centre);
+        (block, [about(x[k], cx[block]), about(y[k], cy[block])])
+    };
+    owner.into_iter().enumerate().map(arm).collect()
+}
+
+fn decoded(body: &[u8], arms: &[(usize, [f64; 2])], blocks: usize) -> Decoded {
+    let mut reader = Reader(body);
+    reader.take(8);
+    let quantum = reader.f64();
+    reader.take(blocks);
+    let edges = reader.take(arms.len()).to_vec();
+    let numbers: Vec<Vec<f32>> =
+        [4, 4, 3, 3, 3, 3, 3, 3, 3].iter().map(|&width| reader.planes(blocks, width)).collect();
+    let monitor = std::array::from_fn(|_| reader.f32());
+    let rest: [Vec<f64>; 2] = std::array::from_fn(|_| arms.iter().map(|_| reader.integer() as f64 * quantum).collect());
+    assert!(reader.0.is_empty());
+    let corner = |(k, &(block, [a, b])): (usize, &(usize, [f64; 2]))| {
+        let [x, y, turn] = [0, 1, 2].map(|n| f64::from(numbers[n][block]));
+        let (sine, less) = (turn.sin(), turn.cos() - 1.0);
+        [x + a * less - b * sine + rest[0][k], y + a * sine + b * less + rest[1][k]]
+    };
+    let corners = arms.iter().enumerate().map(corner).collect();
+    Decoded { quantum, numbers, corners, edges, monitor }
+}
+
+fn compare(found: &Decoded, put: &Moment) {
+    for (corner, wanted) in found.corners.iter().zip(&put.corners) {
+        for axis in [0, 1] {
+            let error = (corner[axis] - wanted[axis]).abs();
+            assert!(error <= 0.5000001 * found.quantum, "{error} of {}", found.quantum);
+        }
+    }
+    for (k, block) in put.blocks.iter().enumerate() {
+        let wanted = [block.displacement[0], block.displacement[1], block.rotation, block.velocity[0]];
+        let wanted = wanted.into_iter().chain([block.velocity[1], block.angular_velocity]).chain(block.stress);
+        for (n, wanted) in wanted.enumerate() {
+            let error = (f64::from(found.numbers[n][k]) - wanted).abs();
+            assert!(error <= wanted.abs() * if n < 2 { FULL } else { SHORT }, "number {n} of block {k}");
+        }
+    }
+    assert_eq!(found.edges, put.edges.iter().map(|&state| state as u8).collect::<Vec<_>>());
+    let [x, y] = MONITOR.displacement;
+    let [vx, vy] = MONITOR.velocity;
+    assert_eq!(found.monitor.map(f64::from), [x, y, vx, vy]);
+}
+
+#[test]
+fn a_film_gives_back_frames_within_its_errors() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(8, 5));
+    let path = folder.path().join("film.bin");
+    let moments = slope.film(&path, 5);
+    let chunks = chunks(&std::fs::read(&path).unwrap());
+    let arms = arms(&chunks[1].2);
+    assert_eq!(arms.len(), slope.corners());
+    let frames: Vec<_> = chunks.iter().filter(|(kind, ..)| kind == "FRAM").collect();
+    assert_eq!(frames.len(), 5);
+    for ((_, time, body), moment) in frames.into_iter().zip(&moments) {
+        assert_eq!(*time, moment.time);
+        let found = decoded(body, &arms, slope.outlines.len());
+        let size = 8.4 * 3.0;
+        assert!(found.quantum <= size * QUANTUM);
+        let most = moment.corners.iter().flatten().fold(0.0_f64, |most, part| most.max(part.abs()));
+        assert!(found.quantum <= most / 1024.0);
+        compare(&found, moment);
+    }
+}
+
+#[test]
+fn rows_and_notes_stand_where_they_were_put() {
+    let folder = tempdir().unwrap();
+    let (path, slope) = (folder.path().join("film.bin"), Slope::new(2, 2));
+    let mut film = FilmWriter::create(&path, &head(), &slope.outlines).unwrap();
+    film.row(&[0.0, 0.5]).unwrap();
+    film.row(&[0.25, -1.5]).unwrap();
+    film.note(0.25, &Note::Warning { text: "loose".to_owned() }).unwrap();
+    let chunks = chunks(&std::fs::read(&path).unwrap());
+    let kinds: Vec<&str> = chunks.iter().map(|(kind, ..)| kind.as_str()).collect();
+    assert_eq!(kinds, ["HEAD", "OUTL", "ROWS", "NOTE"]);
+    let mut rows = Reader(&chunks[2].2);
+    assert_eq!([rows.u32(), rows.u32()], [2, 2]);
+    assert_eq!([rows.f64(), rows.f64()], [0.0, 0.25]);
+    assert_eq!(rows.planes(2, 4), [0.5, -1.5]);
+    let note: serde_json::Value = serde_json::from_slice(&chunks[3].2).unwrap();
+    assert_eq!(note, serde_json::json!({ "note": "warning", "text": "loose" }));
+}
+
+/// Size of a page with so many blocks and frames (bytes).
+fn page_size(across: usize, up: usize, blocks: usize, frames: usize) -> u64 {
+    let folder = tempdir().unwrap();
+    let mut slope = Slope::new(across, up);
+    slope.outlines.truncate(blocks);
+    let [film, page] = ["film.bin", "report.html"].map(|name| folder.path().join(name));
+    slope.film(&film, frames);
+    write_page(&film, &page).unwrap();
+    std::fs::metadata(page).unwrap().len()
+}
+
+#[test]
+fn hundreds_of_blocks_go_by_mail() {
+    let size = page_size(29, 15, 435, 100);
+    assert!(size <= 2_000_000, "{size} bytes");
+}
+
+#[test]
+fn ten_thousand_blocks_open() {
+    let size = page_size(125, 80, 10_000, 60);
+    assert!(size <= 25_000_000, "{size} bytes");
+}
+
+#[test]
+fn a_torn_film_still_makes_a_page() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(3, 3));
+    let [film, page] = ["film.bin", "report.html"].map(|name| folder.path().join(name));
+    slope.film(&film, 4);
+    write_page(&film, &page).unwrap();
+    let whole = std::fs::read(&page).unwrap();
+    let mut bytes = std::fs::read(&film).unwrap();
+    bytes.extend(b"FRAM\x40\x00\x00\x00torn");
+    std::fs::write(&film, bytes).unwrap();
+    write_page(&film, &page).unwrap();
+    assert!(std::fs::read(&page).unwrap() == whole);
+}
+
+/// Frames, and all rows of the histories, of a film.
+fn frames_and_rows(path: &Path) -> (Vec<Chunk>, Vec<(f64, f32)>) {
+    let (frames, others): (Vec<_>, Vec<_>) =
+        chunks(&std::fs::read(path).unwrap()).into_iter().partition(|(kind, ..)| kind == "FRAM");
+    let mut rows = Vec::new();
+    for (_, _, body) in others.into_iter().filter(|(kind, ..)| kind == "ROWS") {
+        let mut reader = Reader(&body);
+        let count = reader.u32() as usize;
+        assert_eq!(reader.u32(), 2);
+        let times: Vec<f64> = (0..count).map(|_| reader.f64()).collect();
+        rows.extend(times.into_iter().zip(reader.planes(count, 4)));
+    }
+    (frames, rows)
+}
+
+/// Frames lie 0.1 s apart and rows 0.02 s, so the film is cut in the middle of a chunk of rows.
+#[test]
+fn a_resumed_film_has_the_frames_and_rows_of_the_uninterrupted_one() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(4, 3));
+    let [whole, resumed] = ["whole.bin", "resumed.bin"].map(|name| folder.path().join(name));
+    let fill = |film: &mut FilmWriter, steps: std::ops::RangeInclusive<usize>| {
+        for step in steps {
+            let time = 0.02 * step as f64;
+            film.row(&[time, time.sin()]).unwrap();
+            if step % 5 == 0 {
+                film.frame(&slope.at(time).frame()).unwrap();
+            }
+        }
+        film.flush().unwrap();
+    };
+    fill(&mut FilmWriter::create(&whole, &head(), &slope.outlines).unwrap(), 0..=30);
+    fill(&mut FilmWriter::create(&resumed, &head(), &slope.outlines).unwrap(), 0..=24);
+    fill(&mut FilmWriter::resume(&resumed, &head(), &slope.outlines, 0.37).unwrap(), 19..=30);
+    let (frames, rows) = frames_and_rows(&whole);
+    assert_eq!([frames.len(), rows.len()], [7, 31]);
+    assert!((frames, rows) == frames_and_rows(&resumed));
+}
+
+#[test]
+fn what_cannot_be_shown_is_refused_with_its_place() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(2, 2));
+    let path = folder.path().join("film.bin");
+    let mut film = FilmWriter::create(&path, &head(), &slope.outlines).unwrap();
+    let told = |error: FilmError| error.to_string();
+    let mut moment = slope.at(0.5);
+    moment.blocks[2].velocity[1] = f64::NAN;
+    assert!(told(film.frame(&moment.frame()).unwrap_err()).starts_with("velocity y of block 2 is NaN at t = 0.5 s"));
+    let mut moment = slope.at(0.5);
+    moment.corners[13][0] = f64::INFINITY;
+    assert!(told(film.frame(&moment.frame()).unwrap_err()).starts_with("displacement of corner 13, in block 1 is inf"));
+    let mut moment = slope.at(0.5);
+    moment.blocks[0].stress[0] = 1e39;
+    assert!(told(film.frame(&moment.frame()).unwrap_err()).contains("is 1e39"));
+    let mut moment = slope.at(0.5);
+    moment.edges = vec![EdgeState::Open];
+    assert_eq!(told(film.frame(&moment.frame()).unwrap_err()), "1 edges of a frame were given, the film has 48");
+    assert!(told(film.row(&[0.0, f64::NAN]).unwrap_err()).starts_with("wave of a row is NaN"));
+    let size = std::fs::metadata(&path).unwrap().len();
+    film.frame(&slope.at(0.5).frame()).unwrap();
+    assert!(std::fs::metadata(&path).unwrap().len() > size, "a refused frame leaves the film as it was");
+}
+
+#[test]
+fn another_file_is_no_film() {
+    let folder = tempdir().unwrap();
+    let [film, page] = ["film.bin", "report.html"].map(|name| folder.path().join(name));
+    std::fs::write(&film, "title = \"a case\"").unwrap();
+    let error = write_page(&film, &page).unwrap_err().to_string();
+    assert!(error.contains("is no film"), "{error}");
+    assert!(!page.exists());
+}

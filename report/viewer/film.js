@@ -1,0 +1,298 @@
+// The film: bytes to typed arrays. `format.md` of the crate has the layout.
+
+const MAGIC = "enmmfil1";
+const CHUNK_HEADER = 16;
+// Numbers of a block in a frame, in the order of the film, with the bytes that each takes.
+const NUMBERS = [
+  ["ux", 4],
+  ["uy", 4],
+  ["turn", 3],
+  ["vx", 3],
+  ["vy", 3],
+  ["spin", 3],
+  ["sxx", 3],
+  ["syy", 3],
+  ["sxy", 3],
+];
+const OPEN = 1,
+  SLIP = 2,
+  LOCK = 3;
+
+// Reads numbers one after the other.
+class Reader {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    this.at = 0;
+  }
+  u8() {
+    return this.bytes[this.at++];
+  }
+  u16() {
+    this.at += 2;
+    return this.view.getUint16(this.at - 2, true);
+  }
+  u32() {
+    this.at += 4;
+    return this.view.getUint32(this.at - 4, true);
+  }
+  f32() {
+    this.at += 4;
+    return this.view.getFloat32(this.at - 4, true);
+  }
+  f64() {
+    this.at += 8;
+    return this.view.getFloat64(this.at - 8, true);
+  }
+  take(count) {
+    this.at += count;
+    return this.bytes.subarray(this.at - count, this.at);
+  }
+  // Singles whose bytes of one weight stand side by side; missing low bytes are zero.
+  planes(count, width) {
+    const out = new Float32Array(count),
+      bytes = new Uint8Array(out.buffer);
+    for (let plane = 4 - width; plane < 4; plane++) {
+      const from = this.take(count);
+      for (let k = 0; k < count; k++) bytes[4 * k + plane] = from[k];
+    }
+    return out;
+  }
+  // Integers of seven bits a byte, the sign in the lowest bit.
+  integers(count) {
+    const out = new Int32Array(count),
+      bytes = this.bytes;
+    let at = this.at;
+    for (let k = 0; k < count; k++) {
+      let byte = bytes[at++],
+        value = byte & 127,
+        weight = 128;
+      while (byte > 127) {
+        byte = bytes[at++];
+        value += (byte & 127) * weight;
+        weight *= 128;
+      }
+      out[k] = value % 2 ? -(value + 1) / 2 : value / 2;
+    }
+    this.at = at;
+    return out;
+  }
+}
+
+async function inflate(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Bytes of base64 text, in pieces so that no string grows beyond what browsers allow.
+function fromBase64(text) {
+  const PIECE = 1 << 20;
+  const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
+  const out = new Uint8Array((text.length / 4) * 3 - padding);
+  let at = 0;
+  for (let from = 0; from < text.length; from += PIECE) {
+    const piece = atob(text.slice(from, from + PIECE));
+    for (let k = 0; k < piece.length; k++) out[at++] = piece.charCodeAt(k);
+  }
+  return out;
+}
+
+const STRAIGHT = 0.05; // Turn (rad) below which a corner lies on a straight side.
+
+// Whether each corner is one of the reference shape, and not only a point on a side that may bend.
+function realCorners({ blocks, corners, x, y }) {
+  const real = new Uint8Array(corners);
+  for (const block of blocks) {
+    for (const [first, end] of block.loops) {
+      for (let c = first; c < end; c++) {
+        const before = c === first ? end - 1 : c - 1,
+          after = c + 1 === end ? first : c + 1;
+        const turn = Math.atan2(y[after] - y[c], x[after] - x[c]) - Math.atan2(y[c] - y[before], x[c] - x[before]);
+        real[c] = Math.abs(turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI))) > STRAIGHT ? 1 : 0;
+      }
+      // A round block has no corner: all its points count.
+      const loop = real.subarray(first, end);
+      if (loop.reduce((sum, one) => sum + one, 0) < 3) loop.fill(1);
+    }
+  }
+  return real;
+}
+
+// Places of all blocks and corners (m), relative to the origin, in arrays of one entry per block or corner.
+function readOutlines(reader) {
+  const count = reader.u32(),
+    corners = reader.u32();
+  const shape = { count, corners, originX: reader.f64(), originY: reader.f64(), size: reader.f64() };
+  shape.blocks = [];
+  let corner = 0;
+  for (let k = 0; k < count; k++) {
+    const block = { id: reader.u32(), fixed: reader.u8() === 1, first: corner, loops: [] };
+    reader.u8();
+    block.rock = reader.u16();
+    block.area = reader.f64();
+    block.mass = reader.f64();
+    const loops = reader.u32();
+    for (let loop = 0; loop < loops; loop++) {
+      const end = corner + reader.u32();
+      block.loops.push([corner, end]);
+      corner = end;
+    }
+    block.end = corner;
+    shape.blocks.push(block);
+  }
+  // Half of all blocks are larger than a square of this side (m).
+  shape.side = Math.sqrt(shape.blocks.map((block) => block.area).sort((a, b) => a - b)[count >> 1] ?? 0);
+  shape.centreX = reader.planes(count, 4);
+  shape.centreY = reader.planes(count, 4);
+  shape.x = reader.planes(corners, 4);
+  shape.y = reader.planes(corners, 4);
+  shape.real = realCorners(shape);
+  return shape;
+}
+
+function readFrame(reader, time, shape, monitors) {
+  const frame = { time, stage: reader.u32() };
+  const withEdges = reader.u8() === 1;
+  reader.take(3);
+  frame.quantum = reader.f64();
+  frame.removed = reader.take(shape.count);
+  frame.edges = withEdges ? reader.take(shape.corners) : null;
+  for (const [name, width] of NUMBERS) frame[name] = reader.planes(shape.count, width);
+  frame.monitors = [];
+  for (let k = 0; k < monitors; k++) {
+    frame.monitors.push({ ux: reader.f32(), uy: reader.f32(), vx: reader.f32(), vy: reader.f32() });
+  }
+  frame.restX = slim(reader.integers(shape.corners));
+  frame.restY = slim(reader.integers(shape.corners));
+  return frame;
+}
+
+// The same integers in as few bytes as they need: frames stay in memory.
+function slim(integers) {
+  let most = 0;
+  for (const value of integers) most = Math.max(most, Math.abs(value));
+  return most < 128 ? Int8Array.from(integers) : most < 32768 ? Int16Array.from(integers) : integers;
+}
+
+// A film that is read from the bytes so far.
+class Film {
+  constructor() {
+    this.head = null;
+    this.shape = null;
+    this.frames = [];
+    this.rows = { time: [], columns: [] };
+    this.notes = [];
+    this.begun = false;
+    this.pending = new Uint8Array(0);
+  }
+
+  get start() {
+    return Math.min(this.frames[0]?.time ?? Infinity, this.rows.time[0] ?? Infinity);
+  }
+  get end() {
+    return Math.max(this.frames.at(-1)?.time ?? -Infinity, this.rows.time.at(-1) ?? -Infinity);
+  }
+
+  // Takes bytes behind those so far; a chunk that is not whole yet waits for its rest.
+  async push(bytes) {
+    let all = bytes;
+    if (this.pending.length) {
+      all = new Uint8Array(this.pending.length + bytes.length);
+      all.set(this.pending);
+      all.set(bytes, this.pending.length);
+    }
+    let at = 0;
+    if (!this.begun && all.length >= MAGIC.length) {
+      if (String.fromCharCode(...all.subarray(0, MAGIC.length)) !== MAGIC) throw new Error("this is no film of enmm");
+      this.begun = true;
+      at = MAGIC.length;
+    }
+    const chunks = [];
+    while (this.begun && at + CHUNK_HEADER <= all.length) {
+      const reader = new Reader(all.subarray(at));
+      const kind = String.fromCharCode(...reader.take(4)),
+        length = reader.u32(),
+        time = reader.f64();
+      if (at + CHUNK_HEADER + length > all.length) break;
+      chunks.push({ kind, time, body: all.subarray(at + CHUNK_HEADER, at + CHUNK_HEADER + length) });
+      at += CHUNK_HEADER + length;
+    }
+    this.pending = all.slice(at);
+    // A few at a time: one by one is slow, all at once takes twice the memory.
+    const BATCH = 16;
+    for (let from = 0; from < chunks.length; from += BATCH) {
+      const batch = chunks.slice(from, from + BATCH);
+      const bodies = await Promise.all(batch.map((chunk) => inflate(chunk.body)));
+      batch.forEach((chunk, k) => this.take(chunk, bodies[k]));
+    }
+    return chunks.length;
+  }
+
+  take({ kind, time }, body) {
+    const reader = new Reader(body);
+    const json = () => JSON.parse(new TextDecoder().decode(body));
+    if (kind === "HEAD") {
+      this.head = json();
+      this.rows.columns = this.head.columns.map(() => []);
+    } else if (kind === "OUTL") this.shape = readOutlines(reader);
+    else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.shape, this.head.monitors.length));
+    else if (kind === "ROWS") this.takeRows(reader);
+    else if (kind === "NOTE") this.notes.push({ time, ...json() });
+  }
+
+  takeRows(reader) {
+    const count = reader.u32(),
+      columns = reader.u32();
+    for (let k = 0; k < count; k++) this.rows.time.push(reader.f64());
+    for (let column = 1; column < columns; column++) {
+      const numbers = reader.planes(count, 4),
+        all = this.rows.columns[column];
+      for (const number of numbers) all.push(number);
+    }
+  }
+
+  // All notes of a kind; of each stage only what was noted last.
+  of(kind) {
+    const found = this.notes.filter((note) => note.note === kind);
+    // A resumed run warns again of what was known before.
+    const key = { stage: "number", warning: "text" }[kind];
+    return key ? [...new Map(found.map((note) => [note[key], note])).values()] : found;
+  }
+
+  // The last frame that is not later than a time.
+  frameAt(time) {
+    let low = 0,
+      high = this.frames.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.frames[middle].time <= time) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  // Sum of what a block's rigid motion and its deformation do to each corner (m), at a fraction of the way from one
+  // frame to another.
+  displace(from, to, part, outX, outY) {
+    const { blocks, centreX, centreY, x, y } = this.shape,
+      a = this.frames[from],
+      b = this.frames[to],
+      rest = 1 - part;
+    for (let k = 0; k < blocks.length; k++) {
+      const ux = a.ux[k] * rest + b.ux[k] * part,
+        uy = a.uy[k] * rest + b.uy[k] * part;
+      // The shorter way round: rotations are known within half a turn.
+      let way = b.turn[k] - a.turn[k];
+      way -= 2 * Math.PI * Math.round(way / (2 * Math.PI));
+      const turn = a.turn[k] + part * way,
+        sine = Math.sin(turn),
+        less = Math.cos(turn) - 1;
+      for (let c = blocks[k].first; c < blocks[k].end; c++) {
+        const armX = x[c] - centreX[k],
+          armY = y[c] - centreY[k];
+        outX[c] = ux + armX * less - armY * sine + a.restX[c] * a.quantum * rest + b.restX[c] * b.quantum * part;
+        outY[c] = uy + armX * sine + armY * less + a.restY[c] * a.quantum * rest + b.restY[c] * b.quantum * part;
+      }
+    }
+  }
+}

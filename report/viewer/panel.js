@@ -1,0 +1,261 @@
+// The panel beside the slope: numbers of what is chosen, tables, settings, the case.
+
+// An element with attributes and children; text is never read as HTML.
+function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === true) made.setAttribute(key, "");
+    else if (value !== false && value !== null) made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+function table(rows) {
+  return element(
+    "table",
+    {},
+    element(
+      "tbody",
+      {},
+      ...rows.map(([name, value, exact]) =>
+        element(
+          "tr",
+          {},
+          element("th", { scope: "row" }, name),
+          element("td", exact === undefined ? {} : { title: exact }, value),
+        ),
+      ),
+    ),
+  );
+}
+
+// A row of a table: the value with a unit for reading, and in the unit of the film under the pointer.
+function measured(name, value, unit) {
+  return [name, withUnit(value, unit), `${value} ${unit}`];
+}
+
+function section(title, ...children) {
+  return element("section", {}, element("h2", {}, title), ...children);
+}
+
+function folded(title, open, ...children) {
+  return element("details", { open }, element("summary", {}, title), ...children);
+}
+
+// Greater and smaller principal stress in the plane (Pa), and the angle of the greater from the x axis (rad).
+function principal(xx, yy, xy) {
+  const mean = 0.5 * (xx + yy),
+    radius = Math.hypot(0.5 * (xx - yy), xy);
+  return [mean + radius, mean - radius, 0.5 * Math.atan2(2 * xy, xx - yy)];
+}
+
+function numbersOfBlock(film, k, frame) {
+  const block = film.shape.blocks[k],
+    { shape, head } = film,
+    rock = head.rocks[block.rock];
+  const state = frame.removed[k] ? "excavated" : block.fixed ? "held" : "free";
+  return [
+    ["State", rock ? `${state}, ${rock}` : state],
+    measured("Area", block.area, "m²"),
+    measured("Mass", block.mass, "kg/m"),
+    measured("Centroid x", shape.originX + shape.centreX[k] + frame.ux[k], "m"),
+    measured("Centroid y", shape.originY + shape.centreY[k] + frame.uy[k], "m"),
+    measured("Displacement", Math.hypot(frame.ux[k], frame.uy[k]), "m"),
+    measured("… x", frame.ux[k], "m"),
+    measured("… y", frame.uy[k], "m"),
+    measured("Rotation", frame.turn[k], "rad"),
+    ...(head.quantities.includes("velocity") ? velocityOfBlock(k, frame) : []),
+    ...(head.quantities.includes("stress") ? stressOfBlock(k, frame) : []),
+  ];
+}
+
+function velocityOfBlock(k, frame) {
+  return [
+    measured("Speed", Math.hypot(frame.vx[k], frame.vy[k]), "m/s"),
+    measured("… x", frame.vx[k], "m/s"),
+    measured("… y", frame.vy[k], "m/s"),
+    measured("Angular velocity", frame.spin[k], "rad/s"),
+  ];
+}
+
+function stressOfBlock(k, frame) {
+  const [major, minor, angle] = principal(frame.sxx[k], frame.syy[k], frame.sxy[k]);
+  return [
+    measured("Mean stress", 0.5 * (frame.sxx[k] + frame.syy[k]), "Pa"),
+    measured("σ1 (greatest)", major, "Pa"),
+    measured("σ2 (least)", minor, "Pa"),
+    measured("σ1 from x axis", angle, "rad"),
+    measured("σxx", frame.sxx[k], "Pa"),
+    measured("σyy", frame.syy[k], "Pa"),
+    measured("σxy", frame.sxy[k], "Pa"),
+  ];
+}
+
+function numbersOfMonitor(film, k, frame) {
+  const [x, y] = film.head.monitors[k].place,
+    monitor = frame.monitors[k];
+  return [
+    measured("Placed at x", x, "m"),
+    measured("Placed at y", y, "m"),
+    measured("Displacement", Math.hypot(monitor.ux, monitor.uy), "m"),
+    measured("… x", monitor.ux, "m"),
+    measured("… y", monitor.uy, "m"),
+    measured("Speed", Math.hypot(monitor.vx, monitor.vy), "m/s"),
+    measured("… x", monitor.vx, "m/s"),
+    measured("… y", monitor.vy, "m/s"),
+  ];
+}
+
+// What is chosen, in a frame.
+function choiceSection(film, choice, frame) {
+  const axis = film.head.axis,
+    when = `${axis.name} ${digits(frame.time)} ${axis.unit}`;
+  const children = [];
+  if (choice.block !== null) {
+    children.push(
+      element("p", { class: "soft" }, `At ${when}; tension is positive`),
+      table(numbersOfBlock(film, choice.block, frame)),
+    );
+  } else if (choice.monitor !== null) {
+    children.push(
+      element("p", { class: "soft" }, `At ${when}`),
+      table(numbersOfMonitor(film, choice.monitor, frame)),
+    );
+  } else {
+    children.push(element("p", { class: "soft" }, "Click a block or a monitor to see its numbers."));
+  }
+  const { block, monitor } = choice;
+  const title =
+    block !== null
+      ? `Block ${film.shape.blocks[block].id}`
+      : monitor !== null
+        ? `Monitor ${film.head.monitors[monitor].name}`
+        : "Numbers";
+  const made = section(title, ...children);
+  made.id = "choice";
+  return made;
+}
+
+// Marks beside the colour: a reader who sees no colour sees the mark.
+const VERDICTS = { stable: "● stable", unstable: "✕ unstable", caught: "▲ caught" };
+
+function trialsSection({ result, trials }) {
+  const head = ["F", "Verdict", "Moved", "Failing"];
+  const rows = trials.map((trial) =>
+    element(
+      "tr",
+      {
+        title: `${trial.reason}, after ${digits(trial.time)} s, at ${withUnit(trial.speed, "m/s")}, ${trial.failing} blocks fail`,
+      },
+      element("td", { class: "text" }, trial.factor.toFixed(4)),
+      element("td", { class: `text ${trial.verdict}` }, VERDICTS[trial.verdict] ?? trial.verdict),
+      element("td", {}, withUnit(trial.displacement, "m")),
+      element("td", {}, trial.failing ? `${digits(trial.area)} m²` : "–"),
+    ),
+  );
+  return section(
+    "Factor of safety",
+    element("p", {}, result),
+    element(
+      "table",
+      { id: "trials" },
+      element(
+        "thead",
+        {},
+        element("tr", {}, ...head.map((name, k) => element("th", k < 2 ? { class: "text" } : {}, name))),
+      ),
+      element("tbody", {}, ...rows),
+    ),
+  );
+}
+
+function stagesSection(stages, end) {
+  const head = ["Stage", "From", "To", "End"];
+  const rows = stages.map((stage) =>
+    element(
+      "tr",
+      { "data-stage": stage.number },
+      element("td", { class: "text" }, `${stage.name} (${stage.kind})`),
+      element("td", {}, `${digits(stage.start)} s`),
+      element("td", {}, `${digits(stage.end ?? end)} s`),
+      element("td", {}, stage.outcome || "…"),
+    ),
+  );
+  return section(
+    "Stages",
+    element(
+      "table",
+      { id: "stages" },
+      element(
+        "thead",
+        {},
+        element("tr", {}, ...head.map((name, k) => element("th", k < 1 ? { class: "text" } : {}, name))),
+      ),
+      element("tbody", {}, ...rows),
+    ),
+  );
+}
+
+function warningsSection(warnings) {
+  const list = element("ul", {}, ...warnings.map(({ text }) => element("li", {}, text)));
+  const made = folded(`Warnings (${warnings.length})`, true, list);
+  made.className = "warnings";
+  return made;
+}
+
+function markedSection({ name, blocks, rows }, k, shown, toggle) {
+  const box = element("input", { type: "checkbox", checked: shown });
+  box.addEventListener("change", () => toggle(k, box.checked));
+  return section(
+    name,
+    element("label", {}, box, `Mark ${blocks.length === 1 ? "this block" : `these ${blocks.length} blocks`}`),
+    table(rows.map((row) => [row.name, row.value])),
+  );
+}
+
+// What a film holds beside its slope, in the order in which a reader wants it.
+function panelSections(film, shown, toggle) {
+  const made = [];
+  film.of("trials").forEach((note) => made.push(trialsSection(note)));
+  film.of("marked").forEach((note, k) => made.push(markedSection(note, k, shown[k], toggle)));
+  film
+    .of("facts")
+    .forEach((note) => made.push(section(note.title, table(note.rows.map((row) => [row.name, row.value])))));
+  const warnings = film.of("warning"),
+    stages = film.of("stage");
+  if (warnings.length) made.push(warningsSection(warnings));
+  if (stages.length) made.push(stagesSection(stages, film.end));
+  return made;
+}
+
+// The case file without its folders.
+function fileName(head) {
+  return head.case_file.split(/[\\/]/).at(-1);
+}
+
+function caseSection(film) {
+  return folded(`Case file ${fileName(film.head)}`, false, element("pre", { tabindex: "0" }, film.head.case_text));
+}
+
+// How exact the page is, in metres.
+function accuracySection(film) {
+  let quantum = 0;
+  for (const frame of film.frames) quantum = Math.max(quantum, frame.quantum);
+  return folded(
+    "How exact this page is",
+    false,
+    element(
+      "p",
+      {},
+      `Corners are drawn within ${withUnit(quantum / 2, "m")} of the result, in each axis. Displacements ` +
+        "of blocks and all numbers of monitors and histories have 7 digits; rotations, velocities and stresses of " +
+        "blocks have 4. Between two frames the picture is interpolated; numbers are those of the frame before.",
+    ),
+    element(
+      "p",
+      { class: "soft" },
+      "Keys: space plays, ← → step, Home and End, + − 0 zoom, 1 to 5 colours, D light or dark, Esc lets go.",
+    ),
+  );
+}

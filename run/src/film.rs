@@ -1,0 +1,301 @@
+//! What the page `report.html` shows of a model: its blocks and frames as the film has them.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use enmm_report::{
+    Axis, BlockFrame, Column, EdgeState, FilmError, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace, Note, Outline,
+    PAGE, Quantity, write_page,
+};
+
+use enmm::contact::{ContactState, VertexEdge};
+use enmm::geometry::{NONE, Point, Vector, polygon};
+use enmm::model::{BlockState, Simulation};
+use enmm_io::LoadedCase;
+
+/// Cosine of the angle between a face and the normal of a contact on it from which the face lies flat on the other.
+const FLAT: f64 = -0.94;
+
+/// A film of a model.
+#[derive(Debug)]
+pub struct Film {
+    writer: FilmWriter,
+    path: PathBuf,
+    page: PathBuf,
+    /// Boundary point of each corner, blocks in order, the outer loop of each first.
+    corners: Vec<u32>,
+}
+
+/// What a film begins with beside the case and its model.
+#[derive(Debug)]
+pub struct Opening<'a> {
+    /// The command, such as `run`.
+    pub command: &'static str,
+    /// The film.
+    pub film: PathBuf,
+    /// What the slider moves along.
+    pub axis: Axis,
+    /// What frames hold of blocks beside their displacement.
+    pub quantities: Vec<Quantity>,
+    /// Names and units of the columns of the histories, the time first.
+    pub columns: &'a [(String, &'static str)],
+}
+
+impl Film {
+    /// Begins a film whose page goes to a directory, or continues it behind a time (s).
+    ///
+    /// # Errors
+    /// A number that cannot be shown, or what the file system refuses.
+    pub fn open(
+        directory: &Path,
+        loaded: &LoadedCase,
+        simulation: &Simulation,
+        opening: Opening,
+        until: Option<f64>,
+    ) -> io::Result<Self> {
+        let (outlines, corners) = outlines(simulation);
+        let path = opening.film.clone();
+        let head = head(loaded, simulation, opening);
+        let writer = match until {
+            Some(until) => FilmWriter::resume(&path, &head, &outlines, until),
+            None => FilmWriter::create(&path, &head, &outlines),
+        };
+        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), corners })
+    }
+
+    /// Appends the model as it is now.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn frame(&mut self, simulation: &Simulation) -> io::Result<()> {
+        self.frame_at(simulation, simulation.time())
+    }
+
+    /// Appends the model as it is now at another place of the slider.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        let displacement = |&point: &u32| {
+            let sample = simulation.model().boundary.sample(point as usize, &simulation.state().displacement);
+            [sample.x, sample.y]
+        };
+        let monitor = |k| {
+            let (u, v) = simulation.monitor(k);
+            MonitorFrame { displacement: [u.x, u.y], velocity: [v.x, v.y] }
+        };
+        let states = edge_states(simulation);
+        self.writer
+            .frame(&Frame {
+                time,
+                stage: simulation.state().stage,
+                blocks: &simulation.block_states().iter().map(block_frame).collect::<Vec<_>>(),
+                corners: &self.corners.iter().map(displacement).collect::<Vec<_>>(),
+                edges: &self.corners.iter().map(|&point| states[point as usize]).collect::<Vec<_>>(),
+                monitors: &(0..simulation.case().monitors.len()).map(monitor).collect::<Vec<_>>(),
+            })
+            .map_err(refused)
+    }
+
+    /// Appends a frame in which every block has a rigid motion: displacement of its centroid (m) and rotation (rad).
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn rigid_frame(
+        &mut self,
+        simulation: &Simulation,
+        time: f64,
+        motion: impl Fn(usize) -> (Vector, f64),
+    ) -> io::Result<()> {
+        let boundary = &simulation.model().boundary;
+        let states = simulation.block_states();
+        let blocks: Vec<BlockFrame> = states
+            .iter()
+            .enumerate()
+            .map(|(k, state)| {
+                let (displacement, rotation) = motion(k);
+                let displacement = [displacement.x, displacement.y];
+                BlockFrame { removed: state.removed, displacement, rotation, ..BlockFrame::default() }
+            })
+            .collect();
+        let corner = |&point: &u32| {
+            let block = boundary.block[point as usize] as usize;
+            let (displacement, rotation) = motion(block);
+            let arm = boundary.reference[point as usize] - (states[block].centroid - states[block].displacement);
+            let (sine, less) = (rotation.sin(), rotation.cos() - 1.0);
+            [displacement.x + arm.x * less - arm.y * sine, displacement.y + arm.x * sine + arm.y * less]
+        };
+        self.writer
+            .frame(&Frame {
+                time,
+                stage: simulation.state().stage,
+                blocks: &blocks,
+                corners: &self.corners.iter().map(corner).collect::<Vec<_>>(),
+                edges: &[],
+                monitors: &vec![MonitorFrame::default(); simulation.case().monitors.len()],
+            })
+            .map_err(refused)
+    }
+
+    /// Takes a row of the histories.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn row(&mut self, row: &[f64]) -> io::Result<()> {
+        self.writer.row(row).map_err(refused)
+    }
+
+    /// Appends a note at a time (s).
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn note(&mut self, time: f64, note: &Note) -> io::Result<()> {
+        self.writer.note(time, note).map_err(refused)
+    }
+
+    /// Ends the film and writes its page.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn close(&mut self, time: f64, status: String) -> io::Result<()> {
+        self.note(time, &Note::End { status })?;
+        write_page(&self.path, &self.page).map_err(refused)
+    }
+}
+
+fn refused(error: FilmError) -> io::Error {
+    io::Error::other(error)
+}
+
+fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening) -> Head {
+    let case = simulation.case();
+    let monitors =
+        case.monitors.iter().map(|monitor| MonitorPlace { name: monitor.name.clone(), place: monitor.point });
+    let column = |(name, unit): &(String, &'static str)| Column {
+        name: name.clone(),
+        quantity: quantity(name, unit).to_owned(),
+        unit: (*unit).to_owned(),
+    };
+    Head {
+        title: case.title.clone(),
+        command: opening.command.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        case_file: loaded.source.file().to_owned(),
+        case_text: loaded.source.text().to_owned(),
+        axis: opening.axis,
+        quantities: opening.quantities,
+        columns: opening.columns.iter().map(column).collect(),
+        monitors: monitors.collect(),
+        rocks: case.rocks.keys().cloned().collect(),
+    }
+}
+
+/// The quantity by which a column of the histories is charted.
+fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
+    match (name, unit) {
+        (_, "m/s") => "Velocity",
+        (_, "J/m") => "Energy",
+        ("penetration_max", _) => "Largest penetration",
+        (_, "m") => "Displacement",
+        ("locked" | "slipping", _) => "Contacts",
+        ("unbalanced_ratio", _) => "Unbalanced ratio",
+        ("sweeps_mean", _) => "Open–close sweeps per step",
+        ("stage", _) => "Stage",
+        _ => name,
+    }
+}
+
+/// Blocks in the reference configuration, and the boundary point of each corner: the nodes, of which there is one at
+/// every corner and kink and at least one in a mesh size.
+fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<u32>) {
+    let model = simulation.model();
+    let boundary = &model.boundary;
+    let mut loops: Vec<Vec<Vec<u32>>> = vec![Vec::new(); model.covers.block_count()];
+    let mut first = 0;
+    while first < boundary.node_count() {
+        let mut node = first;
+        let mut points = Vec::new();
+        loop {
+            points.push(boundary.node_point[node]);
+            node = boundary.node_next[node] as usize;
+            if node == first {
+                break;
+            }
+        }
+        first += points.len();
+        loops[boundary.block[points[0] as usize] as usize].push(points);
+    }
+    let place = |&point: &u32| boundary.reference[point as usize];
+    let area = |points: &Vec<u32>| polygon::area(&points.iter().map(place).collect::<Vec<Point>>());
+    let states = simulation.block_states();
+    let outline = |(loops, state): (&mut Vec<Vec<u32>>, &BlockState)| {
+        loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        let centroid = state.centroid - state.displacement;
+        let rock = model.covers.elements_of(state.id as usize).next().map_or(0, |e| model.element_rock[e]);
+        let corners = |points: &Vec<u32>| points.iter().map(|p| [place(p).x, place(p).y]).collect();
+        Outline {
+            id: state.id,
+            fixed: state.fixed,
+            rock: u16::from(rock),
+            area: state.area,
+            mass: state.mass,
+            centroid: [centroid.x, centroid.y],
+            loops: loops.iter().map(corners).collect(),
+        }
+    };
+    let outlines = loops.iter_mut().zip(&states).map(outline).collect();
+    (outlines, loops.into_iter().flatten().flatten().collect())
+}
+
+fn block_frame(state: &BlockState) -> BlockFrame {
+    BlockFrame {
+        removed: state.removed,
+        displacement: [state.displacement.x, state.displacement.y],
+        rotation: state.rotation,
+        velocity: [state.velocity.x, state.velocity.y],
+        angular_velocity: state.angular_velocity,
+        stress: state.mean_stress,
+    }
+}
+
+/// State of each edge of the boundary. A contact stands for the stretch between two nodes in which it lies, and for
+/// the stretch beside its own node that lies flat on the other block.
+fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
+    let boundary = &simulation.model().boundary;
+    let joint = |&trace: &u32| if trace == NONE { EdgeState::Free } else { EdgeState::Open };
+    let mut states: Vec<EdgeState> = boundary.trace.iter().map(joint).collect();
+    let positions = simulation.positions();
+    let mut mark = |node: u32, state: EdgeState| {
+        let mut edge = boundary.node_point[node as usize] as usize;
+        let end = boundary.node_point[boundary.node_next[node as usize] as usize] as usize;
+        loop {
+            if states[edge] != EdgeState::Slip {
+                states[edge] = state;
+            }
+            edge = boundary.after(edge);
+            if edge == end {
+                break;
+            }
+        }
+    };
+    simulation.each_contact(|contact: &VertexEdge| {
+        let state = match contact.history.state {
+            ContactState::Open => return,
+            ContactState::Slip => EdgeState::Slip,
+            ContactState::Lock => EdgeState::Lock,
+        };
+        let node = contact.history.node as usize;
+        mark(boundary.node_before[contact.history.edge as usize], state);
+        let flat = |edge: usize| {
+            let along = positions[boundary.after(edge)] - positions[edge];
+            Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
+        };
+        if flat(boundary.node_point[node] as usize) {
+            mark(node as u32, state);
+        }
+        if flat(boundary.node_edge_before[node] as usize) {
+            mark(boundary.node_previous[node], state);
+        }
+    });
+    states
+}

@@ -1,0 +1,182 @@
+//! The pages of `enmm fos` and `enmm bound`: the slope as it fails, tables, and the failing mass marked.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use enmm_report::{Axis, FILM, Fact, Marked, Note, Quantity, Trial as Row, TrialTable};
+
+use crate::film::{Film, Opening};
+use crate::fos::{Found, remedy};
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+use enmm_io::LoadedCase;
+use enmm_io::files::temporary_beside;
+use enmm_stability::limit_analysis::{self, Bound, Collapse};
+use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
+
+/// Motion of the fastest block of a mechanism in its page, over the greater side of the model.
+const SHOWN: f64 = 0.05;
+
+/// Writes the page of a search for the factor of safety.
+///
+/// # Errors
+/// Whatever the file system refuses, or a number that cannot be shown.
+pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> io::Result<()> {
+    let main = found.main();
+    let simulation = &main.simulation;
+    let quantities = vec![Quantity::Velocity, Quantity::Stress];
+    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
+    let path = temporary_beside(&directory.join(FILM))?;
+    let opening = Opening { command: "fos", film: path.clone(), axis, quantities, columns: &[] };
+    let mut film = Film::open(directory, loaded, simulation, opening, None)?;
+    film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
+    film.frame_at(simulation, 1.0)?;
+    for (k, search) in found.searches.iter().enumerate() {
+        let name = if found.searches.len() > 1 { format!(" {}", k + 1) } else { String::new() };
+        film.note(0.0, &Note::Trials(trials(search, &name)))?;
+        if let Some(trial) = search.first_unstable() {
+            film.note(0.0, &Note::Marked(failing(search, trial, &name)))?;
+        }
+        note_warnings(&mut film, search.warnings.iter().chain(remedy(search).iter()))?;
+    }
+    let end = match main.first_unstable() {
+        Some(trial) => format!("end of the trial at F = {:.4}", trial.factor),
+        None => "the slope at rest".to_owned(),
+    };
+    let rows = [("0", "before gravity acts".to_owned()), ("1", end)];
+    film.note(0.0, &facts("What the slider shows", rows.map(|(name, value)| (name.to_owned(), value))))?;
+    close(film, &path)
+}
+
+/// Writes the page of a limit analysis.
+///
+/// # Errors
+/// A case that limit analysis refuses, as a message; else as [`write_fos_page`].
+pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) -> io::Result<()> {
+    let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
+    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
+    let path = temporary_beside(&directory.join(FILM))?;
+    let opening = Opening { command: "bound", film: path.clone(), axis, quantities: Vec::new(), columns: &[] };
+    let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
+    let moving = &bound.level_tops.mechanism;
+    let reach = SHOWN * greater_side(&simulation);
+    for share in [0.0, 1.0] {
+        film.rigid_frame(&simulation, share, |block| {
+            let found = moving.iter().find(|moves| moves.block as usize == block);
+            let scale = share * reach;
+            found.map_or((Vector::zeros(), 0.0), |moves| (moves.velocity * scale, moves.spin * scale))
+        })?;
+    }
+    film.note(0.0, &Note::Marked(mechanism(bound)))?;
+    let factors = [
+        ("associated", &bound.associated),
+        ("level tops pass", &bound.level_tops),
+        ("every corner catches", &bound.catching),
+    ];
+    let factor = |(name, collapse): (&str, &Collapse)| (name.to_owned(), collapse.factor.to_string());
+    film.note(0.0, &facts("Factor of safety by limit analysis", factors.map(factor)))?;
+    let shown = [
+        ("0", "the slope before it moves".to_owned()),
+        (
+            "1",
+            format!("the mechanism where level tops pass; its size is free, so the fastest block moves {reach:.3} m"),
+        ),
+    ];
+    film.note(0.0, &facts("What the slider shows", shown.map(|(name, value)| (name.to_owned(), value))))?;
+    note_warnings(&mut film, bound.warnings.iter())?;
+    close(film, &path)
+}
+
+/// Ends the film, writes its page and removes the film, which the page holds.
+fn close(mut film: Film, path: &Path) -> io::Result<()> {
+    film.close(1.0, "finished".to_owned())?;
+    fs::remove_file(path)
+}
+
+fn note_warnings<'a>(film: &mut Film, warnings: impl Iterator<Item = &'a String>) -> io::Result<()> {
+    for text in warnings {
+        film.note(0.0, &Note::Warning { text: text.clone() })?;
+    }
+    Ok(())
+}
+
+fn facts<const N: usize>(title: &str, rows: [(String, String); N]) -> Note {
+    let rows = rows.into_iter().map(|(name, value)| Fact { name, value });
+    Note::Facts { title: title.to_owned(), rows: rows.collect() }
+}
+
+fn trials(search: &Reduction, name: &str) -> TrialTable {
+    let bracket = match (search.low, search.high) {
+        (Some(low), Some(high)) => format!(" (stable at {low:.4}, not at {high:.4})"),
+        _ => String::new(),
+    };
+    let result = match (search.factor(), search.at_least()) {
+        (Some(factor), _) => format!("{factor:.4}{bracket}"),
+        (None, Some(least)) => format!("at least {least:.4}"),
+        (None, None) => format!("not found{bracket}"),
+    };
+    let bound = match &search.bound {
+        Ok(bound) => format!(
+            "limit analysis: {} where level tops pass, {} associated",
+            bound.level_tops.factor, bound.associated.factor
+        ),
+        Err(refused) => format!("limit analysis: none, {refused}"),
+    };
+    let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
+    TrialTable { result: format!("{mechanism}{result}; {bound}"), trials: search.trials.iter().map(row).collect() }
+}
+
+fn row(trial: &Trial) -> Row {
+    Row {
+        factor: trial.factor,
+        verdict: trial.verdict.name().to_owned(),
+        reason: trial.reason.name().to_owned(),
+        time: trial.time,
+        displacement: trial.displacement,
+        speed: trial.speed,
+        failing: trial.failing.len() as u32,
+        area: trial.failing_area(),
+    }
+}
+
+fn failing(search: &Reduction, trial: &Trial, name: &str) -> Marked {
+    let fate = if trial.verdict == Verdict::Caught { "slides and is caught" } else { "fails" };
+    let rows = [
+        ("At", format!("F = {:.4}, {fate}", trial.factor)),
+        ("Blocks", trial.failing.len().to_string()),
+        ("Area", format!("{:.4} m²", trial.failing_area())),
+        ("Mass", format!("{:.4e} kg/m", trial.failing_mass())),
+        ("Share of the free rock", format!("{:.1} %", 100.0 * trial.failing_area() / search.free_area)),
+    ];
+    Marked {
+        name: format!("Failing mass{name}"),
+        blocks: trial.failing.iter().map(|block| block.block).collect(),
+        rows: rows.into_iter().map(|(name, value)| Fact { name: name.to_owned(), value }).collect(),
+    }
+}
+
+fn mechanism(bound: &Bound) -> Marked {
+    let moving = &bound.level_tops.mechanism;
+    let sum = |of: fn(&limit_analysis::MovingBlock) -> f64| moving.iter().map(of).sum::<f64>();
+    let rows = [
+        ("Blocks", moving.len().to_string()),
+        ("Area", format!("{:.4} m²", sum(|block| block.area))),
+        ("Mass", format!("{:.4e} kg/m", sum(|block| block.mass))),
+    ];
+    Marked {
+        name: "Mechanism".to_owned(),
+        blocks: moving.iter().map(|block| block.block).collect(),
+        rows: rows.into_iter().map(|(name, value)| Fact { name: name.to_owned(), value }).collect(),
+    }
+}
+
+/// Greater side of the box round the model (m).
+fn greater_side(simulation: &Simulation) -> f64 {
+    let side = |axis: usize| {
+        let places = simulation.model().boundary.reference.iter().map(|point| point[axis]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        high - low
+    };
+    side(0).max(side(1))
+}
