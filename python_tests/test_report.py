@@ -30,7 +30,10 @@ OF_BLOCK = [
     ("σxy", "mean_stress_xy [Pa]"),
 ]
 # The same of components: number of their row under a name.
-PARTS = [("Displacement", "displacement_x [m]", "displacement_y [m]"), ("Speed", "velocity_x [m/s]", "velocity_y [m/s]")]
+PARTS = [
+    ("Displacement", "displacement_x [m]", "displacement_y [m]"),
+    ("Speed", "velocity_x [m/s]", "velocity_y [m/s]"),
+]
 
 
 @pytest.fixture(scope="module")
@@ -202,7 +205,10 @@ def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
     report.open((results / "report.html").as_uri())
     report.press("4")
     picture = Image.open(io.BytesIO(report.screenshot())).convert("RGB")
-    pixel = lambda x, y: picture.getpixel(tuple(round(part) for part in place(report, x, y)))
+
+    def pixel(x: float, y: float) -> tuple[int, int, int]:
+        return picture.getpixel(tuple(round(part) for part in place(report, x, y)))
+
     air, base = pixel(4.0, 1.7), pixel(4.5, 0.5)
     assert (sum(air) > 3 * 220) == (theme == "light")
     # The free block has the first colour of Okabe and Ito, whitened by 0.4, the held base a neutral one.
@@ -212,7 +218,8 @@ def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
 
 
 def test_a_hostile_title_stays_text(enmm, page, tmp_path, short_case):
-    text = short_case.read_text().replace("Short run for the Python tests", "</script><script>window.stolen = 1</script>")
+    hostile = "</script><script>window.stolen = 1</script>"
+    text = short_case.read_text().replace("Short run for the Python tests", hostile)
     case = tmp_path / "case.toml"
     case.write_text(text)
     answer = enmm("run", case, "-o", tmp_path / "out", "--quiet")
