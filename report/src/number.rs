@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn short_numbers_keep_four_digits() {
-        for value in [1.0_f32, -9.80665, 1.2345678e-7, 8.7654321e9, -3.3333333e-30, f32::MAX, 0.0] {
+        for value in [1.0_f32, -9.80665, 1.234_567_9e-7, 8.765_432e9, -3.333_333_3e-30, f32::MAX, 0.0] {
             let error = (shortened(value) - value).abs();
             assert!(error <= value.abs() * 2f32.powi(-16), "{value}: {error}");
         }

@@ -109,7 +109,7 @@ const COLOURS = [
 
 // What a film has to colour by.
 function coloursOf(film) {
-  const known = { displacement: true, block: true, joint: film.frames.some((frame) => frame.edges) };
+  const known = { displacement: true, block: true, joint: film.frames.some((frame) => frame.edges?.some(Boolean)) };
   return COLOURS.filter(({ key }) => known[key] || film.head.quantities.includes(key));
 }
 
@@ -172,6 +172,10 @@ function digits(value) {
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) return value.toExponential(3);
   return size >= 1000 ? value.toFixed(0) : value.toPrecision(4);
+}
+
+function counted(count, what) {
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
 function withUnit(value, unit) {

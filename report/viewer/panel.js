@@ -146,7 +146,7 @@ function trialsSection({ result, trials }) {
     element(
       "tr",
       {
-        title: `${trial.reason}, after ${digits(trial.time)} s, at ${withUnit(trial.speed, "m/s")}, ${trial.failing} blocks fail`,
+        title: `${trial.reason}, after ${digits(trial.time)} s, at ${withUnit(trial.speed, "m/s")}, ${counted(trial.failing, "block")} fail`,
       },
       element("td", { class: "text" }, trial.factor.toFixed(4)),
       element("td", { class: `text ${trial.verdict}` }, VERDICTS[trial.verdict] ?? trial.verdict),

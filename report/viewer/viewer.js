@@ -38,7 +38,7 @@ class Viewer {
     document.title = `${head.title || head.case_file} – enmm ${head.command}`;
     by("title").textContent = head.title || head.case_file;
     by("subtitle").textContent =
-      `enmm ${head.command}, version ${head.version}, ${fileName(head)}, ${film.shape.count} blocks, ${film.frames.length} frames`;
+      `enmm ${head.command}, version ${head.version}, ${fileName(head)}, ${counted(film.shape.count, "block")}, ${counted(film.frames.length, "frame")}`;
     const end = film.of("end").at(-1);
     by("status").textContent = end
       ? end.status === "finished"

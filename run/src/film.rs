@@ -236,7 +236,7 @@ fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<u32>) {
         Outline {
             id: state.id,
             fixed: state.fixed,
-            rock: u16::from(rock),
+            rock,
             area: state.area,
             mass: state.mass,
             centroid: [centroid.x, centroid.y],
