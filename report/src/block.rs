@@ -8,9 +8,9 @@ use crate::error::FilmError;
 use crate::number::{Width, push_integer, push_planes, single};
 
 /// Largest quantum over the size of the model: a corner is drawn at most half of it away from where it is.
-pub const QUANTUM: f64 = 1.0 / 262_144.0;
+pub const QUANTUM: f64 = 1.0 / 131_072.0;
 /// Largest quantum over the largest displacement of a corner in the frame.
-const QUANTUM_OF_MOTION: f64 = 1.0 / 1024.0;
+const QUANTUM_OF_MOTION: f64 = 1.0 / 512.0;
 /// Smallest quantum over the size of the model: below, single precision of the reference ends.
 const QUANTUM_LEAST: f64 = 1e-12;
 

@@ -99,7 +99,7 @@ fn a_film_gives_back_frames_within_its_errors() {
         let size = 8.4 * 3.0;
         assert!(found.quantum <= size * QUANTUM);
         let most = moment.corners.iter().flatten().fold(0.0_f64, |most, part| most.max(part.abs()));
-        assert!(found.quantum <= most / 1024.0);
+        assert!(found.quantum <= most / 512.0);
         compare(&found, moment);
     }
 }
