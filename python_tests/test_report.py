@@ -60,7 +60,7 @@ def report(page, results):
 
 
 def quiet(page) -> None:
-    """Nothing went wrong in the page, and it asked nobody for anything."""
+    """The page has no error and made no request."""
     assert page.errors == []
     assert page.requests == []
 

@@ -143,13 +143,13 @@ pub struct Frame<'a> {
     pub blocks: &'a [BlockFrame],
     /// Displacement (m) of all corners, loop by loop, in the order of the outlines.
     pub corners: &'a [[f64; 2]],
-    /// State of the edge behind each corner; empty when a film tells nothing of joints.
+    /// State of the edge behind each corner; empty in a film without joint states.
     pub edges: &'a [EdgeState],
     /// All monitored points, in the order of [`Head::monitors`].
     pub monitors: &'a [MonitorFrame],
 }
 
-/// Something to tell beside the frames; appended when it is known.
+/// Information beside the frames, appended as soon as there is some.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "note", rename_all = "snake_case")]
 pub enum Note {

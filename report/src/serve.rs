@@ -42,7 +42,7 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Answers for ever; a browser that goes away in the middle is no error.
+    /// Answers requests without end; a browser that goes away in the middle is no error.
     ///
     /// # Errors
     /// When no further browser can connect.

@@ -1,7 +1,7 @@
 // Colours, scales and numbers with units.
 
 // Viridis (S. van der Walt and N. Smith, matplotlib, CC0) and cividis (J. Nuñez, C. Anderton and R. Renslow, 2018), at
-// equal steps: both grow evenly in lightness, also for readers who do not tell red from green.
+// equal steps: both grow evenly in lightness, also for readers to whom red and green look alike.
 const VIRIDIS = [
   "440154",
   "481a6c",

@@ -114,7 +114,7 @@ class Slope {
       if (y[c] > high) high = y[c];
     }
     if (right < west || left > east || high < south || low > north) return false;
-    // Of a block of a few pixels nobody sees a side bend.
+    // The bending of a side is not visible on a block of a few pixels.
     const wanted = Math.max(right - left, high - low) * scale < TINY ? this.film.shape.real : null;
     pen.beginPath();
     for (const [first, end] of block.loops) {

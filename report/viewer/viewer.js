@@ -1,4 +1,4 @@
-// Puts film, slope, chart, panel and player together, and hears keys and pointers.
+// Puts film, slope, chart, panel and player together, and handles keys and pointers.
 
 const by = (id) => document.getElementById(id);
 const MAGNIFICATIONS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
@@ -26,13 +26,13 @@ class Viewer {
     this.listen();
     this.range();
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
-    this.told();
+    this.update();
     this.slope.resize();
     this.slope.fit();
   }
 
-  // The film has told more: tables, charts, ranges and the length of the slider are made again.
-  told() {
+  // Makes tables, charts, ranges and the length of the slider again, for a film that has grown.
+  update() {
     const { film } = this,
       { head } = film;
     document.title = `${head.title || head.case_file} – enmm ${head.command}`;
@@ -116,10 +116,10 @@ class Viewer {
       max: MAGNIFICATIONS.length - 1,
       value: place,
     });
-    const told = element("output", {}, `${settings.magnification} ×`);
+    const shown = element("output", {}, `${settings.magnification} ×`);
     slider.addEventListener("input", () => {
       settings.magnification = MAGNIFICATIONS[Number(slider.value)];
-      told.textContent = `${settings.magnification} ×`;
+      shown.textContent = `${settings.magnification} ×`;
       this.refresh();
     });
     const box = (id, text, key) => {
@@ -137,7 +137,7 @@ class Viewer {
         : [];
     return section(
       "Drawing",
-      element("label", {}, "Displacements drawn", slider, told),
+      element("label", {}, "Displacements drawn", slider, shown),
       ...since,
       box("logarithmic", "Logarithmic colours, three decades", "logarithmic"),
     );
@@ -489,11 +489,11 @@ async function follow(film) {
   }
 }
 
-// Shows what a film has told; one that stands at its end moves on with it.
+// Shows a film that has grown; a viewer at its end moves on with it.
 function grow(viewer, film) {
   if (!viewer) return (window.enmm = new Viewer(film));
   const atEnd = viewer.player.time >= Number(by("slider").max);
-  viewer.told();
+  viewer.update();
   if (atEnd && !viewer.player.playing) viewer.player.seek(film.end);
   return viewer;
 }

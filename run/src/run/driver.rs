@@ -191,7 +191,7 @@ impl<'a> Driver<'a> {
         self.note_stage(None, "")
     }
 
-    /// Tells the film that the stage begins, or how it ended.
+    /// Notes in the film that the stage begins, or how it ended.
     fn note_stage(&mut self, end: Option<f64>, outcome: &str) -> io::Result<()> {
         let (stage, state) = (self.simulation.stage(), self.simulation.state());
         let kind = match stage.kind {
