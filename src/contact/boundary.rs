@@ -8,15 +8,15 @@ use crate::geometry::{Point, TraceId, Vector, id};
 
 id! {
     /// A node of the boundary: a point of it that may touch edges.
-    NodeId
+    NodeId: plain
 }
 id! {
     /// An edge of the boundary, and the boundary point at its start.
-    EdgeId
+    EdgeId: plain
 }
 id! {
     /// A side: edges between two corners.
-    SideId
+    SideId: plain
 }
 
 /// Kind of the end of a side.

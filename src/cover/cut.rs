@@ -220,11 +220,11 @@ fn by_triangle(covers: &Covers) -> Vec<ElementId> {
 
 id! {
     /// An element in the order of the arrangement's faces.
-    RawId
+    RawId: optional
 }
 id! {
     /// A corner of such an element.
-    SlotId
+    SlotId: optional
 }
 
 impl RawId {

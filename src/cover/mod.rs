@@ -15,15 +15,15 @@ use crate::geometry::{Vector, id};
 
 id! {
     /// A block: rock that no joint cuts through.
-    BlockId
+    BlockId: plain
 }
 id! {
     /// A manifold element.
-    ElementId
+    ElementId: optional
 }
 id! {
     /// A physical cover.
-    CoverId
+    CoverId: plain
 }
 
 /// Weights of the three physical covers of an element at a point.

@@ -9,23 +9,23 @@ use super::{GeometryError, Point, faces, id};
 
 id! {
     /// A joint trace.
-    TraceId
+    TraceId: optional
 }
 id! {
     /// An edge of the mesh, as its maker counts them.
-    MeshEdgeId
+    MeshEdgeId: optional
 }
 id! {
     /// A vertex of an arrangement.
-    VertexId
+    VertexId: optional
 }
 id! {
     /// A half-edge of an arrangement: 2e runs along edge e, 2e + 1 against it.
-    HalfEdgeId
+    HalfEdgeId: optional
 }
 id! {
     /// A face of an arrangement.
-    FaceId
+    FaceId: optional
 }
 
 /// Edges whose half-edges and faces can be told apart by 32 bits.

@@ -7,7 +7,7 @@ mod arrangement;
 mod error;
 mod faces;
 pub(crate) mod grid;
-mod id;
+pub(crate) mod id;
 pub mod joint_set;
 pub mod loops;
 mod noder;

@@ -8,7 +8,7 @@ use crate::geometry::id;
 
 id! {
     /// A joint law.
-    LawId
+    LawId: plain
 }
 
 /// A joint: Mohr–Coulomb with tension cut-off, peak and residual strength and dilation (Eqs. 20, 21), or, with a
