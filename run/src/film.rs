@@ -8,8 +8,9 @@ use enmm_report::{
     PAGE, Quantity, write_page,
 };
 
-use enmm::contact::{ContactState, VertexEdge};
-use enmm::geometry::{NONE, Point, Vector, polygon};
+use enmm::contact::{ContactState, EdgeId, NodeId, VertexEdge};
+use enmm::cover::BlockId;
+use enmm::geometry::{Point, TraceId, Vector, polygon};
 use enmm::model::{BlockState, Simulation};
 use enmm_io::LoadedCase;
 
@@ -23,7 +24,7 @@ pub struct Film {
     path: PathBuf,
     page: PathBuf,
     /// Boundary point of each corner, blocks in order, the outer loop of each first.
-    corners: Vec<u32>,
+    corners: Vec<EdgeId>,
 }
 
 /// What a film begins with beside the case and its model.
@@ -76,8 +77,8 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
-        let displacement = |&point: &u32| {
-            let sample = simulation.model().boundary.sample(point as usize, &simulation.state().displacement);
+        let displacement = |&point: &EdgeId| {
+            let sample = simulation.model().boundary.sample(point, &simulation.state().displacement);
             [sample.x, sample.y]
         };
         let monitor = |k| {
@@ -91,7 +92,7 @@ impl Film {
                 stage: simulation.state().stage,
                 blocks: &simulation.block_states().iter().map(block_frame).collect::<Vec<_>>(),
                 corners: &self.corners.iter().map(displacement).collect::<Vec<_>>(),
-                edges: &self.corners.iter().map(|&point| states[point as usize]).collect::<Vec<_>>(),
+                edges: &self.corners.iter().map(|&point| states[point]).collect::<Vec<_>>(),
                 monitors: &(0..simulation.case().monitors.len()).map(monitor).collect::<Vec<_>>(),
             })
             .map_err(refused)
@@ -118,10 +119,10 @@ impl Film {
                 BlockFrame { removed: state.removed, displacement, rotation, ..BlockFrame::default() }
             })
             .collect();
-        let corner = |&point: &u32| {
-            let block = boundary.block[point as usize] as usize;
+        let corner = |&point: &EdgeId| {
+            let block = boundary.block[point].index();
             let (displacement, rotation) = motion(block);
-            let arm = boundary.reference[point as usize] - (states[block].centroid - states[block].displacement);
+            let arm = boundary.reference[point] - (states[block].centroid - states[block].displacement);
             let (sine, less) = (rotation.sin(), rotation.cos() - 1.0);
             [displacement.x + arm.x * less - arm.y * sine, displacement.y + arm.x * sine + arm.y * less]
         };
@@ -207,32 +208,33 @@ fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
 
 /// Blocks in the reference configuration, and the boundary point of each corner: the nodes, of which there is one at
 /// every corner and kink and at least one in a mesh size.
-fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<u32>) {
+fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
     let model = simulation.model();
     let boundary = &model.boundary;
-    let mut loops: Vec<Vec<Vec<u32>>> = vec![Vec::new(); model.covers.block_count()];
+    let mut loops: Vec<Vec<Vec<EdgeId>>> = vec![Vec::new(); model.covers.block_count()];
     let mut first = 0;
     while first < boundary.node_count() {
-        let mut node = first;
+        let mut node = NodeId::new(first);
         let mut points = Vec::new();
         loop {
             points.push(boundary.node_point[node]);
-            node = boundary.node_next[node] as usize;
-            if node == first {
+            node = boundary.node_next[node];
+            if node.index() == first {
                 break;
             }
         }
         first += points.len();
-        loops[boundary.block[points[0] as usize] as usize].push(points);
+        loops[boundary.block[points[0]]].push(points);
     }
-    let place = |&point: &u32| boundary.reference[point as usize];
-    let area = |points: &Vec<u32>| polygon::area(&points.iter().map(place).collect::<Vec<Point>>());
+    let place = |&point: &EdgeId| boundary.reference[point];
+    let area = |points: &Vec<EdgeId>| polygon::area(&points.iter().map(place).collect::<Vec<Point>>());
     let states = simulation.block_states();
-    let outline = |(loops, state): (&mut Vec<Vec<u32>>, &BlockState)| {
+    let outline = |(loops, state): (&mut Vec<Vec<EdgeId>>, &BlockState)| {
         loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
         let centroid = state.centroid - state.displacement;
-        let rock = model.covers.elements_of(state.id as usize).next().map_or(0, |e| model.element_rock[e]);
-        let corners = |points: &Vec<u32>| points.iter().map(|p| [place(p).x, place(p).y]).collect();
+        let rock =
+            model.covers.elements_of(BlockId::new(state.id as usize)).next().map_or(0, |e| model.element_rock[e]);
+        let corners = |points: &Vec<EdgeId>| points.iter().map(|p| [place(p).x, place(p).y]).collect();
         Outline {
             id: state.id,
             fixed: state.fixed,
@@ -262,12 +264,12 @@ fn block_frame(state: &BlockState) -> BlockFrame {
 /// the stretch beside its own node that lies flat on the other block.
 fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
     let boundary = &simulation.model().boundary;
-    let joint = |&trace: &u32| if trace == NONE { EdgeState::Free } else { EdgeState::Open };
+    let joint = |trace: &Option<TraceId>| if trace.is_none() { EdgeState::Free } else { EdgeState::Open };
     let mut states: Vec<EdgeState> = boundary.trace.iter().map(joint).collect();
     let positions = simulation.positions();
-    let mut mark = |node: u32, state: EdgeState| {
-        let mut edge = boundary.node_point[node as usize] as usize;
-        let end = boundary.node_point[boundary.node_next[node as usize] as usize] as usize;
+    let mut mark = |node: NodeId, state: EdgeState| {
+        let mut edge = boundary.node_point[node];
+        let end = boundary.node_point[boundary.node_next[node]];
         loop {
             if states[edge] != EdgeState::Slip {
                 states[edge] = state;
@@ -284,16 +286,16 @@ fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
             ContactState::Slip => EdgeState::Slip,
             ContactState::Lock => EdgeState::Lock,
         };
-        let node = contact.history.node as usize;
-        mark(boundary.node_before[contact.history.edge as usize], state);
-        let flat = |edge: usize| {
+        let node = contact.history.node;
+        mark(boundary.node_before[contact.history.edge], state);
+        let flat = |edge: EdgeId| {
             let along = positions[boundary.after(edge)] - positions[edge];
             Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
         };
-        if flat(boundary.node_point[node] as usize) {
-            mark(node as u32, state);
+        if flat(boundary.node_point[node]) {
+            mark(node, state);
         }
-        if flat(boundary.node_edge_before[node] as usize) {
+        if flat(boundary.node_edge_before[node]) {
             mark(boundary.node_previous[node], state);
         }
     });
