@@ -743,6 +743,16 @@ enmm_status enmm_create_from_file(const char *case_path, struct enmm_model **out
 enmm_status enmm_create_from_string(const char *toml, const char *base_dir, struct enmm_model **out);
 
 /**
+ * Checks a case that is given as text in TOML: its keys, the type and range of every value, the names that it uses,
+ * and the files that it names. No model is built, so a fault of the geometry as a whole appears only when one is.
+ *
+ * `base_dir` is the directory of the files that the case names; NULL stands for the current one.
+ *
+ * Errors: as enmm_create_from_string.
+ */
+enmm_status enmm_check_case(const char *toml, const char *base_dir);
+
+/**
  * Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
  * model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
  *

@@ -11,6 +11,7 @@ mod python;
 mod repository;
 mod sanitize;
 mod tasks;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -38,6 +39,8 @@ usage: cargo xtask TASK
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
+  wheel            builds the Python wheel of this platform, with library and program, in the target folder
+  ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench
                    such as --models all
   ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
@@ -68,6 +71,8 @@ fn main() -> ExitCode {
         ["ratio"] => tasks::verification(&repository, "ratio").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["wheel"] => wheel::build(&repository).map(|_| ExitCode::SUCCESS),
+        ["ensembles"] => Ok(tasks::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&repository)).map(|()| ExitCode::SUCCESS)

@@ -5,6 +5,7 @@ use std::process::{Command, Stdio};
 
 use crate::counts::{self, Counts};
 use crate::repository::{self, Repository};
+use crate::wheel;
 
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
@@ -28,19 +29,31 @@ pub const ALL: &str = "python_tests";
 /// # Errors
 /// When the environment cannot be made or the case does not run.
 pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
+    pytest(repository, places, None)
+}
+
+/// The same with ENMM_LONG, so that campaigns run in full.
+///
+/// # Errors
+/// As [`test`].
+pub fn test_in_full(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
+    pytest(repository, places, Some(("ENMM_LONG", "1")))
+}
+
+fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>) -> Result<Counts, String> {
     let results = repository.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = command(repository)?;
-    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places);
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places).envs(extent);
     if !has_browser() {
         println!("SKIPPED {BROWSER_TEST}: there is no Chromium on this machine (Debian: apt-get install chromium)");
         pytest.args(["--ignore", BROWSER_TEST]);
     }
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
-    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation"));
+    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository)?);
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -93,6 +106,7 @@ fn library(repository: &Repository) -> PathBuf {
 pub fn command(repository: &Repository) -> Result<Command, String> {
     let mut python = repository.command(environment(repository)?);
     python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(repository));
+    python.env("ENMM_PROGRAM", repository.enmm());
     // Cargo names folders with our library here, which would hide that a search does not find it.
     python.env("PYTHONPATH", repository.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
     Ok(python)

@@ -106,6 +106,16 @@ pub fn python(repository: &Repository) -> ExitCode {
     steps.close()
 }
 
+/// Builds, and runs the full campaigns of the ensembles in Python.
+pub fn ensembles(repository: &Repository) -> ExitCode {
+    let mut steps = Steps::default();
+    let build = ["build", "--release", "--workspace", "--examples"];
+    if steps.take("build", || repository::run(&mut repository.cargo(&build)).map(|()| Counts::default())) {
+        steps.take("ensembles", || python::test_in_full(repository, &["python_tests/test_ensemble.py"]));
+    }
+    steps.close()
+}
+
 /// Runs the long campaigns; it fails when one failed, or there is none.
 pub fn long(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();

@@ -8,6 +8,13 @@
             model.set_block_force(model.ports["toe"].block, 0.45e6, 0.28e6)
             info = model.do_step(model.time, model.communication_step)
 
+Whole runs need one line each; the wheel brings the program `enmm`, which they call:
+
+    enmm.fos("plane_slide.toml").factor
+    enmm.run("fractured_slope.toml").plot()
+
+`enmm.ensemble` draws samples of uncertain values and finds the probability of failure.
+
 Units are SI: m, s, kg, N, Pa, rad, per metre of thickness; x to the right, y upwards, angles and moments
 counter-clockwise, stresses positive in tension.
 
@@ -15,7 +22,11 @@ Models share nothing: any number can be used at the same time, each by one threa
 Calls release the interpreter lock. A State may be used by many threads.
 """
 
+import importlib
+from typing import Any
+
 from ._abi import ABI_VERSION
+from ._case import Case
 from ._errors import (
     BufferTooSmallError,
     BusyError,
@@ -33,9 +44,13 @@ from ._errors import (
     StepError,
     TimeError,
 )
+from ._frames import Frame, Frames
 from ._library import Library, load_library
 from ._model import BLOCK_DTYPE, CONTACT_DTYPE, Model, State
 from ._ports import Port, Ports
+from ._program import program
+from ._table import Table
+from ._tasks import Fos, Result, RunError, bound, check, fos, run
 from ._types import (
     BlockFlag,
     ContactState,
@@ -50,6 +65,15 @@ from ._types import (
     Totals,
 )
 
+__version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> Any:
+    if name == "ensemble":  # Only when it is asked for, so that the import of the package stays short.
+        return importlib.import_module("enmm.ensemble")
+    raise AttributeError(f"module 'enmm' has no attribute {name!r}")
+
+
 __all__ = [
     "ABI_VERSION",
     "BLOCK_DTYPE",
@@ -57,6 +81,7 @@ __all__ = [
     "BlockFlag",
     "BufferTooSmallError",
     "BusyError",
+    "Case",
     "CaseError",
     "CaseFileError",
     "ContactState",
@@ -65,6 +90,9 @@ __all__ = [
     "EnmmError",
     "Event",
     "EventKind",
+    "Fos",
+    "Frame",
+    "Frames",
     "Interpolation",
     "InvalidArgumentError",
     "Library",
@@ -78,12 +106,21 @@ __all__ = [
     "PortKind",
     "PortState",
     "Ports",
+    "Result",
+    "RunError",
     "State",
     "StateError",
     "Status",
     "StepError",
     "StepInfo",
+    "Table",
     "TimeError",
     "Totals",
+    "__version__",
+    "bound",
+    "check",
+    "fos",
     "load_library",
+    "program",
+    "run",
 ]

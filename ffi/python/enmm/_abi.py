@@ -137,6 +137,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_last_error": (c_char_p, []),
     "enmm_create_from_file": (c_int32, [c_char_p, _OUT_HANDLE]),
     "enmm_create_from_string": (c_int32, [c_char_p, c_char_p, _OUT_HANDLE]),
+    "enmm_check_case": (c_int32, [c_char_p, c_char_p]),
     "enmm_destroy": (None, [_MODEL]),
     "enmm_start": (c_int32, [_MODEL]),
     "enmm_do_step": (c_int32, [_MODEL, c_double, c_double, POINTER(StepInfo)]),

@@ -3,16 +3,18 @@
 import ctypes
 import os
 import weakref
+from contextlib import suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
+from pathlib import Path
 from types import TracebackType
-from typing import Self, SupportsIndex
+from typing import NamedTuple, Self, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
 from ._core import Core, LogFunction, Rows, ids_of, index, number, pointer, text, values_of
-from ._errors import invalid
+from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
 from ._types import Energies, Event, EventKind, Interpolation, StepInfo, Totals
@@ -26,11 +28,13 @@ CONTACT_DTYPE = _abi.dtype_of(_abi.Contact)
 class State:
     """A saved state of a model, made by `Model.save` or `Model.deserialize`; it may outlive the model.
 
-    It is given free by `close`, at the end of a `with`, or with the object.
+    It is given free by `close`, at the end of a `with`, or with the object. It goes through pickle as the case and
+    the bytes of `Model.serialize`, and is whole again in the process that unpickles it.
     """
 
-    def __init__(self, library: Library, handle: c_void_p) -> None:
+    def __init__(self, library: Library, handle: c_void_p, source: "Source", core: Core) -> None:
         self.handle = handle
+        self._source, self._core = source, weakref.ref(core)
         self._close = weakref.finalize(self, library.functions["enmm_state_free"], handle)
 
     def close(self) -> None:
@@ -45,6 +49,56 @@ class State:
     ) -> None:
         self.close()
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _unpickled_state, (self._source, self._bytes())
+
+    def _bytes(self) -> bytes:
+        """The bytes of the state, by its model or, when that is closed or in use, by another one of the case."""
+        if not self._close.alive:
+            raise DeadHandleError("the state was closed: save another one to pickle", Status.DEAD_HANDLE)
+        core = self._core()
+        if core is not None:
+            with suppress(DeadHandleError, BusyError):
+                return _serialized(core, self)
+        with self._source.model() as model:
+            return model.serialize(self)
+
+    def __repr__(self) -> str:
+        return f"<enmm.State{'' if self._close.alive else ', closed'}>"
+
+
+def _unpickled_state(source: "Source", data: bytes) -> State:
+    with source.model() as model:
+        return model.deserialize(data)
+
+
+def _unpickled_model(source: "Source", data: bytes, threads: int) -> "Model":
+    model = source.model()
+    with model.deserialize(data) as state:
+        model.restore(state)
+    model.threads = threads
+    return model
+
+
+def _serialized(core: Core, state: State) -> bytes:
+    count = c_size_t()
+    core.call("enmm_state_serialize", state.handle, None, 0, byref(count))
+    buffer = ctypes.create_string_buffer(count.value)
+    core.call("enmm_state_serialize", state.handle, buffer, count.value, byref(count))
+    return buffer.raw[: count.value]
+
+
+class Source(NamedTuple):
+    """What a model was made of: the text of its case, the directory of the files that it names, and its name."""
+
+    toml: str
+    base_dir: str
+    name: str
+
+    def model(self) -> "Model":
+        """Builds the model once more, by the library that this process finds."""
+        return Model.from_string(self.toml, self.base_dir)
+
 
 class Model:
     """A jointed rock mass that a host drives through communication steps.
@@ -54,10 +108,13 @@ class Model:
 
     Inputs act from the start of the next step on, or are reached at its end (see `interpolation`), and hold until
     they are set anew. A value that is refused raises InvalidArgumentError, and the old one holds.
+
+    A model goes through pickle as its case and its state, without its log; the copy continues with the same bits. The
+    files that the case names must be found at the same place by the process that unpickles it.
     """
 
-    def __init__(self, core: Core) -> None:
-        self._core = core
+    def __init__(self, core: Core, source: Source) -> None:
+        self._core, self._source = core, source
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
         self._ports = Ports(core)
@@ -71,7 +128,9 @@ class Model:
         `library` is the C library or the path of it; see `load_library`. Raises CaseFileError, or CaseError with
         file, line and key.
         """
-        return cls(Core(_library(library), "enmm_create_from_file", text("path", path)))
+        core = Core(_library(library), "enmm_create_from_file", text("path", path))
+        toml = Path(path).read_text(encoding="utf-8")
+        return cls(core, Source(toml, str(Path(path).absolute().parent), os.fspath(path)))
 
     @classmethod
     def from_string(
@@ -87,7 +146,8 @@ class Model:
         `from_file`.
         """
         base = None if base_dir is None else text("base_dir", base_dir)
-        return cls(Core(_library(library), "enmm_create_from_string", text("toml", toml), base))
+        core = Core(_library(library), "enmm_create_from_string", text("toml", toml), base)
+        return cls(core, Source(toml, str(Path(base_dir or ".").absolute()), "case"))
 
     def close(self) -> None:
         """Ends the model and gives its memory free. Closing again does nothing."""
@@ -100,6 +160,14 @@ class Model:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _unpickled_model, (self._source, self.serialize(), self._threads)
+
+    def __repr__(self) -> str:
+        if not self._core.close.alive:
+            return f"<enmm.Model {self._source.name!r}, closed>"
+        return f"<enmm.Model {self._source.name!r}: {self.block_count} blocks, t = {self.time:g} s>"
 
     # Time.
 
@@ -350,11 +418,7 @@ class Model:
         if state is None:
             with self.save() as now:
                 return self.serialize(now)
-        count = c_size_t()
-        self._core.call("enmm_state_serialize", state.handle, None, 0, byref(count))
-        buffer = ctypes.create_string_buffer(count.value)
-        self._core.call("enmm_state_serialize", state.handle, buffer, count.value, byref(count))
-        return buffer.raw[: count.value]
+        return _serialized(self._core, state)
 
     def deserialize(self, data: bytes | bytearray | memoryview) -> State:
         """Makes a state of bytes that `serialize` gave, in this process or another.
@@ -367,7 +431,7 @@ class Model:
     def _state(self, name: str, *arguments: object) -> State:
         handle = c_void_p()
         self._core.call(name, *arguments, byref(handle))
-        return State(self._core.library, handle)
+        return State(self._core.library, handle, self._source, self._core)
 
     def _rows(self, rows: Rows, name: str, copy: bool, *arguments: object) -> npt.NDArray[np.void]:
         view = rows.fill(lambda *buffer: self._core.call(name, *arguments, *buffer))

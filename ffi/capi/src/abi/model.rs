@@ -51,6 +51,24 @@ pub unsafe extern "C" fn enmm_create_from_string(
     })
 }
 
+/// Checks a case that is given as text in TOML: its keys, the type and range of every value, the names that it uses,
+/// and the files that it names. No model is built, so a fault of the geometry as a whole appears only when one is.
+///
+/// `base_dir` is the directory of the files that the case names; NULL stands for the current one.
+///
+/// Errors: as enmm_create_from_string.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_check_case(toml: *const c_char, base_dir: *const c_char) -> enmm_status {
+    guard(|| {
+        // SAFETY: promised by the host.
+        unsafe {
+            let toml = pointers::text("toml", toml)?;
+            let base = if base_dir.is_null() { "" } else { pointers::text("base_dir", base_dir)? };
+            model::check_case(toml, base)
+        }
+    })
+}
+
 /// Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
 /// model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
 ///

@@ -129,6 +129,15 @@ pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> 
     create(&parse_case(toml, "case", Path::new(base_dir))?)
 }
 
+/// Reads a case from text without a model of it; `base_dir` is where the files are that it names.
+///
+/// # Errors
+/// The case cannot be used.
+pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
+    parse_case(toml, "case", Path::new(base_dir))?;
+    Ok(())
+}
+
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
     let inner = loaded.cosimulation()?;
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();

@@ -24,6 +24,10 @@ static void creation(const char *path)
     CHECK(strstr(enmm_last_error(), "case:2") != NULL);
     CHECK(enmm_create_from_string("\xff", ".", &model) == ENMM_INVALID_ARGUMENT);
     CHECK(enmm_create_from_string(NULL, ".", &model) == ENMM_NULL_ARGUMENT);
+    CHECK(enmm_check_case("[domain]\noutlin = []\n", NULL) == ENMM_INVALID_CASE);
+    CHECK(strstr(enmm_last_error(), "case:2") != NULL);
+    CHECK(enmm_check_case("\xff", ".") == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_check_case(NULL, ".") == ENMM_NULL_ARGUMENT);
     CHECK(enmm_create_from_file(NULL, &model) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_create_from_file(path, NULL) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_abi_version() == ENMM_ABI_VERSION);
@@ -356,6 +360,7 @@ static void other_cases(enmm_model *model)
     enmm_model *other = NULL;
     enmm_state *state = NULL;
     size_t size;
+    OK(enmm_check_case(other_case, NULL));
     OK(enmm_create_from_string(other_case, NULL, &other));
     OK(enmm_state_save(other, &state));
     CHECK(enmm_state_restore(model, state) == ENMM_WRONG_STATE);

@@ -1,0 +1,126 @@
+"""Frames of a run: the elements with their displacements, velocities and stresses at one time."""
+
+import base64
+import xml.etree.ElementTree
+import zlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, overload
+
+import numpy as np
+import numpy.typing as npt
+
+_TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "Int8": "i1", "UInt8": "u1"}
+_TYPES |= {"UInt64": "<u8", "UInt32": "<u4"}
+
+
+class Frame:
+    """The elements at one time. Points are not shared between elements, because displacements jump at joints."""
+
+    time: float
+    """Time (s) from the start of the run."""
+    points: npt.NDArray[np.float64]
+    """Corners of all elements now (m), shape (points, 2)."""
+    ends: npt.NDArray[np.int64]
+    """For each element the index behind its last point."""
+    point_data: dict[str, npt.NDArray[Any]]
+    """`displacement` (m), `velocity` (m/s): shape (points, 2)."""
+    cell_data: dict[str, npt.NDArray[Any]]
+    """A value for each element: `stress_xx`, ... (Pa, tension positive), `block`, `rock`."""
+
+    def __init__(self, time: float, path: Path) -> None:
+        self.time = time
+        root = xml.etree.ElementTree.parse(path).getroot()
+        piece = root.find("UnstructuredGrid/Piece")
+        if root.get("type") != "UnstructuredGrid" or piece is None:
+            raise ValueError(f"{path}: is no VTK unstructured grid with a piece; run the case again")
+        read = _Reader(root)
+        self.points = read.arrays(piece.find("Points")).popitem()[1][:, :2]
+        self.ends = read.arrays(piece.find("Cells"))["offsets"].astype(np.int64)
+        of_points = read.arrays(piece.find("PointData"))
+        self.point_data = {name: data[:, :2] if data.ndim == 2 else data for name, data in of_points.items()}
+        self.cell_data = read.arrays(piece.find("CellData"))
+
+    def polygons(self) -> list[npt.NDArray[np.float64]]:
+        """Outline of every element now, counter-clockwise: a point (m) in each row."""
+        return np.split(self.points, self.ends[:-1])
+
+    def of_elements(self, name: str) -> npt.NDArray[Any]:
+        """A value for each element: cell data, or the mean length of a vector of its points."""
+        if name in self.cell_data:
+            return self.cell_data[name]
+        if name not in self.point_data:
+            there = ", ".join([*self.point_data, *self.cell_data])
+            raise KeyError(f"{name!r}: the frame has no such field; there are: {there}")
+        data = self.point_data[name]
+        size = np.hypot(*data.T) if data.ndim == 2 else data
+        starts = np.r_[0, self.ends[:-1]]
+        return np.asarray(np.add.reduceat(size, starts) / (self.ends - starts))
+
+    def __repr__(self) -> str:
+        return f"<enmm.Frame: t = {self.time:g} s, {len(self.ends)} elements>"
+
+
+class Frames(Sequence[Frame]):
+    """Frames of a run in the order of time; each is read when it is asked for."""
+
+    times: npt.NDArray[np.float64]
+    """Times (s) of the frames."""
+
+    def __init__(self, collection: Path) -> None:
+        self._files: list[tuple[float, Path]] = []
+        if collection.is_file():
+            entries = xml.etree.ElementTree.parse(collection).getroot().iter("DataSet")
+            parts = [entry for entry in entries if entry.get("part", "0") == "0"]
+            named = [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in parts]
+            self._files = [(time, collection.parent / name) for time, name in named]
+        self.times = np.array([time for time, _ in self._files])
+
+    @overload
+    def __getitem__(self, at: int) -> Frame: ...
+    @overload
+    def __getitem__(self, at: slice) -> list[Frame]: ...
+    def __getitem__(self, at: int | slice) -> Frame | list[Frame]:
+        if isinstance(at, slice):
+            return [Frame(*file) for file in self._files[at]]
+        return Frame(*self._files[at])
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (Frame(*file) for file in self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+
+class _Reader:
+    """Reads the arrays of a VTK file in base64, as they are or compressed by zlib."""
+
+    def __init__(self, root: xml.etree.ElementTree.Element) -> None:
+        self._header = np.dtype(_TYPES[root.get("header_type", "UInt32")])
+        self._compressed = root.get("compressor") is not None
+
+    def arrays(self, parent: xml.etree.ElementTree.Element | None) -> dict[str, npt.NDArray[Any]]:
+        """Arrays by name, those of vectors with a row for each."""
+        found = {}
+        for k, element in enumerate(() if parent is None else parent.iter("DataArray")):
+            if element.get("format") != "binary":
+                raise ValueError(f"array {element.get('Name')}: has the format {element.get('format')}, must be binary")
+            data = np.frombuffer(self._bytes("".join((element.text or "").split())), _TYPES[element.attrib["type"]])
+            width = int(element.get("NumberOfComponents", "1"))
+            found[element.get("Name", str(k))] = data.reshape(-1, width) if width > 1 else data
+        return found
+
+    def _bytes(self, text: str) -> bytes:
+        size = self._header.itemsize
+        if not self._compressed:
+            return base64.b64decode(text)[size:]
+        # Header: number of blocks, size of a block, size of the last, then the compressed size of each.
+        count = int(np.frombuffer(base64.b64decode(text[: 4 * -(-size // 3)])[:size], self._header)[0])
+        whole = (3 + count) * size
+        letters = 4 * -(-whole // 3)
+        sizes = np.frombuffer(base64.b64decode(text[:letters])[:whole], self._header)[3:]
+        data, blocks, at = base64.b64decode(text[letters:]), [], 0
+        for length in sizes.tolist():
+            blocks.append(zlib.decompress(data[at : at + length]))
+            at += length
+        return b"".join(blocks)

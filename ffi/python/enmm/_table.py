@@ -1,0 +1,86 @@
+"""Tables of results: columns by name, as numpy arrays or as a data frame."""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+_HEAD = re.compile(r"(.*?) \[([^\]]*)\]")
+
+
+class Table(Mapping[str, npt.NDArray[Any]]):
+    """Columns of equal length by name. Data frames come from `to_pandas`, which needs pandas."""
+
+    units: dict[str, str]
+    """Unit of every column, empty for a number without one and for text."""
+
+    def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str] | None = None) -> None:
+        self._columns = {name: np.asarray(values) for name, values in columns.items()}
+        self.units = {name: (units or {}).get(name, "") for name in self._columns}
+
+    @classmethod
+    def of_rows(cls, rows: Sequence[Mapping[str, Any]]) -> "Table":
+        """The table of rows that have the same names."""
+        return cls({name: [row[name] for row in rows] for name in (rows[0] if rows else ())})
+
+    @classmethod
+    def read_csv(cls, path: Path) -> "Table":
+        """A CSV file of the program, whose heads hold units: `time [s]`."""
+        with path.open(newline="", encoding="utf-8") as file:
+            heads, *rows = list(csv.reader(file))
+        found = [_HEAD.fullmatch(head) for head in heads]
+        names = [match[1] if match else head for match, head in zip(found, heads, strict=True)]
+        units = {name: match[2] for name, match in zip(names, found, strict=True) if match}
+        columns = [_column([row[k] for row in rows]) for k in range(len(names))]
+        return cls(dict(zip(names, columns, strict=True)), units)
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        if name not in self._columns:
+            raise KeyError(f"{name!r}: there is no such column; there are: {', '.join(self._columns)}")
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return next((len(values) for values in self._columns.values()), 0)
+
+    def to_numpy(self) -> npt.NDArray[np.void]:
+        """A structured array with a field for each column."""
+        array = np.empty(self.rows, [(name, values.dtype) for name, values in self._columns.items()])
+        for name, values in self._columns.items():
+            array[name] = values
+        return array
+
+    def to_pandas(self) -> Any:
+        """A data frame of pandas; units are in its `attrs["units"]`."""
+        import pandas
+
+        frame = pandas.DataFrame(self._columns)
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+    def label(self, name: str) -> str:
+        """Name and unit, as on the axis of a plot."""
+        return f"{name} ({self.units[name]})" if self.units[name] else name
+
+    def __repr__(self) -> str:
+        return f"<enmm.Table: {self.rows} rows of {', '.join(self._columns)}>"
+
+
+def _column(values: list[str]) -> npt.NDArray[Any]:
+    for kind in (int, float):
+        try:
+            return np.array([kind(value) for value in values], dtype=kind)
+        except ValueError:
+            continue
+    return np.array(values)

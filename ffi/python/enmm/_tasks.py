@@ -1,0 +1,284 @@
+"""What the program does with a case, as functions: `run`, `fos`, `bound` and `check`."""
+
+import json
+import os
+import tempfile
+import weakref
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from . import _plots
+from ._errors import EnmmError, Status
+from ._frames import Frames
+from ._program import FAILED, INTERRUPTED, CaseLike, call, case_file, failure, message_of, record
+from ._table import Table
+
+
+class RunError(EnmmError):
+    """A run that ended early, or whose end is in doubt. `result` has all that it wrote, with a checkpoint."""
+
+    result: "Result"
+
+    def __init__(self, message: str, status: int, result: "Result") -> None:
+        super().__init__(message, status)
+        self.result = result
+
+
+class _Directory:
+    """A directory with results; a temporary one is removed by `close`, at the end of a `with`, or with the object."""
+
+    directory: Path
+    """Where the files are."""
+
+    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
+        if directory is None:
+            temporary = tempfile.TemporaryDirectory(prefix="enmm-", ignore_cleanup_errors=True)
+            self.directory, self._close = Path(temporary.name), weakref.finalize(self, temporary.cleanup)
+        else:
+            self.directory, self._close = Path(directory), weakref.finalize(self, lambda: None)
+
+    def close(self) -> None:
+        """Removes the directory if it is a temporary one. What has been read stays."""
+        self._close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+class Result(_Directory):
+    """Results of `run`, or of any directory that `enmm run` wrote: `Result("fractured_slope")`."""
+
+    summary: dict[str, Any]
+    """`summary.json`: counts, stages, steps, energies, penetration, wall times, version, hash of the case."""
+    history: Table
+    """`history.csv`: time, monitored quantities and energies."""
+    blocks: Table
+    """`blocks.csv`: the blocks at the end."""
+    frames: Frames
+    """Elements at every time that the case asks for; empty with `output.frames = false`."""
+
+    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
+        super().__init__(directory)
+        if directory is not None:
+            self._read()
+
+    def _read(self) -> Self:
+        self.summary = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
+        self.history = Table.read_csv(self.directory / "history.csv")
+        self.blocks = Table.read_csv(self.directory / "blocks.csv")
+        self.frames = Frames(self.directory / "run.pvd")
+        return self
+
+    @property
+    def checkpoint(self) -> Path:
+        """The state at the end, from which `run(case, resume=...)` continues."""
+        return self.directory / "checkpoint.enmm"
+
+    @property
+    def pictures(self) -> list[Path]:
+        """The pictures that the program drew."""
+        return sorted(self.directory.glob("*.png"))
+
+    @property
+    def report(self) -> Path | None:
+        """`report.html`, which opens in a browser; None when this version of the program writes none."""
+        path = self.directory / "report.html"
+        return path if path.is_file() else None
+
+    def plot(self, field: str = "displacement", frame: int = -1, ax: Any = None) -> Any:
+        """Draws the elements of a frame, coloured by a field, by matplotlib; returns the axes.
+
+        `field` is one of `Frame.cell_data` or `Frame.point_data`; of a vector its length.
+        """
+        return _plots.frame(self.frames[frame], field, ax)
+
+    def plot_history(self, *names: str, ax: Any = None) -> Any:
+        """Draws columns of the history over time, without names all displacements; returns the axes of matplotlib."""
+        return _plots.history(self.history, names, ax)
+
+    def animate(self, path: str | os.PathLike[str] | None = None, field: str = "displacement", fps: int = 10) -> Any:
+        """Animates the frames, coloured by a field; writes `path` (.gif, or .mp4 where ffmpeg is there) when given.
+
+        Returns the animation of matplotlib; in a notebook show its `to_jshtml()`.
+        """
+        return _plots.animation(self.frames, field, fps, path)
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "summary"):
+            return f"<enmm.Result {str(self.directory)!r}, not written yet>"
+        what = f"{self.summary['status']}, t = {self.summary['time']:g} s, {self.blocks.rows} blocks"
+        return f"<enmm.Result {str(self.directory)!r}: {what}, {len(self.frames)} frames>"
+
+
+class Fos(_Directory):
+    """A factor of safety: what `fos` found."""
+
+    record: dict[str, Any]
+    """`fos.json`."""
+
+    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
+        super().__init__(directory)
+        if directory is not None:
+            self.record = json.loads((self.directory / "fos.json").read_text(encoding="utf-8"))
+
+    @property
+    def factor(self) -> float | None:
+        """The factor of safety; None when the search ended without one, see `status`."""
+        factor = self.record["factor_of_safety"]
+        return None if factor is None else float(factor)
+
+    @property
+    def status(self) -> str:
+        """`found`, `stable_throughout` (then `at_least` holds), `unstable_throughout` or `failed`."""
+        return str(self.record["status"])
+
+    @property
+    def at_least(self) -> float | None:
+        """The greatest factor at which the slope is stable, when it is at all that were tried."""
+        least = self.record["at_least"]
+        return None if least is None else float(least)
+
+    @property
+    def bracket(self) -> tuple[float | None, float | None]:
+        """Greatest factor that is stable and least that is not."""
+        return self.record["bracket"]["stable"], self.record["bracket"]["unstable"]
+
+    @property
+    def trials(self) -> Table:
+        """The trials, in the order of the factor."""
+        return Table.of_rows(self.record["trials"])
+
+    @property
+    def failing(self) -> dict[str, Any] | None:
+        """Blocks, area (m2), mass (kg/m) and share of the free rock that fail; None when nothing does."""
+        found: dict[str, Any] | None = self.record["failing"]
+        return found
+
+    @property
+    def failing_blocks(self) -> Table:
+        """The blocks that fail: id, x, y (m), area (m2), mass (kg/m), displacement (m), rotation, speed (m/s)."""
+        rows = [{**row, "x": row["place"][0], "y": row["place"][1]} for row in self.record["failing_blocks"]]
+        return Table.of_rows([{name: value for name, value in row.items() if name != "place"} for row in rows])
+
+    @property
+    def mechanisms(self) -> list[dict[str, Any]]:
+        """One record for each mechanism that was sought; those that are too small do not count."""
+        return list(self.record["mechanisms"])
+
+    @property
+    def bound(self) -> dict[str, Any]:
+        """Limit analysis of the same slope, as `bound` returns it, or `{"refused": why}`."""
+        return dict(self.record["bound"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of the case and the search."""
+        return list(self.record["warnings"])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws displacement over the factor of every trial by matplotlib; returns the axes."""
+        return _plots.trials(self, ax)
+
+    def __float__(self) -> float:
+        if self.factor is None:
+            raise ValueError(f"the search ended {self.status}: there is no factor; {self.record['remedy']}")
+        return self.factor
+
+    def __repr__(self) -> str:
+        if self.factor is None:
+            return f"<enmm.Fos: {self.status}{'' if self.at_least is None else f', at least {self.at_least:.4f}'}>"
+        low, high = self.bracket
+        return f"<enmm.Fos {self.factor:.4f}: stable at {low:.4f}, not at {high:.4f}>"
+
+
+def run(
+    case: CaseLike,
+    output: str | os.PathLike[str] | None = None,
+    *,
+    threads: int | None = None,
+    resume: str | os.PathLike[str] | None = None,
+    progress: bool = False,
+) -> Result:
+    """Runs all stages of a case and returns what `enmm run` writes.
+
+    `output` is the directory of the results; without it they go to a temporary one, which `Result.close` removes.
+    `threads` is how many are used, all without it; results do not depend on it. `resume` is a checkpoint to continue
+    from. `progress` shows the progress bar of the program.
+
+    Raises CaseError with file, line and key; RunError, with the results so far, when a run fails numerically or does
+    not come to a sound end.
+    """
+    result = Result(None) if output is None else None
+    directory = result.directory if result else Path(output or "")
+    words: list[object] = ["-o", directory]
+    words += [] if threads is None else ["--threads", threads]
+    words += [] if resume is None else ["--resume", resume]
+    words += [] if progress else ["--quiet"]
+    with case_file(case) as path:
+        status, _, error = call(["run", path, *words], show=progress)
+    if status == 0:
+        return result._read() if result else Result(directory)
+    message = message_of(status, error) if error or not progress else "the run failed; see the message above"
+    if status not in (FAILED, INTERRUPTED) or not (directory / "summary.json").is_file():
+        raise failure(status, message)
+    if status == INTERRUPTED:
+        raise KeyboardInterrupt(message)
+    raise RunError(message, Status.NUMERICAL_FAILURE, result._read() if result else Result(directory))
+
+
+def fos(
+    case: CaseLike,
+    output: str | os.PathLike[str] | None = None,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    tolerance: float | None = None,
+    least_area: float | None = None,
+    mechanisms: int | None = None,
+    threads: int | None = None,
+) -> Fos:
+    """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
+
+    `low` and `high` bound the factors that are tried, and the search begins with them. `tolerance` is the width of the
+    final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2) do not
+    count. `mechanisms` is how many are sought, each without the blocks of those before. A search that ends without a
+    factor is no error: see `Fos.status`. `output` and `threads` are as those of `run`.
+
+    Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
+    """
+    found = Fos(None) if output is None else None
+    directory = found.directory if found else Path(output or "")
+    options = {"low": low, "high": high, "tolerance": tolerance, "least-area": least_area}
+    options |= {"mechanisms": mechanisms, "threads": threads}
+    words = [word for name, value in options.items() if value is not None for word in (f"--{name}", value)]
+    with case_file(case) as path:
+        written = record(["fos", path, "-o", directory, *words])
+    if found is None:
+        return Fos(directory)
+    found.record = written
+    return found
+
+
+def bound(case: CaseLike) -> dict[str, Any]:
+    """Bounds of the factor of safety by limit analysis of rigid blocks, the object of `enmm bound --json`.
+
+    `associated`, `level_tops` and `catching` have `factor`, `end` and `mechanism` each. Raises CaseError for a case
+    that limit analysis cannot treat.
+    """
+    with case_file(case) as path:
+        return record(["bound", path])
+
+
+def check(case: CaseLike) -> dict[str, Any]:
+    """Builds the model of a case only: the object of `enmm check --json`.
+
+    It has counts, areas (m2), masses (kg/m), the critical step (s), memory (bytes) and warnings. Raises CaseError.
+    """
+    with case_file(case) as path:
+        return record(["check", path])

@@ -1,0 +1,47 @@
+"""Puts the library, the program and the libraries of FMUs into the wheel, and names the platform it is for.
+
+`cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them. The library lies in the package, the program
+among the scripts, and the libraries that `enmm fmu` packs in `lib`, where the program looks for them. The package calls
+the library by ctypes, so one wheel serves every Python of a platform.
+"""
+
+import os
+import re
+import sys
+import sysconfig
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+NAMES = {
+    "linux": ("libenmm.so", "enmm", ("libenmm_fmi2.so", "libenmm_fmi3.so")),
+    "darwin": ("libenmm.dylib", "enmm", ("libenmm_fmi2.dylib", "libenmm_fmi3.dylib")),
+    "win32": ("enmm.dll", "enmm.exe", ("enmm_fmi2.dll", "enmm_fmi3.dll")),
+}
+
+
+class WheelHook(BuildHookInterface):
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        given = os.environ.get("ENMM_BINARIES")
+        if not given:
+            return
+        library, program, of_fmus = NAMES[sys.platform]
+        folder = Path(given)
+        missing = [name for name in (library, program, *of_fmus) if not (folder / name).is_file()]
+        if missing:
+            raise FileNotFoundError(f"{folder} lacks {', '.join(missing)}: run `cargo xtask wheel`")
+        build_data["pure_python"] = False
+        build_data["tag"] = f"py3-none-{platform([folder / name for name in (library, program, *of_fmus)])}"
+        build_data["force_include"][str(folder / library)] = f"enmm/{library}"
+        build_data["shared_scripts"][str(folder / program)] = program
+        build_data["shared_data"] |= {str(folder / name): f"lib/{name}" for name in of_fmus}
+
+
+def platform(binaries: list[Path]) -> str:
+    """The tag of the platform: on Linux with the oldest C library that has all functions which the binaries use."""
+    name = re.sub(r"\W", "_", sysconfig.get_platform())
+    if sys.platform != "linux":
+        return name
+    versions = [int(found) for path in binaries for found in re.findall(rb"GLIBC_2\.(\d+)", path.read_bytes())]
+    return f"manylinux_2_{max(versions)}_{name.removeprefix('linux_')}"

@@ -1,0 +1,294 @@
+"""Cases, runs, factors of safety and pickling from Python, and the wheel that brings them."""
+
+import json
+import math
+import os
+import pickle
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import from_environment
+
+
+EXAMPLES = [path.stem for path in sorted((Path(__file__).parents[1] / "examples" / "cases").glob("*.toml"))]
+
+
+@pytest.fixture(scope="session")
+def wheel() -> Path:
+    """The wheel of this build."""
+    return from_environment("ENMM_WHEEL")
+
+
+@pytest.fixture
+def case(package, cases):
+    return package.Case.from_file(cases / "block_on_incline.toml")
+
+
+# Cases.
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_a_case_survives_dict_and_toml(package, cases, name):
+    case = package.Case.from_file(cases / f"{name}.toml")
+    again = package.Case.from_dict(case.to_dict(), case.base_dir)
+    assert again == case and again.digest == case.digest and hash(again) == hash(case)
+    assert tomllib.loads(again.to_toml()) == tomllib.loads(case.to_toml()) == case.to_dict()
+    assert pickle.loads(pickle.dumps(case)) == case
+    assert repr(case.title) in repr(case)
+
+
+def test_numbers_in_dicts_keep_every_bit(package, case):
+    values = np.array([0.1 + 0.2, 1e-300, -0.0, 5e17, 1 / 3])
+    with_values = case.with_values({"gravity": {"x": np.float64(values[4]), "y": values[0]}})
+    assert with_values["gravity"] == {"x": values[4], "y": values[0]}
+    text = package._toml.dumps({"a": values, "b": np.int64(7), "c": True, "d": 'q"\\\n', "e.f": [{"g": []}, {"h": {}}]})
+    read = tomllib.loads(text)
+    assert [x.hex() for x in read["a"]] == [x.hex() for x in values.tolist()]
+    assert (read["b"], read["c"], read["d"], read["e.f"]) == (7, True, 'q"\\\n', [{"g": []}, {"h": {}}])
+
+
+def test_values_are_read_and_set_by_key(case):
+    changed = case.with_values({"joint_law.joint.friction_deg": 30, "stage[1].law[0].friction_deg": 10.0})
+    assert changed["joint_law.joint.friction_deg"] == 30 and changed["stage[1].law[0].friction_deg"] == 10.0
+    assert case["joint_law.joint.friction_deg"] == 35.0, "the case itself stays"
+    assert changed != case and changed.digest != case.digest
+    assert case.with_values({"joint_law.joint.cohesion": 5e3})["joint_law.joint.cohesion"] == 5e3
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "message"),
+    [
+        ({"joint_law.plain.friction_deg": 3}, "InvalidArgumentError", "no key 'plain' here; there are: joint"),
+        ({"stage[7].duration": 2}, "InvalidArgumentError", r"no entry \[7\] here; it holds 2"),
+        ({"mesh..size": 1}, "InvalidArgumentError", "must be such as joint_law.plane.friction_deg"),
+        ({"mesh.size": None}, "InvalidArgumentError", "mesh.size: is None"),
+        ({"mesh.size": 1j}, "InvalidArgumentError", "mesh.size: is 1j"),
+        ({"mesh.sise": 1.0}, "CaseError", "did you mean `size`"),
+        ({"joint_law.joint.friction_deg": 350}, "CaseError", "less than 90"),
+        ({"rock.rock.young": "hard"}, "CaseError", "young"),
+    ],
+)
+def test_wrong_values_are_refused_with_key_and_remedy(package, case, values, kind, message):
+    with pytest.raises(getattr(package, kind), match=message):
+        case.with_values(values)
+
+
+def test_wrong_files_are_refused_with_path_and_line(package, tmp_path):
+    with pytest.raises(package.CaseFileError, match="absent.toml"):
+        package.Case.from_file(tmp_path / "absent.toml")
+    broken = tmp_path / "broken.toml"
+    broken.write_text('title = "x"\n\n[domain]\noutlin = []\n')
+    with pytest.raises(package.CaseError, match=r"broken\.toml:4: .*outline"):
+        package.Case.from_file(broken)
+
+
+def test_files_that_a_case_names_are_found_from_everywhere(package, cases, tmp_path):
+    shaken = package.Case.from_file(cases / "shaken_slope.toml")
+    shaken.save(tmp_path / "elsewhere.toml")
+    assert package.Case.from_file(tmp_path / "elsewhere.toml")["quiet[0].file"] == str(cases / "synthetic_record.csv")
+    moved = package.Case.from_dict({**shaken.to_dict(), "quiet": []}, tmp_path)
+    assert moved != shaken
+    with pytest.raises(package.CaseError, match=r"synthetic_record\.csv"):
+        package.Case.from_dict(shaken.to_dict(), tmp_path)
+
+
+# Runs.
+
+
+def test_run_returns_what_the_program_writes(package, short_case, results, tmp_path):
+    result = package.run(short_case, tmp_path / "out")
+    for name in ("history.csv", "blocks.csv"):
+        assert (result.directory / name).read_bytes() == (results / name).read_bytes()
+    assert result.summary["status"] == "finished" and (result.report is None or result.report.is_file())
+    history = result.history
+    assert history["time"][0] == 0.0 and history.units["top_ux"] == "m" and history.rows == len(history["time"])
+    assert history.to_numpy()["top_ux"].tolist() == history["top_ux"].tolist()
+    frame = history.to_pandas()
+    assert list(frame) == list(history) and frame.attrs["units"]["top_ux"] == "m"
+    assert result.blocks["fixed"].sum() == 1 and result.blocks["id"].tolist() == [0, 1]
+    with pytest.raises(KeyError, match="there are: time"):
+        history["tme"]
+    assert "2 blocks" in repr(result) and "6 frames" in repr(result)
+
+
+def test_frames_are_those_that_vtk_reads(package, results):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    result = package.Result(results)
+    assert len(result.frames) == len(result.frames.times) == 6
+    frame = result.frames[-1]
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(max(results.glob("frames/elements_*.vtu"))))
+    reader.Update()
+    grid = reader.GetOutput()
+    assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData())[:, :2], frame.points)
+    for name, data in frame.cell_data.items():
+        assert np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray(name)), data), name
+    areas = [0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)) for x, y in (p.T for p in frame.polygons())]
+    # Strains of 1e-4 change the area of 7 m2 by less than 1e-3.
+    assert min(areas) > 0 and abs(sum(areas) - 7.0) < 1e-3
+    displaced = frame.of_elements("displacement")
+    assert displaced.shape == frame.ends.shape and displaced.max() == pytest.approx(0.0225, rel=0.1)
+    with pytest.raises(KeyError, match="there are: displacement"):
+        frame.of_elements("temperature")
+
+
+def test_a_temporary_directory_goes_with_the_result(package, short_case):
+    with package.run(package.Case.from_file(short_case)) as result:
+        directory = result.directory
+        assert (directory / "summary.json").is_file()
+    assert not directory.exists() and result.history.rows > 2
+    directory = package.run(short_case).directory
+    assert not directory.exists()
+
+
+def test_results_are_drawn(package, results, tmp_path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    result = package.Result(results)
+    assert result.plot("mean_stress").get_title() == f"t = {result.frames.times[-1]:.4g} s"
+    assert {line.get_label() for line in result.plot_history().lines} == {"top_ux", "top_uy"}
+    result.animate(tmp_path / "short.gif")
+    assert (tmp_path / "short.gif").read_bytes().startswith(b"GIF89a")
+
+
+def test_a_run_continues_from_its_checkpoint(package, short_case, tmp_path):
+    whole = package.Case.from_file(short_case)
+    result = package.run(whole, tmp_path / "whole")
+    resumed = package.run(whole, tmp_path / "resumed", resume=result.checkpoint)
+    assert resumed.summary["time"] == result.summary["time"]
+
+
+def test_failed_runs_keep_their_results(package, case, tmp_path):
+    fast = case.with_values(
+        {
+            "initial_velocity": [{"block": [0.683, 0.183], "velocity": [9000.0, 0.0]}],
+            "stage": [{"name": "fly", "kind": "dynamic", "duration": 0.1}],
+        }
+    )
+    with pytest.raises(package.RunError) as caught:
+        package.run(fast, tmp_path / "out")
+    assert caught.value.result.summary["status"] == "failed" and caught.value.result.checkpoint.is_file()
+    with pytest.raises(package.CaseError, match="edge|block"):
+        package.run(case.with_values({"fix": [{"block": [500.0, 500.0]}]}))
+
+
+# Factors of safety.
+
+
+def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
+    exact = math.tan(math.radians(35)) / math.tan(math.radians(30))
+    with package.fos(case, threads=1) as found:
+        # The bracket is 0.5 % wide, and its middle is the factor.
+        assert float(found) == found.factor == pytest.approx(exact, rel=0.0025)
+        low, high = found.bracket
+        assert low < found.factor < high and found.status == "found" and found.at_least is None
+        assert found.trials["factor"].tolist() == sorted(found.trials["factor"])
+        assert found.failing["blocks"] == 1 and found.failing_blocks["area"][0] == pytest.approx(1.0)
+        assert found.bound["associated"]["factor"] == pytest.approx(exact, rel=1e-6)
+        assert found.failing_blocks.to_pandas()["x"][0] == pytest.approx(0.683, abs=1e-2)
+        assert repr(found).startswith("<enmm.Fos 1.21")
+        assert package.Fos(found.directory).record == found.record
+    assert package.bound(case)["level_tops"]["factor"] == pytest.approx(exact, rel=1e-6)
+    assert package.check(case)["blocks"] == 2
+
+
+def test_a_search_without_an_end_says_so(package, case):
+    held = package.fos(case.with_values({"joint_law.joint.cohesion": 1e6}), high=2.0)
+    assert held.factor is None and held.status == "stable_throughout" and held.at_least == pytest.approx(2.0)
+    assert "at least 2.0" in repr(held)
+    with pytest.raises(ValueError, match="raise --high"):
+        float(held)
+    with pytest.raises(package.CaseError, match="--tolerance"):
+        package.fos(case, tolerance=3)
+    with pytest.raises(package.CaseFileError, match="absent"):
+        package.fos("absent.toml")
+
+
+# Pickle.
+
+
+def test_models_and_states_go_through_pickle(package, cases):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        fresh = pickle.loads(pickle.dumps(model))
+        assert "13 blocks" in repr(model) and "coupled_slope" in repr(model)
+        model.start()
+        fresh.start()
+        model.do_step(0.0, 0.02)
+        copy, state = pickle.loads(pickle.dumps(model)), model.save()
+        model.do_step(0.02, 0.02)
+        copy.do_step(0.02, 0.02)
+        assert copy.blocks().tobytes() == model.blocks().tobytes()
+        data = pickle.dumps(state)
+        wanted = model.blocks(copy=True)
+    assert repr(model).endswith("closed>")
+    assert pickle.dumps(state) == data, "by another model of the case, when its own is closed"
+    fresh.restore(pickle.loads(data))
+    fresh.do_step(0.02, 0.02)
+    assert fresh.blocks().tobytes() == wanted.tobytes()
+    state.close()
+    with pytest.raises(package.DeadHandleError):
+        pickle.dumps(state)
+
+
+# The program and the wheel.
+
+
+def test_a_missing_program_names_places_and_remedy(package, monkeypatch, tmp_path):
+    monkeypatch.setenv("ENMM_PROGRAM", str(tmp_path / "absent"))
+    with pytest.raises(package.LibraryError, match="ENMM_PROGRAM names"):
+        package.program()
+    monkeypatch.delenv("ENMM_PROGRAM")
+    monkeypatch.setattr(package._program, "_folders", lambda: [tmp_path])
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(package.LibraryError, match="cargo build --release -p enmm-cli"):
+        package.program()
+
+
+def test_the_import_takes_numpy_alone(package):
+    heavy = ["pandas", "matplotlib", "scipy", "SALib", "distributed", "sqlite3"]
+    script = f"import enmm, sys; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+    text = (Path(package.__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+    assert tomllib.loads(text)["project"]["version"] == package.__version__
+
+
+def test_the_wheel_holds_library_and_program_for_its_platform(wheel):
+    assert wheel.name.startswith("enmm-") and "-py3-none-" in wheel.name and not wheel.name.endswith("-any.whl")
+    assert wheel.stat().st_size < 15e6
+    names = zipfile.ZipFile(wheel).namelist()
+    assert sum("libenmm." in name or "enmm.dll" in name for name in names) == 1
+    assert sum("/scripts/enmm" in name for name in names) == 1
+    assert sum("enmm_fmi" in name for name in names) == 2
+
+
+def test_the_wheel_runs_a_case_in_a_bare_environment(wheel, cases, tmp_path):
+    place = tmp_path / "bare"
+    subprocess.run([sys.executable, "-m", "venv", place], check=True)
+    scripts = place / ("Scripts" if sys.platform == "win32" else "bin")
+    python = next(path for path in (scripts / "python", scripts / "python.exe") if path.exists())
+    quiet = ["--quiet", "--disable-pip-version-check"]
+    subprocess.run([python, "-m", "pip", "install", *quiet, wheel], check=True)
+    unset = ("ENMM_", "PYTHONPATH")
+    bare = {name: value for name, value in os.environ.items() if not name.startswith(unset)}
+    script = (
+        "import enmm, json, sys; found = enmm.fos(sys.argv[1]); "
+        "print(json.dumps([str(enmm.program()), enmm.load_library().path, found.factor]))"
+    )
+    words = [python, "-c", script, cases / "block_on_incline.toml"]
+    done = subprocess.run(words, capture_output=True, text=True, env=bare, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr
+    program, library, factor = json.loads(done.stdout)
+    assert Path(program).is_relative_to(place) and Path(library).is_relative_to(place)
+    assert factor == pytest.approx(math.tan(math.radians(35)) / math.tan(math.radians(30)), rel=0.0025)
+    fmu = [scripts / "enmm", "fmu", cases / "block_on_incline.toml", "-o", tmp_path / "x.fmu"]
+    subprocess.run(fmu, env=bare, check=True, capture_output=True)
+    assert zipfile.is_zipfile(tmp_path / "x.fmu")
