@@ -1,0 +1,67 @@
+"""What is worked out of a sample: runs on the workers."""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from .. import _tasks
+from .._case import Case
+from .._errors import CaseError, InvalidArgumentError, Status, StepError
+
+Output = str | Callable[[Case], float | Mapping[str, Any]]
+"""`factor_of_safety`, `level_tops` or `associated` (limit analysis), or a function of a case that pickle can take."""
+
+NAMES = ("factor_of_safety", "level_tops", "associated")
+_DOUBT = "above what limit analysis"
+
+
+class Answer(NamedTuple):
+    """What a worker sends back: outputs, or the message of a case that has no answer."""
+
+    outputs: dict[str, Any]
+    message: str
+    seconds: float
+
+
+def evaluate(case: Case, values: dict[str, Any], output: Output, options: dict[str, Any]) -> Answer:
+    """Works out one sample. A case without an answer is an answer too; all else is raised, and may be tried again."""
+    start = time.perf_counter()
+    try:
+        outputs = _outputs(case.with_values(values), output, options)
+        return Answer(outputs, "", time.perf_counter() - start)
+    except (CaseError, StepError, InvalidArgumentError, _tasks.RunError) as error:
+        return Answer({}, str(error), time.perf_counter() - start)
+
+
+def _outputs(case: Case, output: Output, options: dict[str, Any]) -> dict[str, Any]:
+    if output == "factor_of_safety":
+        with _tasks.fos(case, threads=1, **options) as found:
+            return _of_fos(found)
+    if isinstance(output, str):
+        collapse = _tasks.bound(case)[output]
+        return {output: float(collapse["limit"]), "status": str(collapse["end"])}
+    answer = output(case)
+    if isinstance(answer, Mapping):
+        return {name: value.item() if hasattr(value, "item") else value for name, value in answer.items()}
+    return {"output": float(answer)}
+
+
+def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
+    """Factor and what fails. A factor beyond the search is its limit, with the status that says so."""
+    factor, (low, high) = found.factor, found.bracket
+    if factor is None:
+        factor = found.at_least if found.at_least is not None else high
+    if factor is None or found.status == "failed":
+        message = f"the search for the factor of safety ended {found.status}: {found.record['remedy']}"
+        raise StepError(message, Status.NUMERICAL_FAILURE)
+    failing = found.failing or {"blocks": 0, "area": 0.0}
+    doubt = next((warning for warning in found.warnings if _DOUBT in warning), "")
+    return {
+        "factor_of_safety": float(factor),
+        "stable": low,
+        "unstable": high,
+        "status": found.status,
+        "failing_blocks": int(failing["blocks"]),
+        "failing_area": float(failing["area"]),
+        "doubt": doubt,
+    }
