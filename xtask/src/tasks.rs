@@ -24,7 +24,7 @@ const CASES: [[&str; 4]; 2] = [
 ];
 
 /// Coupling examples, which each draw a picture.
-const COUPLINGS: [&str; 2] = ["earthquake", "reservoir"];
+const COUPLINGS: [&str; 3] = ["earthquake", "reservoir", "twin"];
 
 /// How much of the tests to run.
 #[derive(Clone, Copy, PartialEq, Eq)]
