@@ -120,6 +120,12 @@ private:
     enmm_state *handle_;
 };
 
+/** Checks a case in TOML without a model of it; files that it names are sought in `base_dir`. Throws as Model does. */
+inline void check_case(const std::string &toml, const std::string &base_dir = ".")
+{
+    detail::check(enmm_check_case(toml.c_str(), base_dir.c_str()));
+}
+
 /**
  * A model. It can be moved, not copied; a model that was moved from can only be assigned to or destroyed. Its log may
  * use it, set another log, move it and destroy it. While one thread is in a call, others must not move or destroy it.
