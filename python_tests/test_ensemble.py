@@ -159,6 +159,7 @@ def test_tables_of_a_case_file_give_the_same_variables(ensemble):
         (lambda e: e.run(block(), {"joint_law.joint.friction": e.Normal(35, 3)}, 5), "did you mean `friction_deg`"),
         (lambda e: e.run(block(), {FRICTION: 35}, 5), "must be a distribution"),
         (lambda e: e.run(block(), {FRICTION: e.Normal(35, 3)}, 5, "strength"), "must be one of factor_of_safety"),
+        (lambda e: e.run(block(), {FRICTION: e.Normal(35, 3)}, 5, lambda _: 1.0, store="s"), "without a name"),
     ],
 )
 def test_wrong_ensembles_are_refused_with_value_and_limit(ensemble, make, message):

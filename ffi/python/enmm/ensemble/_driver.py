@@ -67,7 +67,7 @@ def run(
     `concurrent.futures`; a client of Dask, the address of its scheduler, or "dask" for a local cluster. Results do not
     depend on it. `store` is a SQLite file to which each sample is added as soon as it is done; the same call on the
     same store skips what is there. A stored sample belongs to a case, values, output, options and version, so other
-    ensembles may share the file.
+    ensembles may share the file. A function is known to the store by its name, so take another file when you change it.
 
     `method` is "monte_carlo" or "latin_hypercube". `correlations` maps pairs of keys to the correlation of the normal
     variables behind them (Gaussian copula). `progress` is called with the number of samples done, and `n`.
@@ -77,6 +77,10 @@ def run(
     """
     base = Case.of(case)
     _check(base, variables, output)
+    if store is not None and "<" in _name(output):
+        raise invalid(
+            "output: is a function without a name of its own, by which a store could find it; define one by def"
+        )
     samples = draw(variables, n, seed, method, correlations or {})
     version = load_library().version
     keys = [_key(base.digest, values, output, options or {}, version) for values in samples]
@@ -124,9 +128,15 @@ def _check(case: Case, variables: Mapping[str, Variable], output: Output) -> Non
 
 def _key(digest: str, values: dict[str, Any], output: Output, options: Mapping[str, Any], version: str) -> str:
     """Hash of all that a sample depends on."""
-    name = output if isinstance(output, str) else f"{output.__module__}.{output.__qualname__}"
-    whole = [digest, sorted(values.items()), name, sorted(options.items()), version]
+    whole = [digest, sorted(values.items()), _name(output), sorted(options.items()), version]
     return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
+
+
+def _name(output: Output) -> str:
+    """Name of an output, of a function with its module; "<...>" without one."""
+    if isinstance(output, str):
+        return output
+    return f"{getattr(output, '__module__', '')}.{getattr(output, '__qualname__', '<object>')}"
 
 
 def _answers(
