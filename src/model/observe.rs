@@ -94,7 +94,7 @@ impl Simulation {
             let block = model.boundary.block[k];
             match by_block.last_mut() {
                 Some((last, loops)) if *last == block => loops.push(k..end),
-                _ => by_block.push((block, Vec::from([k..end]))),
+                _ => by_block.push((block, std::iter::once(k..end).collect())),
             }
             k = end;
         }
