@@ -23,7 +23,7 @@ pub(super) fn beam(integrator: Integrator, rows: f64, step: Option<f64>) -> Resu
         "{}[[fix]]\npoint = [0.0, 0.0]\n[[fix]]\npoint = [10.0, 0.0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
          edge = [[0.0, 0.5], [10.0, 0.5]]\ntraction = [0.0, -1e4]\n{monitors}[[stage]]\nname = \"load\"\n\
          kind = \"static\"\nduration = 60.0\nramp = 0.0\nconvergence = 1e-5\n{}",
-        beam.text(rows),
+        beam.text(rows, 0.0),
         step_line(step)
     );
     let mut run = Run::start(integrator, text)?;

@@ -39,13 +39,13 @@ pub struct Beam {
 }
 
 impl Beam {
-    /// Head of a case: outline, mesh of `rows` elements over the depth, rock, no gravity.
-    pub fn text(&self, rows: f64) -> String {
+    /// Head of a case: outline, mesh of `rows` elements over the depth, rock, and gravity (m/s²).
+    pub fn text(&self, rows: f64, gravity: f64) -> String {
         let (l, c, h) = (self.length, 0.5 * self.depth, self.depth / rows);
         format!(
             "title = \"Beam\"\n[domain]\noutline = [[0.0, {:e}], [{l:e}, {:e}], [{l:e}, {c:e}], [0.0, {c:e}]]\n[mesh]\n\
              size = {h:e}\norigin = [{:e}, {:e}]\n[rock.rock]\ndensity = {:e}\nyoung = {:e}\npoisson = {:e}\n\
-             plane = \"{}\"\n[gravity]\ny = 0.0\n",
+             plane = \"{}\"\n[gravity]\ny = {:e}\n",
             -c,
             -c,
             0.013 * self.depth,
@@ -54,6 +54,8 @@ impl Beam {
             self.young,
             self.poisson,
             self.plane.name(),
+            // Not −0 without gravity.
+            0.0 - gravity,
         )
     }
 
@@ -78,9 +80,22 @@ impl Beam {
     /// Deflection (m) of the axis under a uniform load q (Pa) at x (m) from the middle, by Timoshenko and Goodier
     /// (Theory of Elasticity, bending of a beam by uniform load): half span l, half depth c.
     pub fn uniform(&self, q: f64, x: f64) -> f64 {
-        let (young, poisson) = self.plane_stress();
+        self.axis(q, x, 0.8 + 0.5 * self.plane_stress().1)
+    }
+
+    /// Deflection (m) of the axis under the own weight q (Pa), x (m) from the middle.
+    ///
+    /// The weight has the stresses xx and xy of a load on the top, and a stress yy that is q/2·(1 + y/c) higher, so
+    /// that both faces are free. The strain −ν/E times that, linear over the depth, bends the axis by νq/2cE: ν/3 more
+    /// in the bracket.
+    pub fn weight(&self, q: f64, x: f64) -> f64 {
+        self.axis(q, x, 0.8 + 5.0 / 6.0 * self.plane_stress().1)
+    }
+
+    /// Deflection (m) of the axis under q (Pa) along the beam, x (m) from the middle, with the coefficient of c²/l².
+    fn axis(&self, q: f64, x: f64, shear: f64) -> f64 {
+        let (young, _) = self.plane_stress();
         let (l, c, i) = (0.5 * self.length, 0.5 * self.depth, self.inertia());
-        let shear = 0.8 + 0.5 * poisson;
         let middle = 5.0 * q * l.powi(4) / (24.0 * young * i) * (1.0 + 2.4 * c * c / (l * l) * shear);
         middle - q / (2.0 * young * i) * (0.5 * l * l * x * x - x.powi(4) / 12.0 + shear * c * c * x * x)
     }
@@ -160,5 +175,7 @@ mod tests {
         assert!((beam.supported() / beam.slender_supported() - 0.984).abs() < 2e-3);
         beam.plane = Plane::Strain;
         assert!((beam.uniform(1e4, 0.0) - 14.98828e-3).abs() < 1e-8);
+        beam.young = 1e10;
+        assert!((beam.weight(2500.0 * 9.81, 0.0) - 3.685456e-3).abs() < 1e-9);
     }
 }

@@ -7,6 +7,7 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
 
+use crate::parts::turn_radians as turn;
 use crate::{Setup, Trouble};
 
 /// Acceleration of gravity (m/s²).
@@ -14,12 +15,6 @@ pub const G: f64 = 9.81;
 
 /// Density of the blocks (kg/m³).
 pub const DENSITY: f64 = 2500.0;
-
-/// Points turned counter-clockwise by an angle (rad) about the origin.
-pub fn turn(points: &[[f64; 2]], angle: f64) -> Vec<[f64; 2]> {
-    let (s, c) = angle.sin_cos();
-    points.iter().map(|p| [c * p[0] - s * p[1], s * p[0] + c * p[1]]).collect()
-}
 
 /// A block on a plane.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use enmm::geometry::{Point, Vector};
 use enmm::step::{StepReport, block_motion};
 
-use super::plane::{turned, written};
+use crate::parts::turn;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -78,19 +78,19 @@ fn case(setup: &Setup, delta: f64, pretension: f64) -> String {
     let stiffness = 0.1 * weight * 1e3;
     let spacing = setup.get("spacing");
     [
-        format!("title = \"Bolt\"\n[domain]\noutline = {}\n", written(&turned(&outline, slope))),
+        format!("title = \"Bolt\"\n[domain]\noutline = {:?}\n", turn(&outline, -slope)),
         format!("[mesh]\nsize = {:?}\norigin = [0.031, 0.017]\n", setup.get("mesh")),
-        format!("[[joint]]\npoints = {}\n", written(&turned(&[[0.0, 0.0], [length, 0.0]], slope))),
+        format!("[[joint]]\npoints = {:?}\n", turn(&[[0.0, 0.0], [length, 0.0]], -slope)),
         format!("[joint_law.joint]\nfriction_deg = {:?}\n", (slope + 15.0).min(85.0)),
         format!(
             "[rock.rock]\ndensity = {:?}\nyoung = {:e}\npoisson = 0.25\n",
             weight * 1e3 / (G * length * height),
             3e8 * weight
         ),
-        format!("[[fix]]\nblock = {:?}\n", turned(&[[0.5 * length, -0.75]], slope)[0]),
+        format!("[[fix]]\nblock = {:?}\n", turn(&[[0.5 * length, -0.75]], -slope)[0]),
         format!(
-            "[[bolt]]\npoints = {}\nyoung = {:?}\narea = 1e-3\n",
-            written(&turned(&[centre, anchor], slope)),
+            "[[bolt]]\npoints = {:?}\nyoung = {:?}\narea = 1e-3\n",
+            turn(&[centre, anchor], -slope),
             stiffness * reach * spacing / 1e-3
         ),
         format!("spacing = {spacing:?}\npretension = {:?}\n", pretension * spacing),
@@ -110,7 +110,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
     simulation.next_stage()?;
     let slope = setup.get("a_deg");
     let (s, c) = slope.to_radians().sin_cos();
-    let middle = Point::from(turned(&[[0.5 * BLOCK[0], 0.5 * BLOCK[1]]], slope)[0]);
+    let middle = Point::from(turn(&[[0.5 * BLOCK[0], 0.5 * BLOCK[1]]], -slope)[0]);
     let covers = &simulation.model().covers;
     let element = covers.element_near(middle, 0.1).ok_or_else(|| Trouble("no rock in the block".into()))?;
     let block = covers.element_block[element];

@@ -1,8 +1,8 @@
 //! C14: blocks that slide over crossings, bricks and ledges, and one that a step catches.
 
 use super::block::G;
-use super::incline::turn;
 use super::limit::Scene;
+use crate::parts::turn;
 use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;

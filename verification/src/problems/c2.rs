@@ -1,7 +1,8 @@
 //! C2: strength reduction of a block on an incline.
 
-use super::incline::{factor_row, ledger_row, reduce, rock, trial_plot, turn};
-use crate::{Outcome, Parameter, Plot, Problem, Series, Setup, Trouble};
+use super::incline::{G, ledger_row, reduce, trial_plot};
+use crate::parts::{rock, turn};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C2",
@@ -62,7 +63,7 @@ fn text(setup: &Setup, phi_deg: f64, cohesion: f64) -> String {
         setup.get("mesh") * high,
         turn(&[[0.0, 0.0], [long, 0.0]], -a),
         turn(&[[-0.25 * long, -0.5 * high]], -a)[0],
-        rock(setup.get("young"), setup.get("gamma")),
+        rock(setup.get("young"), setup.get("gamma") / G),
         5.0 * (5e9 / setup.get("young")).sqrt().max(1.0),
     )
 }
@@ -79,20 +80,22 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         ("a block that slides by itself", setup.get("phi_weak_deg"), 0.0),
     ];
     let mut outcome = Outcome::default();
-    let mut found = Vec::new();
+    let mut reductions = Vec::new();
     let mut marks = Vec::new();
     for (name, phi, cohesion) in variants {
         let exact = exact(a.to_radians(), phi.to_radians(), cohesion, long, weight);
         let reduction = reduce(setup, &name.replace(' ', "_"), text(setup, phi, cohesion))?;
-        let reason = "the bracket is 0.2 % wide (0.5 % when quick), contact lengths add up to 0.1 %";
-        outcome.rows.push(factor_row(&format!("factor of safety, {name}"), &reduction, exact, reason));
-        marks.push([phi.to_radians().tan(), reduction.factor().unwrap_or(f64::NAN)]);
-        if found.is_empty() {
+        let found = reduction.factor().unwrap_or(f64::NAN);
+        let reason = "half of a bracket that is 0.2 % wide (0.5 % when quick), and contact lengths add up to 0.1 %";
+        let row = Row::new(format!("factor of safety, {name}"), "", found, exact);
+        outcome.rows.push(row.within(Tolerance::Relative(5e-3), reason));
+        marks.push([phi.to_radians().tan(), found]);
+        if reductions.is_empty() {
             outcome.plots.push(trial_plot("Trials, friction alone", &reduction, exact));
         }
-        found.push(reduction);
+        reductions.push(reduction);
     }
-    outcome.rows.push(ledger_row(&found.iter().collect::<Vec<_>>()));
+    outcome.rows.push(ledger_row(&reductions.iter().collect::<Vec<_>>()));
     outcome.plots.push(curves(a.to_radians(), setup.get("cohesion"), long, weight, marks));
     Ok(outcome)
 }

@@ -6,7 +6,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::step::{StepReport, block_motion};
 
-use super::plane::{turned, written};
+use crate::parts::turn;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -67,14 +67,14 @@ fn case(setup: &Setup) -> String {
         [-1.0, 0.0],
     ];
     let joint = |a: [f64; 2], b: [f64; 2], law: &str| {
-        format!("[[joint]]\npoints = {}\nlaw = \"{law}\"\n", written(&turned(&[a, b], slope)))
+        format!("[[joint]]\npoints = {:?}\nlaw = \"{law}\"\n", turn(&[a, b], -slope))
     };
     let law = |name: &str, friction: f64| format!("[joint_law.{name}]\nfriction_deg = {friction:?}\n");
     let change =
         |law: &str, name: &str| format!("[[stage.law]]\nlaw = \"{law}\"\nfriction_deg = {:?}\n", setup.get(name));
     let hold = slope + 20.0;
     [
-        format!("title = \"Two blocks on an incline\"\n[domain]\noutline = {}\n", written(&turned(&outline, slope))),
+        format!("title = \"Two blocks on an incline\"\n[domain]\noutline = {:?}\n", turn(&outline, -slope)),
         format!("joint_law = \"face\"\n[mesh]\nsize = {:?}\norigin = [0.031, 0.017]\n", setup.get("mesh")),
         joint([0.0, 0.0], [length, 0.0], "upper"),
         joint([length, -STEP], [2.0 * length, -STEP], "lower"),
@@ -82,7 +82,7 @@ fn case(setup: &Setup) -> String {
         joint([length, 0.0], [length, 1.0 - STEP], "face"),
         law("face", 0.0) + &law("lower", hold) + &law("upper", hold),
         format!("[rock.rock]\ndensity = {DENSITY:?}\nyoung = {:e}\npoisson = 0.25\n", setup.get("young")),
-        format!("[[fix]]\nblock = {:?}\n", turned(&[[-0.5, -0.6]], slope)[0]),
+        format!("[[fix]]\nblock = {:?}\n", turn(&[[-0.5, -0.6]], -slope)[0]),
         "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 5.0\nconvergence = 1e-6\n".into(),
         format!("[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\nduration = {:?}\ndamping = 0.1\n", setup.get("t")),
         change("lower", "phi_lower_deg"),
@@ -104,7 +104,7 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     simulation.run_stage()?;
     simulation.next_stage()?;
     let (slope, length) = (setup.get("a_deg"), setup.get("length"));
-    let middles = turned(&[[1.5 * length, 0.5 - STEP], [0.5 * length, 0.5]], slope);
+    let middles = turn(&[[1.5 * length, 0.5 - STEP], [0.5 * length, 0.5]], -slope);
     let (s, c) = slope.to_radians().sin_cos();
     let covers = &simulation.model().covers;
     let block = |p: [f64; 2]| covers.element_near(Point::from(p), 0.1).map(|e| covers.element_block[e]);

@@ -2,7 +2,8 @@
 
 use super::incline::{factor_row, ledger_row, reduce, trial_plot};
 use super::plane_slide::PlaneSlide;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Trouble};
+use crate::parts::dynamic;
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C9",
@@ -71,6 +72,9 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let quick = setup.quick;
         for level in levels.into_iter().filter(|level| !quick || *level != levels[1]) {
             let model = slide(setup, level, seismic);
+            if level > 0.0 && seismic == 0.0 {
+                pressures(setup, &model, &mut outcome)?;
+            }
             let name = format!("water {level} m, kh {seismic}");
             let reduction = reduce(setup, &name.replace([' ', ','], "_"), model.text("Plane slide"))?;
             outcome.rows.push(row(&name, &reduction, model.factor()));
@@ -89,6 +93,30 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let axes = ["water in the crack (m)".to_owned(), "factor of safety".to_owned()];
     outcome.plots.push(Plot { title: "Plane slide".to_owned(), axes, logarithmic: [false; 2], series });
     Ok(outcome)
+}
+
+/// V and U on the wedge: by the water table, and by as much pressure in loads of the joints.
+fn pressures(setup: &mut Setup, model: &PlaneSlide, outcome: &mut Outcome) -> Result<(), Trouble> {
+    let (force, moment) = model.water_force();
+    let dry = PlaneSlide { water: 0.0, ..*model };
+    for (kind, text) in [
+        ("a water table", model.model("Water table")),
+        ("joint loads", dry.model("Joint loads") + &model.water_loads()),
+    ] {
+        let name = format!("pressure_{}_{}", kind.replace(' ', "_"), model.water);
+        let mut simulation = setup.simulation(&name, text + &dynamic("one", 1.0, 0.1))?;
+        let found = model.pushed(&mut simulation)?;
+        for (what, unit, found, exact, arm) in [
+            ("force along x", "N/m", found.0.x, force.x, 1.0),
+            ("force along y", "N/m", found.0.y, force.y, 1.0),
+            ("moment about the toe", "N", found.1, moment, model.height),
+        ] {
+            let row = Row::new(format!("{what} on the wedge, {kind}, water {} m", model.water), unit, found, exact);
+            let most = 1e-10 * force.norm() * arm;
+            outcome.rows.push(row.within(Tolerance::Absolute(most), "sums of some hundred terms: rounding"));
+        }
+    }
+    Ok(())
 }
 
 fn row(name: &str, reduction: &enmm_stability::strength_reduction::Reduction, exact: f64) -> Row {

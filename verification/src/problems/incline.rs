@@ -1,20 +1,9 @@
-//! What problems on inclined planes share: turned corners, text of cases, factors of safety.
+//! What problems on inclined planes share: factors of safety.
 
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
-use super::block;
 pub use super::block::G;
 use crate::{Plot, Row, Series, Setup, Tolerance, Trouble};
-
-/// Points turned by an angle (degrees) about the origin.
-pub fn turn(points: &[[f64; 2]], degrees: f64) -> Vec<[f64; 2]> {
-    block::turn(points, degrees.to_radians())
-}
-
-/// A rock of plane strain with ν = 0.25 and this Young's modulus (Pa) and unit weight (N/m³).
-pub fn rock(young: f64, unit_weight: f64) -> String {
-    format!("[rock.rock]\ndensity = {:e}\nyoung = {young:e}\npoisson = 0.25\n", unit_weight / G)
-}
 
 /// Finds the factor of safety of a case; the bracket is 0.2 % wide, or 0.5 % when quick.
 ///

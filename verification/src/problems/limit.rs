@@ -3,7 +3,7 @@
 use enmm_stability::limit_analysis::{Bound, bound};
 
 use super::block::G;
-use super::incline::turn;
+use crate::parts::turn;
 use crate::{Row, Setup, Tolerance, Trouble};
 
 /// Points (m).

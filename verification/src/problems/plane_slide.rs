@@ -1,6 +1,11 @@
 //! A slope that can slide on planes which daylight in its face, with a tension crack, water and a seismic coefficient.
 
-use super::incline::{G, rock};
+use enmm::geometry::Vector;
+use enmm::model::Simulation;
+
+use super::block::G;
+use crate::Trouble;
+use crate::parts::rock;
 
 /// Geometry, strength and loads; the toe is at the origin and the slope falls to the left.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +89,52 @@ impl PlaneSlide {
 
     /// The case: the wedge at rest under its own strength; the ground below and behind it is held.
     pub fn text(&self, title: &str) -> String {
+        self.model(title) + "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 60.0\n"
+    }
+
+    /// A point of the wedge.
+    fn inside(&self) -> [f64; 2] {
+        let ([x, y], h) = (self.head(), self.height);
+        [(2.0 * x + h / self.face.tan()) / 4.0, (y + 2.0 * h) / 4.0]
+    }
+
+    /// What the water does to the wedge by the formula: the force (N/m) of V and U, and their moment (N) about the toe.
+    pub fn water_force(&self) -> (Vector, f64) {
+        let ((s, c), [x, y]) = (self.plane.sin_cos(), self.head());
+        let thrust = Vector::new(-0.5 * self.water_weight * self.water.powi(2), 0.0);
+        let uplift = Vector::new(-s, c) * (0.5 * self.water_weight * self.water * self.length());
+        let middle = Vector::new(c, s) * (self.length() * 2.0 / 3.0);
+        (thrust + uplift, Vector::new(x, y + self.water / 3.0).perp(&thrust) + middle.perp(&uplift))
+    }
+
+    /// The same pressures as loads in the joints, of a slope without water table.
+    pub fn water_loads(&self) -> String {
+        let ([x, y], most) = (self.head(), self.water_weight * self.water);
+        let load = |from: [f64; 2], to: [f64; 2], [p, q]: [f64; 2]| {
+            format!("[[load]]\nkind = \"joint\"\nedge = [{from:?}, {to:?}]\npressure = {p:?}\npressure_end = {q:?}\n")
+        };
+        load([0.0; 2], [x, y], [0.0, most]) + &load([x, y], [x, y + self.water], [most, 0.0])
+    }
+
+    /// Force (N/m) and moment about the toe (N) of what loads and water push the wedge with in the first step.
+    ///
+    /// # Errors
+    /// A numerical failure, or a wedge that is not there.
+    pub fn pushed(&self, simulation: &mut Simulation) -> Result<(Vector, f64), Trouble> {
+        simulation.advance(false)?;
+        let covers = &simulation.model().covers;
+        let element = covers.element_at(self.inside().into()).ok_or(Trouble("the wedge is not there".to_owned()))?;
+        let (mut force, mut moment) = (Vector::zeros(), 0.0);
+        for i in covers.covers_of(covers.element_block[element]) {
+            let push = simulation.workspace().load_force[i];
+            force += push;
+            moment += covers.star_position[i].perp(&push);
+        }
+        Ok((force, moment))
+    }
+
+    /// The case without stages.
+    pub fn model(&self, title: &str) -> String {
         let h = self.height;
         let [x, y] = self.head();
         let (right, low) = (x + 0.3 * h, -0.25 * h);
@@ -98,7 +149,7 @@ impl PlaneSlide {
             self.friction.to_degrees(),
             self.cohesion,
             [0.5 * right, 0.5 * low],
-            rock(self.young, self.unit_weight),
+            rock(self.young, self.unit_weight / G),
         );
         if self.crack > 0.0 {
             text += &format!("[[joint]]\npoints = {:?}\nlaw = \"crack\"\n", [[x, y], [x, h]]);
@@ -113,7 +164,7 @@ impl PlaneSlide {
         if self.seismic != 0.0 {
             text += &format!("[[load]]\nkind = \"body\"\nacceleration = [{:e}, 0.0]\n", -self.seismic * G);
         }
-        text + "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 60.0\n"
+        text
     }
 }
 

@@ -1,6 +1,7 @@
 //! The slope of columns of Goodman and Bray: geometry and limit equilibrium from its parameters.
 
-use super::incline::{rock, turn};
+use super::block::G;
+use crate::parts::{rock, turn};
 
 /// A corner list as a case writes it.
 type Corners = Vec<[f64; 2]>;
@@ -150,7 +151,7 @@ impl Columns {
              origin = [0.3, 0.2]\n{joints}[joint_law.joint]\nfriction_deg = {friction_deg:?}\n[[fix]]\n\
              block = {base:?}\n{}",
             self.size,
-            rock(self.young, self.unit_weight)
+            rock(self.young, self.unit_weight / G)
         )
     }
 }
