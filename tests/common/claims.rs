@@ -1,4 +1,4 @@
-//! What the claim tests share beyond runs: case text, exact polygons, ledgers.
+//! What tests share beyond runs: case text, ledgers, motion of blocks.
 
 use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
@@ -6,57 +6,7 @@ use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::step::{StepReport, block_motion};
-
-/// A corner list as a case writes it.
-pub type Corners = Vec<[f64; 2]>;
-
-/// A rock of plane strain with ν = 0.25 and this Young's modulus (Pa) and density (kg/m³).
-pub fn rock(young: f64, density: f64) -> String {
-    format!("[rock.rock]\ndensity = {density:e}\nyoung = {young:e}\npoisson = 0.25\n")
-}
-
-/// A dynamic stage without changes.
-pub fn dynamic(name: &str, duration: f64, damping: f64) -> String {
-    format!("[[stage]]\nname = \"{name}\"\nkind = \"dynamic\"\nduration = {duration:e}\ndamping = {damping:e}\n")
-}
-
-/// Points turned by an angle (degrees) about the origin.
-pub fn turn(points: &[[f64; 2]], degrees: f64) -> Corners {
-    let (s, c) = degrees.to_radians().sin_cos();
-    points.iter().map(|p| [c * p[0] - s * p[1], s * p[0] + c * p[1]]).collect()
-}
-
-/// Area, centroid and polar moment of area about the centroid of a polygon, by Green's theorem, independent of the
-/// engine.
-pub fn polygon_moments(points: &[[f64; 2]]) -> (f64, [f64; 2], f64) {
-    let n = points.len();
-    let (mut a, mut x, mut y, mut j) = (0.0, 0.0, 0.0, 0.0);
-    let o = points[0];
-    for k in 0..n {
-        let p = [points[k][0] - o[0], points[k][1] - o[1]];
-        let q = [points[(k + 1) % n][0] - o[0], points[(k + 1) % n][1] - o[1]];
-        let c = p[0] * q[1] - p[1] * q[0];
-        a += c / 2.0;
-        x += c * (p[0] + q[0]) / 6.0;
-        y += c * (p[1] + q[1]) / 6.0;
-        j += c * (p[0] * p[0] + p[0] * q[0] + q[0] * q[0] + p[1] * p[1] + p[1] * q[1] + q[1] * q[1]) / 12.0;
-    }
-    (a, [o[0] + x / a, o[1] + y / a], j - (x * x + y * y) / a)
-}
-
-/// Small reproducible numbers in 0..1.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
+pub use enmm_verification::parts::{dynamic, rock, turn};
 
 /// Claim A4: the energy ledger closes to 1e-3 of its largest term.
 ///

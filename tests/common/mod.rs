@@ -1,4 +1,4 @@
-//! Helpers that the claim tests share: cases from text, runs, closed forms.
+//! Helpers that tests share: cases from text, runs, figures.
 #![allow(dead_code)]
 
 pub mod claims;

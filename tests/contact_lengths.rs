@@ -1,4 +1,5 @@
-//! Claim C2, with cohesion or a joint's own stiffness: contacts of two faces add up to the length that they share.
+//! Claim: lengths of the contacts of two faces add up to the length that the faces share, however their nodes lie: what
+//! cohesion and a joint's own stiffness act on.
 
 mod common;
 
