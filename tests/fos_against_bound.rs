@@ -13,6 +13,7 @@ use enmm_stability::limit_analysis::Factor;
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
+use enmm_verification::random::Random;
 
 /// Width of the brackets.
 const TOLERANCE: f64 = 5e-3;
@@ -22,13 +23,12 @@ const GRAIN: f64 = 0.01;
 /// have up to 170 blocks, and take ten times as long.
 const FINE: [f64; 2] = [0.7, 0.5];
 
-/// Numbers between 0 and 1 that a seed gives.
-struct Random(u64);
+/// Numbers of 24 bits from 0 to 1, which a seed gives.
+struct Dice(Random);
 
-impl Random {
+impl Dice {
     fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f64 / (1u64 << 24) as f64
+        (self.0.word() >> 40) as f64 / (1u64 << 24) as f64
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -44,7 +44,7 @@ fn on(from: [f64; 2], angle_deg: f64, length: f64) -> [f64; 2] {
 
 /// The face of a slope from (14, 5) to a level at 20 m, and what is cut into it.
 struct Slope {
-    random: Random,
+    dice: Dice,
     face_deg: f64,
     /// Spacings and mesh size over those of the coarsest slopes.
     scale: f64,
@@ -53,11 +53,11 @@ struct Slope {
 
 impl Slope {
     fn new(seed: u64) -> Self {
-        let mut random = Random(977 * seed + 13);
-        (0..8).for_each(|_| _ = random.roll());
-        let face_deg = random.between(50.0, 70.0);
+        let mut dice = Dice(Random::from_word(977 * seed + 13));
+        (0..8).for_each(|_| _ = dice.roll());
+        let face_deg = dice.between(50.0, 70.0);
         let scale = (seed / 6).checked_sub(1).and_then(|row| FINE.get(row as usize)).copied().unwrap_or(1.0);
-        Self { random, face_deg, scale, joints: String::new() }
+        Self { dice, face_deg, scale, joints: String::new() }
     }
 
     fn mesh_size(&self) -> f64 {
@@ -91,8 +91,8 @@ impl Slope {
     /// Two sets: one dips out of the slope, one into it.
     fn two_sets(&mut self, seed: u64, dips: [[f64; 2]; 2], spacings: [f64; 2]) {
         for (k, [low, high]) in dips.into_iter().enumerate() {
-            let dip = self.random.between(low, high);
-            let spacing = spacings[k] * self.random.between(0.7, 1.3);
+            let dip = self.dice.between(low, high);
+            let spacing = spacings[k] * self.dice.between(0.7, 1.3);
             self.set(dip, spacing, 100 * (k as u64 + 1) + seed);
         }
     }
@@ -112,15 +112,15 @@ impl Slope {
         }
         self.joint(&base);
         for bend in bends {
-            let up = self.random.between(up_deg[0], up_deg[1]);
+            let up = self.dice.between(up_deg[0], up_deg[1]);
             self.joint(&[bend, on(bend, up, 21.0 - bend[1] + 4.0)]);
         }
     }
 
     /// Bricks over a base that dips out of the slope, each course half a brick farther.
     fn masonry(&mut self) {
-        let dip = self.random.between(22.0, 34.0);
-        let (height, width) = (self.random.between(1.6, 2.4) * self.scale, 3.0 * self.scale);
+        let dip = self.dice.between(22.0, 34.0);
+        let (height, width) = (self.dice.between(1.6, 2.4) * self.scale, 3.0 * self.scale);
         let foot = [14.0 + 1.5 / self.face_deg.to_radians().tan(), 6.5];
         for course in 0..(7.0 / self.scale) as i32 {
             let start = on(foot, dip + 90.0, height * f64::from(course));
@@ -169,25 +169,25 @@ fn slope(seed: u64) -> (&'static str, Slope, f64) {
             "masonry"
         }
         3 => {
-            let tread = slope.random.between(24.0, 34.0);
+            let tread = slope.dice.between(24.0, 34.0);
             slope.based(&[(tread, 3.0), (82.0, 0.8)], [85.0, 95.0]);
             slope.set(tread + 2.0, 2.5, 500 + seed);
             "step path"
         }
         4 => {
-            let [low, high] = [slope.random.between(10.0, 25.0), slope.random.between(48.0, 62.0)];
+            let [low, high] = [slope.dice.between(10.0, 25.0), slope.dice.between(48.0, 62.0)];
             slope.based(&[(low, 9.0), (high, 30.0)], [80.0, 110.0]);
             slope.two_sets(seed, [[low - 5.0, low], [80.0, 110.0]], [3.0, 3.0]);
             "wedges"
         }
         _ => {
-            let dips = [[10.0, 20.0], [28.0, 38.0], [50.0, 62.0]].map(|[low, high]| slope.random.between(low, high));
+            let dips = [[10.0, 20.0], [28.0, 38.0], [50.0, 62.0]].map(|[low, high]| slope.dice.between(low, high));
             slope.based(&[(dips[0], 6.0), (dips[1], 6.0), (dips[2], 30.0)], [85.0, 110.0]);
             slope.set(dips[1] + 4.0, 2.5, 700 + seed);
             "kinked plane"
         }
     };
-    let friction_deg = slope.random.between(30.0, 42.0);
+    let friction_deg = slope.dice.between(30.0, 42.0);
     (kind, slope, friction_deg)
 }
 
@@ -256,7 +256,7 @@ fn compare_all(seeds: std::ops::Range<u64>) {
 /// the factor of the slope, between trials that stood.
 #[test]
 fn a_grain_that_creeps_makes_no_verdict_alternate() {
-    let mut slope = Slope { random: Random(1), face_deg: 60.0, scale: 1.0, joints: String::new() };
+    let mut slope = Slope { dice: Dice(Random::from_word(1)), face_deg: 60.0, scale: 1.0, joints: String::new() };
     slope.set(40.0, 2.0, 100);
     slope.set(130.0, 2.2, 200);
     let reduction = reduce(&slope.case(40.0, None));

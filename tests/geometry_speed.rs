@@ -3,16 +3,7 @@
 use std::time::Instant;
 
 use enmm::geometry::{Label, MeshEdgeId, Point, Segment, TraceId, arrange};
-
-/// A small generator of numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use enmm_verification::random::Random;
 
 fn square(side: f64) -> Vec<Segment> {
     let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(x, y)| Point::new(x, y));
@@ -22,8 +13,8 @@ fn square(side: f64) -> Vec<Segment> {
 fn joints(count: usize, length: f64, random: &mut Random) -> Vec<Segment> {
     (0..count)
         .map(|k| {
-            let middle = Point::new(100.0 * random.next(), 100.0 * random.next());
-            let (sine, cosine) = (std::f64::consts::PI * random.next()).sin_cos();
+            let middle = Point::new(100.0 * random.unit(), 100.0 * random.unit());
+            let (sine, cosine) = (std::f64::consts::PI * random.unit()).sin_cos();
             let half = Point::new(cosine, sine) * (length * 0.5);
             Segment { a: middle - half, b: middle + half, label: Label::trace(TraceId::new(k)) }
         })
@@ -59,7 +50,7 @@ fn faces(segments: &[Segment]) -> (usize, f64) {
 
 #[test]
 fn ten_thousand_joints_take_a_fraction_of_a_second() {
-    let mut random = Random(1);
+    let mut random = Random::from_word(1);
     let mut segments = square(100.0);
     segments.extend(joints(10_000, 4.7, &mut random));
     let (count, alone) = faces(&segments);

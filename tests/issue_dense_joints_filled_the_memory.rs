@@ -8,6 +8,7 @@ use std::time::Instant;
 use enmm::geometry::{Label, Point, Segment, TraceId, arrange, arrange_within};
 use enmm::model::{BuildStage, Simulation};
 use enmm_io::parse_case;
+use enmm_verification::random::Random;
 
 /// A square of 10 m with some joints, and a limit of memory (bytes).
 fn case(joints: &str, memory: u64) -> String {
@@ -54,13 +55,10 @@ fn thousands_of_joints_within_a_millimetre_are_refused_before_they_are_cut() {
     assert!(clock.elapsed().as_secs_f64() < 10.0, "{:?}", clock.elapsed());
 }
 
-/// Joints between places that a simple generator of numbers gives.
+/// Joints between random places.
 fn random(count: usize) -> String {
-    let mut word = 1u64;
-    let mut next = || {
-        word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (word >> 54) as f64 / 102.4
-    };
+    let mut random = Random::from_word(1);
+    let mut next = || (random.word() >> 54) as f64 / 102.4;
     (0..count).fold(String::new(), |mut text, _| {
         let _ = writeln!(text, "[[joint]]\npoints = [[{}, {}], [{}, {}]]", next(), next(), next(), next());
         text
