@@ -41,7 +41,7 @@ fn reduce(case: &enmm::model::Case, threads: usize) -> Reduction {
 }
 
 /// FoS = (c·A + W·cos a·tan φ)/(W·sin a), W = 2500·9.81·6 N/m, A = 3 m. The bracket is 0.5 % wide and the result its
-/// middle: 0.25 %, and as much again for lengths of contact (2e-3 in `c2_contact_length`).
+/// middle: 0.25 %, and as much again for lengths of contact (2e-3 in `contact_lengths`).
 #[test]
 fn the_factor_is_that_of_limit_equilibrium() {
     for (friction, cohesion) in [(40.0, 0.0), (35.0, 20e3), (20.0, 0.0), (0.0, 30e3)] {
