@@ -4,9 +4,10 @@ mod common;
 
 use std::path::Path;
 
-use common::claims::{assert_ledger, dynamic, rock};
+use common::claims::assert_ledger;
 use common::{run_all, run_stage, simulation};
 use enmm::model::Simulation;
+use enmm_verification::parts::{dynamic, rock};
 
 /// A free block without gravity, its motions, and a dynamic stage of `seconds`.
 fn block(motions: &str, stages: &str) -> String {

@@ -2,11 +2,12 @@
 
 mod common;
 
-use common::claims::{advance, block_at, dynamic, motion, rock};
+use common::claims::{advance, block_at, motion};
 use common::overlap::deepest_overlap;
 use common::{run_stage, simulation};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
+use enmm_verification::parts::{dynamic, rock};
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;

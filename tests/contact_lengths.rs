@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::claims::rock;
 use common::{run_stage, simulation};
+use enmm_verification::parts::rock;
 
 /// A block of 1 m that has settled on a base from `left` to `right`: the sum of the lengths of its contacts (m).
 fn length(left: f64, right: f64, size: f64) -> f64 {

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::claims::{dynamic, rock};
 use common::overlap::Audit;
 use common::{run_stage, simulation};
+use enmm_verification::parts::{dynamic, rock};
 
 const SIZE: f64 = 1.0;
 

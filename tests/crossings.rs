@@ -3,10 +3,10 @@
 
 mod common;
 
-use common::claims::rock;
 use common::{run_stage, simulation, varied_rules};
 use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
+use enmm_verification::parts::rock;
 
 /// Gravity on a plane of 30° in axes along it (m/s²).
 const ALONG: f64 = 4.905;

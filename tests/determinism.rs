@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::state::State;
+use enmm_verification::parts::{dynamic, rock};
 
 /// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several
 /// groups.

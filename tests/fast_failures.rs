@@ -3,11 +3,12 @@
 
 mod common;
 
-use common::claims::{dynamic, motion, rock};
+use common::claims::motion;
 use common::overlap::Audit;
 use common::{run_stage, simulation, varied_rules};
 use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
+use enmm_verification::parts::{dynamic, rock};
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;

@@ -7,12 +7,12 @@ mod common;
 use std::fmt::Write;
 use std::path::Path;
 
-use common::claims::rock;
 use enmm::model::Case;
 use enmm_stability::limit_analysis::Factor;
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
+use enmm_verification::parts::rock;
 use enmm_verification::random::Random;
 
 /// Width of the brackets.

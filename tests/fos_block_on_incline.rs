@@ -5,10 +5,10 @@ mod common;
 
 use std::path::Path;
 
-use common::claims::{rock, turn};
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
+use enmm_verification::parts::{rock, turn};
 
 /// A block of 3 m × 2 m on a plane at 30°, and stages after its rest. Its resultant leaves the middle third of the
 /// base, so that the heel would open and lose its cohesion if it had no tensile strength.

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::claims::dynamic;
 use common::simulation;
 use enmm::model::Simulation;
+use enmm_verification::parts::dynamic;
 
 const WIDTH: f64 = 120.0;
 const HEIGHT: f64 = 60.0;

@@ -2,9 +2,10 @@
 
 mod common;
 
-use common::claims::{assert_ledger, dynamic, motion, rock, turn};
+use common::claims::{assert_ledger, motion};
 use common::{run_stage, simulation};
 use enmm::model::Simulation;
+use enmm_verification::parts::{dynamic, rock, turn};
 
 const IMPLICIT: &str = "[solver]\nintegrator = \"implicit\"\n";
 

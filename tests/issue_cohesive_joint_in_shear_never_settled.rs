@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::claims::{dynamic, rock};
 use common::simulation;
+use enmm_verification::parts::{dynamic, rock};
 
 /// Two blocks, one held, joined by cohesion, one pulled along the joint: no step is halved or left unsettled, and a
 /// step takes few sweeps.

@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::geometry::Vector;
+use enmm_verification::parts::{dynamic, rock};
 
 #[test]
 fn a_block_that_swings_without_load_is_wholly_out_of_balance_and_one_that_does_not_is_in_balance() {

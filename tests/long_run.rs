@@ -3,13 +3,13 @@
 
 mod common;
 
-use common::claims::{dynamic, rock};
 use common::simulation;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::state::bytes::{decode, encode};
 use enmm::step::energies;
+use enmm_verification::parts::{dynamic, rock};
 
 /// One irregular block that swings freely after a uniform stretch.
 fn case(mesh: &str) -> String {

@@ -2,12 +2,13 @@
 
 mod common;
 
-use common::claims::{dynamic, stresses};
+use common::claims::stresses;
 use common::{run_stage, simulation};
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::state::bytes::{decode, encode};
 use enmm::step::StepReport;
+use enmm_verification::parts::dynamic;
 
 const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
 

@@ -3,10 +3,11 @@
 
 mod common;
 
-use common::claims::{block_at, dynamic, rock};
+use common::claims::block_at;
 use common::simulation;
 use enmm::model::Simulation;
 use enmm::step::Failure;
+use enmm_verification::parts::{dynamic, rock};
 
 const YOUNG: f64 = 1e9;
 const DENSITY: f64 = 2500.0;

@@ -3,9 +3,10 @@
 
 mod common;
 
-use common::claims::{advance, block_at, dynamic, rock};
+use common::claims::{advance, block_at};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
+use enmm_verification::parts::{dynamic, rock};
 
 /// Foot (m) of a tension crack 14 m deep, behind a face 60 m high of 50° over a plane of 35°; the toe is the origin.
 fn foot() -> [f64; 2] {

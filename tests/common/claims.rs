@@ -6,7 +6,6 @@ use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::step::{StepReport, block_motion};
-pub use enmm_verification::parts::{dynamic, rock, turn};
 
 /// Claim A4: the energy ledger closes to 1e-3 of its largest term.
 ///
