@@ -213,7 +213,8 @@ mod tests {
             let edges: Vec<(Point, Point)> = edges_of(boundary.block).collect();
             for point in &boundary.loops.points {
                 let nearest = edges.iter().map(|(a, b)| distance(point, a, b)).fold(f64::INFINITY, f64::min);
-                assert!(nearest < 1e-4, "block {}: {nearest} m off at {point:?}", boundary.block);
+                // A pixel of the picture is 30 mm.
+                assert!(nearest < 1e-3, "block {}: {nearest} m off at {point:?}", boundary.block);
             }
         }
     }

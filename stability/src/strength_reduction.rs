@@ -6,6 +6,7 @@ mod doubt;
 mod judge;
 mod mechanism;
 mod reference;
+mod slip;
 mod trial;
 
 use std::sync::atomic::AtomicBool;

@@ -116,7 +116,8 @@ fn value(repository: &Repository, name: &str) -> Result<Option<f64>, String> {
         return of_report(&read(&repository.root.join(REPORT))?, problem, quantity).map(Some);
     }
     if let Some((constant, file)) = name.split_once(' ') {
-        let text = read(&source(&repository.root, file))?;
+        let file = source(&repository.root, file);
+        let text = read(&repository.root.join(&file))?;
         return of_source(&text, constant).map(Some).map_err(|why| format!("{file}: {why}"));
     }
     let path = repository.figures().join(name);
@@ -128,10 +129,10 @@ fn value(repository: &Repository, name: &str) -> Result<Option<f64>, String> {
 }
 
 /// The file that a mark names: one of the engine, or of another crate, whose folder then comes first.
-fn source(root: &Path, file: &str) -> PathBuf {
-    let own = root.join("src").join(file);
+fn source(root: &Path, file: &str) -> String {
+    let own = format!("src/{file}");
     match file.split_once('/') {
-        Some((folder, rest)) if !own.exists() => root.join(folder).join("src").join(rest),
+        Some((folder, rest)) if !root.join(&own).exists() => format!("{folder}/src/{rest}"),
         _ => own,
     }
 }

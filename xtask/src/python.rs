@@ -35,7 +35,7 @@ pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> 
 /// The same with ENMM_LONG, so that campaigns run in full.
 ///
 /// # Errors
-/// As [`test`].
+/// As [`test()`].
 pub fn test_in_full(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
     pytest(repository, places, Some(("ENMM_LONG", "1")))
 }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
+use super::slip::{largest_slip, settling_slip};
 use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Invalid, Stage, StageKind};
@@ -31,29 +32,48 @@ pub struct Rest {
 /// How the static stages went.
 enum Settled {
     AtRest(Box<Simulation>),
-    NotAtRest { stage: String, time: f64, unbalanced: f64, failure: Option<StepError> },
+    /// At rest, but by a slip (m) that is a failure: blocks slid until others caught them.
+    Caught(Box<Simulation>, f64),
+    NotAtRest {
+        stage: String,
+        time: f64,
+        unbalanced: f64,
+        failure: Option<StepError>,
+    },
 }
 
-/// Runs the static stages that the case begins with; when they do not come to rest, with ever more strength.
+/// Runs the static stages that the case begins with; when they do not come to rest, or only after a failure, with ever
+/// more strength.
 ///
 /// # Errors
 /// No static stage, a case that cannot be built, or no rest.
 pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, ReductionError> {
     let (case, mut warnings) = trial_case(case)?;
     let mut factor = 1.0;
+    let mut first_caught = None;
     loop {
+        let is_last = 2.0 * factor * FACTOR_RANGE[0] > 1.0;
         match settle_with(&case, factor, options.interrupt)? {
             Settled::AtRest(simulation) => {
-                if factor > 1.0 {
+                if let Some((_, _, slip)) = first_caught {
+                    warnings.push(caught_at_rest(slip, factor));
+                } else if factor > 1.0 {
                     warnings.push(format!(
                         "the slope does not come to rest with its own strength, only with {factor} times as much"
                     ));
                 }
-                warnings.extend(simulation.built().warnings.iter().cloned());
-                let effort = (simulation.time(), simulation.state().step);
-                return Ok(Rest { simulation: *simulation, factor, effort, warnings });
+                return Ok(rest(*simulation, factor, warnings));
             }
-            Settled::NotAtRest { stage, time, unbalanced, failure } if 2.0 * factor * FACTOR_RANGE[0] > 1.0 => {
+            Settled::Caught(simulation, slip) => {
+                let (simulation, least, slip) = first_caught.take().unwrap_or((simulation, factor, slip));
+                if is_last {
+                    warnings.push(slips_anyhow(slip));
+                    return Ok(rest(*simulation, least, warnings));
+                }
+                first_caught = Some((simulation, least, slip));
+                factor *= 2.0;
+            }
+            Settled::NotAtRest { stage, time, unbalanced, failure } if is_last => {
                 return Err(match failure {
                     Some(error) => ReductionError::Failed(error),
                     None => ReductionError::NotAtRest { stage, time, factor, unbalanced },
@@ -62,6 +82,27 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
             Settled::NotAtRest { .. } => factor *= 2.0,
         }
     }
+}
+
+/// The rest from which trials start; the warnings of the model follow its own.
+fn rest(simulation: Simulation, factor: f64, mut warnings: Vec<String>) -> Rest {
+    warnings.extend(simulation.built().warnings.iter().cloned());
+    let effort = (simulation.time(), simulation.state().step);
+    Rest { simulation, factor, effort, warnings }
+}
+
+fn caught_at_rest(slip: f64, factor: f64) -> String {
+    format!(
+        "with its own strength the slope rests only after a slip of {slip:.3} m, which is a failure that other rock \
+         stopped: trials start from the slope at rest with {factor} times its strength"
+    )
+}
+
+fn slips_anyhow(slip: f64) -> String {
+    format!(
+        "the static stages make joints slip by {slip:.3} m whatever their strength, so blocks have gaps or loads that \
+         move them first: the factor is that of the slope after this slip"
+    )
 }
 
 /// The case without its dynamic stages, and with a stage for the trials at its end.
@@ -114,5 +155,8 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
         }
         simulation.next_stage()?;
     }
-    Ok(Settled::AtRest(Box::new(simulation)))
+    let slip = largest_slip(&simulation, &[]);
+    let is_caught = !simulation.case().yields() && slip > settling_slip(&simulation);
+    let simulation = Box::new(simulation);
+    Ok(if is_caught { Settled::Caught(simulation, slip) } else { Settled::AtRest(simulation) })
 }

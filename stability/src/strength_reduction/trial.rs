@@ -6,8 +6,8 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
+use super::slip::largest_slip;
 use super::{FailingBlock, Trial};
-use enmm::contact::ContactHistory;
 use enmm::cover::BlockId;
 use enmm::geometry::{Vector, polygon};
 use enmm::model::Simulation;
@@ -23,11 +23,11 @@ const FALLS_MAX: f64 = 12.0;
 /// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
 const STILL: f64 = 0.01;
 /// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
-const ELASTIC: f64 = 1e-3;
+pub const ELASTIC: f64 = 1e-3;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
 /// Acceleration of gravity (m/s²) for the scales of models that have none.
-const STANDARD_GRAVITY: f64 = 9.81;
+pub const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Why a trial gave no verdict.
 pub enum Stop {
@@ -140,7 +140,7 @@ impl Base {
         Sample {
             time: simulation.time() - self.simulation.time(),
             displacement: far,
-            slip: if self.yields { far } else { self.slip(simulation) },
+            slip: if self.yields { far } else { largest_slip(simulation, &self.simulation.state().contacts) },
             speed: way / self.scales.window,
             kinetic: report.ledger.kinetic,
             released: energy(first) - energy(&report.ledger),
@@ -151,27 +151,6 @@ impl Base {
     fn moved(&self, simulation: &Simulation, block: BlockId) -> f64 {
         let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
         simulation.model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
-    }
-
-    /// Largest slip (m) of a contact since the trial began, where no bolt ties both blocks, which bears when they move.
-    fn slip(&self, simulation: &Simulation) -> f64 {
-        let key = |contact: &ContactHistory| (contact.node, contact.side);
-        let (model, state) = (simulation.model(), simulation.state());
-        let boundary = &model.boundary;
-        let bolts = model.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
-        let tied: Vec<[BlockId; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
-        let mut before = self.simulation.state().contacts.iter().peekable();
-        let counts = |contact: &&ContactHistory| {
-            let points = [boundary.node_point[contact.node], contact.edge];
-            let blocks = points.map(|point| boundary.block[point]);
-            !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
-        };
-        let slipped = state.contacts.iter().filter(counts).map(|contact| {
-            while before.next_if(|b| key(b) < key(contact)).is_some() {}
-            let known = before.peek().filter(|b| key(b) == key(contact));
-            contact.slip - known.map_or(0.0, |b| b.slip)
-        });
-        slipped.fold(0.0, f64::max)
     }
 
     /// Motion of all free blocks since the trial began.

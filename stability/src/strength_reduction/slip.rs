@@ -1,0 +1,42 @@
+//! How far joints have slipped, and how far elasticity lets them.
+
+use super::trial::{ELASTIC, STANDARD_GRAVITY};
+use enmm::contact::ContactHistory;
+use enmm::cover::BlockId;
+use enmm::geometry::polygon;
+use enmm::model::Simulation;
+
+/// Largest slip (m) of a contact since it had one of the histories `before`, which are in the order of nodes. Contacts
+/// of two blocks that a bolt ties are left out: a bolt carries force only after they have moved.
+pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
+    let key = |contact: &ContactHistory| (contact.node, contact.side);
+    let (model, state) = (simulation.model(), simulation.state());
+    let boundary = &model.boundary;
+    let bolts = model.bolts.iter().zip(&state.bolts).filter(|(_, bolt)| bolt.active && !bolt.broken);
+    let tied: Vec<[BlockId; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
+    let mut before = before.iter().peekable();
+    let counts = |contact: &&ContactHistory| {
+        let points = [boundary.node_point[contact.node], contact.edge];
+        let blocks = points.map(|point| boundary.block[point]);
+        !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
+    };
+    let slipped = state.contacts.iter().filter(counts).map(|contact| {
+        while before.next_if(|b| key(b) < key(contact)).is_some() {}
+        let known = before.peek().filter(|b| key(b) == key(contact));
+        contact.slip - known.map_or(0.0, |b| b.slip)
+    });
+    slipped.fold(0.0, f64::max)
+}
+
+/// Largest slip (m) of a slope that takes up its weight and does not fail: twice the settlement ρgH²/2(λ+2μ) of its
+/// softest rock, and at least the displacement that elasticity of stiff rock cannot explain (Eq. 63).
+pub fn settling_slip(simulation: &Simulation) -> f64 {
+    let model = simulation.model();
+    let (low, high) = polygon::bounds(&model.covers.star_position);
+    let height = (high - low).y;
+    let gravity = simulation.state().drive.gravity(1.0).norm();
+    let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
+    let settlement = |density: f64, modulus: f64| density * gravity * height * height / modulus;
+    let softest = model.rocks.iter().map(|rock| settlement(rock.density, rock.lambda + 2.0 * rock.mu));
+    softest.fold(ELASTIC * height, f64::max)
+}
