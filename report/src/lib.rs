@@ -1,7 +1,7 @@
 //! The film of a slope, and the page that shows it.
 //!
 //! A run appends each frame to a film while it goes on ([`FilmWriter`]). [`write_page`] makes `report.html` of a film:
-//! one file that needs no network and no other file. [`serve`] shows a film that still grows. The crate does not
+//! one file that needs no network and no other file. `serve` shows a film that still grows. The crate does not
 //! depend on the engine: whoever writes a film fills in plain data ([`Head`], [`Outline`], [`Frame`], [`Note`]).
 //!
 //! `format.md` beside this crate's sources describes every byte of a film and how accurate it is.

@@ -52,7 +52,7 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
 /// Writes the page of a limit analysis.
 ///
 /// # Errors
-/// A case that limit analysis refuses, as a message; else as [`write_fos_page`].
+/// A case that limit analysis refuses, as a message; else as the page of a factor of safety.
 pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) -> io::Result<()> {
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };

@@ -30,7 +30,7 @@ usage: cargo xtask fuzz [--minutes N] [--seed S] [--part NAME] [--from K] [--inp
 
   --minutes N   goes on for so long; without it, takes the share that cargo xtask test takes
   --seed S      another number gives other inputs (default: 1)
-  --part NAME   one part alone: cases, networks, calls, states, fmus
+  --part NAME   one part alone: bursts, calls, cases, fmus, networks, states
   --from K      number of the first input
   --inputs N    inputs of each part
   --finds DIR   where what is found is written";

@@ -158,7 +158,7 @@ impl Instance {
         }
     }
 
-    /// Bytes of a saved state: the container of [`checkpoint`] with the token of the FMU for a fingerprint.
+    /// Bytes of a saved state: the container of [`bytes`] with the token of the FMU for a fingerprint.
     ///
     /// # Errors
     /// The status of the call; the instance is as before.
