@@ -237,12 +237,25 @@ def test_samples_without_an_answer_are_counted_and_named(ensemble, tmp_path):
     assert len(asked) == len(found.failed)
 
 
-def test_a_factor_above_limit_analysis_is_in_doubt(ensemble):
-    # The wall at its toe holds the block after it has slid: its factor is not that of the place where it began.
+def test_a_block_that_slides_before_the_search_has_the_factor_of_its_slide(ensemble):
+    # The wall at its toe stops the block in the static stage: that rest is no strength.
     from enmm.ensemble._outputs import evaluate
 
     answer = evaluate(block(wall=0.05, duration=20.0), {FRICTION: 20.0}, "factor_of_safety", {"high": 3.0, **QUICK})
-    assert not answer.message and "above what limit analysis" in answer.outputs["doubt"]
+    exact = math.tan(math.radians(20)) / math.tan(math.radians(30))
+    assert not answer.message and not answer.outputs["doubt"]
+    assert answer.outputs["factor_of_safety"] == pytest.approx(exact, rel=QUICK["tolerance"] / 2)
+
+
+def test_a_factor_above_limit_analysis_is_in_doubt(ensemble):
+    from types import SimpleNamespace
+
+    from enmm.ensemble._outputs import _of_fos
+
+    # The words of the program (stability/src/strength_reduction/doubt.rs).
+    text = "F = 1.8000 was stable, 12.0 % above what limit analysis of rigid blocks allows (1.6071): look"
+    found = SimpleNamespace(factor=1.8, bracket=(1.79, 1.81), status="found", failing=None, warnings=["other", text])
+    assert _of_fos(found)["doubt"] == text
 
 
 # Closed forms.
