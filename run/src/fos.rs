@@ -12,9 +12,8 @@ use serde_json::{Value, json};
 use super::bound::bound_record;
 use super::mechanism_page::write_fos_page;
 use enmm::engine_version;
-use enmm_io::CaseError;
-use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
+use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
 use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,

@@ -1,9 +1,8 @@
 //! How far joints have slipped, and how far elasticity lets them.
 
-use super::trial::{ELASTIC, STANDARD_GRAVITY};
+use super::trial::{ELASTIC, height_and_gravity};
 use enmm::contact::ContactHistory;
 use enmm::cover::BlockId;
-use enmm::geometry::polygon;
 use enmm::model::Simulation;
 
 /// Largest slip (m) of a contact since it had one of the histories `before`, which are in the order of nodes. Contacts
@@ -31,12 +30,8 @@ pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
 /// Largest slip (m) of a slope that takes up its weight and does not fail: twice the settlement ρgH²/2(λ+2μ) of its
 /// softest rock, and at least the displacement that elasticity of stiff rock cannot explain (Eq. 63).
 pub fn settling_slip(simulation: &Simulation) -> f64 {
-    let model = simulation.model();
-    let (low, high) = polygon::bounds(&model.covers.star_position);
-    let height = (high - low).y;
-    let gravity = simulation.state().drive.gravity(1.0).norm();
-    let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
+    let (height, gravity) = height_and_gravity(simulation);
     let settlement = |density: f64, modulus: f64| density * gravity * height * height / modulus;
-    let softest = model.rocks.iter().map(|rock| settlement(rock.density, rock.lambda + 2.0 * rock.mu));
+    let softest = simulation.model().rocks.iter().map(|rock| settlement(rock.density, rock.lambda + 2.0 * rock.mu));
     softest.fold(ELASTIC * height, f64::max)
 }

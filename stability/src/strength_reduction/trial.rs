@@ -27,7 +27,7 @@ pub const ELASTIC: f64 = 1e-3;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
 /// Acceleration of gravity (m/s²) for the scales of models that have none.
-pub const STANDARD_GRAVITY: f64 = 9.81;
+const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Why a trial gave no verdict.
 pub enum Stop {
@@ -223,14 +223,18 @@ fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reas
     running.then_some((Verdict::Unstable, judge::Reason::Runaway))
 }
 
+/// Height of a model (m) and the gravity by which its motion is measured (m/s²), that of the earth where none acts.
+pub fn height_and_gravity(simulation: &Simulation) -> (f64, f64) {
+    let (low, high) = polygon::bounds(&simulation.model().covers.star_position);
+    let gravity = simulation.state().drive.gravity(1.0).norm();
+    ((high - low).y, if gravity > 0.0 { gravity } else { STANDARD_GRAVITY })
+}
+
 /// Times, speeds and lengths of a model's motion (Eqs. 61, 63).
 fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let (model, state) = (simulation.model(), simulation.state());
-    let (low, high) = polygon::bounds(&model.covers.star_position);
-    let height = (high - low).y;
+    let (height, gravity) = height_and_gravity(simulation);
     let wave = height / model.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
-    let gravity = state.drive.gravity(1.0).norm();
-    let gravity = if gravity > 0.0 { gravity } else { STANDARD_GRAVITY };
     let fall = (height / gravity).sqrt();
     let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
     let still_speed = STILL * tolerance * gravity * window;
