@@ -6,13 +6,13 @@ import weakref
 from contextlib import suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
-from types import TracebackType
 from typing import NamedTuple, Self, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
+from ._closing import Closing
 from ._core import Core, LogFunction, Rows, ids_of, index, number, pointer, text, values_of
 from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
@@ -25,7 +25,7 @@ CONTACT_DTYPE = _abi.dtype_of(_abi.Contact)
 """Fields of `Model.contacts`, those of `enmm_contact`."""
 
 
-class State:
+class State(Closing):
     """A saved state of a model, made by `Model.save` or `Model.deserialize`; it may outlive the model.
 
     It is given free by `close`, at the end of a `with`, or with the object. It goes through pickle as the case and
@@ -40,14 +40,6 @@ class State:
     def close(self) -> None:
         """Gives the state free. Later uses raise DeadHandleError; closing again does nothing."""
         self._close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def __reduce__(self) -> tuple[object, ...]:
         return _unpickled_state, (self._source, self._bytes())
@@ -100,7 +92,7 @@ class Source(NamedTuple):
         return Model.from_string(self.toml, self.base_dir)
 
 
-class Model:
+class Model(Closing):
     """A jointed rock mass that a host drives through communication steps.
 
     Made by `from_file` or `from_string`. It ends with `close`, at the end of a `with`, or with the object and its
@@ -152,14 +144,6 @@ class Model:
     def close(self) -> None:
         """Ends the model and gives its memory free. Closing again does nothing."""
         self._core.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def __reduce__(self) -> tuple[object, ...]:
         return _unpickled_model, (self._source, self.serialize(), self._threads)

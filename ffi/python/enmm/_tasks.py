@@ -5,10 +5,10 @@ import os
 import tempfile
 import weakref
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from . import _plots
+from ._closing import Closing
 from ._errors import EnmmError, Status
 from ._frames import Frames
 from ._program import FAILED, INTERRUPTED, CaseLike, call, case_file, failure, message_of, record
@@ -25,7 +25,7 @@ class RunError(EnmmError):
         self.result = result
 
 
-class _Directory:
+class _Directory(Closing):
     """A directory with results; a temporary one is removed by `close`, at the end of a `with`, or with the object."""
 
     directory: Path
@@ -41,14 +41,6 @@ class _Directory:
     def close(self) -> None:
         """Removes the directory if it is a temporary one. What has been read stays."""
         self._close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 class Result(_Directory):

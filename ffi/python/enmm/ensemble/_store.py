@@ -5,8 +5,9 @@ import os
 import sqlite3
 import time
 from collections.abc import Iterable
-from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
+
+from .._closing import Closing
 
 _SCHEMA = """
 create table if not exists sample (
@@ -27,7 +28,7 @@ class Row(NamedTuple):
     """Why it failed."""
 
 
-class Store:
+class Store(Closing):
     """Samples by key. One process at a time writes; others may read. Keep it on a disk of the machine of the driver."""
 
     def __init__(self, path: str | os.PathLike[str] | None) -> None:
@@ -61,11 +62,3 @@ class Store:
     def close(self) -> None:
         """Closes the file."""
         self._database.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
