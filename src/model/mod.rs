@@ -1,15 +1,16 @@
-//! What the user wrote ([`Case`]), how it is built, and the façade that callers hold ([`Simulation`]).
+//! How what the user wrote ([`Case`]) is built, and the façade that callers hold ([`Simulation`]).
 
 pub mod assemble;
-pub mod case;
 pub mod fit;
 mod observe;
 pub mod settle;
 mod simulation;
 pub mod snapshot;
 
+pub use enmm_case as case;
+pub use enmm_case::Case;
+
 pub use assemble::{BuildStage, Built, build};
-pub use case::Case;
 pub use fit::Unfit;
 pub use observe::BlockState;
 pub use simulation::Simulation;

@@ -1,8 +1,8 @@
 //! Checks of fixities and loads: exactly one place, and what the kind needs and nothing else.
 
 use super::checks::{Check, Range, fail, number, optional, point, segment, table, unique};
-use crate::model::case::key::{Key, list};
-use crate::model::case::{Fix, Load, LoadKind};
+use crate::key::{Key, list};
+use crate::{Fix, Load, LoadKind};
 
 /// Checks the fixities of a case.
 ///

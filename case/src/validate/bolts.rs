@@ -1,8 +1,8 @@
 //! Checks of rock bolts: values, what fits the anchorage, and stages that install them.
 
 use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional, segment, unique};
-use crate::model::case::key::Key;
-use crate::model::case::{Anchorage, Bolt, Case};
+use crate::key::Key;
+use crate::{Anchorage, Bolt, Case};
 
 /// Checks the bolts of a case.
 ///

@@ -1,9 +1,9 @@
 //! Checks of water and ports.
 
 use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, points, segment, unique};
-use crate::model::case::key::{Key, list};
-use crate::model::case::limits::VALUE_MAX;
-use crate::model::case::{Port, Water};
+use crate::key::{Key, list};
+use crate::limits::VALUE_MAX;
+use crate::{Port, Water};
 
 /// Checks the water of a case.
 ///

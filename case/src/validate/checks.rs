@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use super::Invalid;
-use crate::model::case::key::{Key, list, nearest};
-use crate::model::case::{Case, StageKind, TimeTable};
+use crate::key::{Key, list, nearest};
+use crate::{Case, StageKind, TimeTable};
 
 /// Outcome of a check.
 pub type Check = Result<(), Invalid>;

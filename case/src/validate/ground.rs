@@ -1,9 +1,9 @@
 //! Checks of base motions, quiet boundaries and free-field columns.
 
 use super::checks::{Check, Names, Range, fail, number, segment, table};
-use crate::model::case::key::Key;
-use crate::model::case::limits::{ACCELERATION_MAX, VELOCITY_MAX};
-use crate::model::case::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
+use crate::key::Key;
+use crate::limits::{ACCELERATION_MAX, VELOCITY_MAX};
+use crate::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
 
 /// Slope of a side, relative to its length, up to which it is vertical.
 const VERTICAL: f64 = 1e-9;

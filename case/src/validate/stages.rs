@@ -2,8 +2,8 @@
 
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
 use super::joints;
-use crate::model::case::key::Key;
-use crate::model::case::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
+use crate::key::Key;
+use crate::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
 /// Checks the stages of a case.
 ///

@@ -1,8 +1,8 @@
 //! Checks of joint laws: what belongs to the kind, and what a stage may change of it.
 
 use super::checks::{Check, Range, fail, number, optional};
-use crate::model::case::key::Key;
-use crate::model::case::{JointLaw, JointLawKind, LawChange};
+use crate::key::Key;
+use crate::{JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
 const RESIDUAL: Range = Range::from(0.0).to(70.0);
