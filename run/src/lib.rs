@@ -6,6 +6,7 @@ mod bound;
 pub mod check;
 mod film;
 pub mod fos;
+mod found;
 pub mod history;
 mod mechanism_page;
 mod run;

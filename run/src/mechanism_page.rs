@@ -7,7 +7,7 @@ use std::path::Path;
 use enmm_report::{Axis, FILM, Fact, Marked, Note, Quantity, Trial as Row, TrialTable};
 
 use crate::film::{Film, Opening};
-use crate::fos::{Found, remedy};
+use crate::found::{Found, remedy};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;

@@ -6,6 +6,7 @@ mod order;
 pub mod reference;
 mod subdomain;
 mod support;
+mod wide_block;
 mod wide_contact;
 mod wide_pairs;
 

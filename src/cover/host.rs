@@ -1,6 +1,6 @@
 //! Hosts: which element carries what acts on the boundary of an element that a cut has left almost nothing of.
 
-use super::cut::Covers;
+use super::covers::Covers;
 use super::{CoverId, ElementId};
 
 /// Share of a full cover's area below which a cover is too light to carry forces of its own,

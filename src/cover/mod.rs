@@ -1,13 +1,15 @@
 //! Mathematical covers, physical covers, manifold elements and blocks, with their weights and integrals.
 //! Knows nothing of stress or time.
 
+mod covers;
 mod cut;
 mod host;
 mod mesh;
 mod order;
 mod outlines;
 
-pub use cut::{Covers, cut};
+pub use covers::Covers;
+pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
 

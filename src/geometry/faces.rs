@@ -2,8 +2,8 @@
 //!
 //! Every decision rests on exact signs; nothing here knows a tolerance.
 
-use super::arrangement::{Arrangement, Edge, Face, FaceId, HalfEdgeId, NodingReport, VertexId};
 use super::grid::{CellGrid, Groups};
+use super::planar_map::{Arrangement, Edge, Face, FaceId, HalfEdgeId, NodingReport, VertexId};
 use super::{GeometryError, Point, orientation};
 
 /// Walks round the faces of edges that cross nowhere and have no dead ends, and floods the winding from outside.

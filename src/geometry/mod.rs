@@ -11,15 +11,17 @@ pub(crate) mod id;
 pub mod joint_set;
 pub mod loops;
 mod noder;
+mod planar_map;
 pub mod polygon;
 pub mod segment;
 
-pub use arrangement::{
-    Arrangement, Edge, Face, FaceId, HalfEdgeId, Label, MeshEdgeId, NodingReport, Segment, TraceId, TraceLength,
-    VertexId, arrange, arrange_within,
-};
+pub use arrangement::{arrange, arrange_within};
 pub use error::GeometryError;
 pub(crate) use id::id;
+pub use planar_map::{
+    Arrangement, Edge, Face, FaceId, HalfEdgeId, Label, MeshEdgeId, NodingReport, Segment, TraceId, TraceLength,
+    VertexId,
+};
 
 /// A position in the plane (m).
 pub type Point = nalgebra::Vector2<f64>;

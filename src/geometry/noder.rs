@@ -3,8 +3,8 @@
 //! Knows points, edges and which edges are still where the mesh put them; nothing of faces. Vertices are never moved
 //! and lie more than the merge radius apart, so that their number, and with it the work, is bounded.
 
-use super::arrangement::{Label, NodingReport, Segment, VertexId};
 use super::grid::{CellGrid, Groups, PointChains};
+use super::planar_map::{Label, NodingReport, Segment, VertexId};
 use super::{GeometryError, Point, cross, orientation};
 
 /// Merge radius of vertices over the snap tolerance. With 1 more than half of adversarial inputs never settle.

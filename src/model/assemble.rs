@@ -408,3 +408,8 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
 pub(super) fn law_of(case: &Case, name: &str) -> Option<LawId> {
     case.joint_laws.keys().position(|k| k == name).map(LawId::new)
 }
+
+/// Points of a list of pairs.
+fn points(list: &[[f64; 2]]) -> Vec<Point> {
+    list.iter().map(|p| Point::from(*p)).collect()
+}

@@ -4,37 +4,9 @@ use crate::contact::EdgeId;
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
-use crate::state::{Drive, Model, MotionKind, Port, State, TimedRecord};
+use crate::state::{Drive, Model, Port, State};
 
-use super::{Regime, Window, quiet};
-
-impl TimedRecord {
-    /// What `mean` of the record makes of a window, times amplitude; nothing before its stage and in static stages.
-    fn over(&self, regime: Regime, state: &State, window: Window, mean: impl Fn(f64, f64) -> f64) -> Vector {
-        match (regime, state.stage_starts.get(self.stage as usize)) {
-            (Regime::Dynamic { .. }, Some(start)) => self.amplitude * mean(window.from - start, window.to - start),
-            _ => Vector::zeros(),
-        }
-    }
-}
-
-/// Acceleration (m/s²) of the base by its records, its mean over a window (Eq. 45).
-pub fn base_motion(model: &Model, regime: Regime, state: &State, window: Window) -> Vector {
-    let of = |base: &crate::state::BaseMotion| {
-        let TimedRecord { record, .. } = &base.motion;
-        base.motion.over(regime, state, window, |from, to| match base.kind {
-            MotionKind::Acceleration => record.mean(from, to),
-            MotionKind::Velocity => record.mean_rate(from, to),
-        })
-    };
-    model.base_motions.iter().map(of).sum()
-}
-
-/// Particle velocity (m/s) of the wave that comes in through a quiet boundary, its mean over a window.
-pub fn wave(model: &Model, regime: Regime, state: &State, window: Window, quiet: u32) -> Vector {
-    let wave = &model.quiets[quiet as usize].wave;
-    wave.as_ref().map_or_else(Vector::zeros, |w| w.over(regime, state, window, |a, b| w.record.mean(a, b)))
-}
+use super::quiet;
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
 /// base by (Eq. 31).

@@ -1,11 +1,10 @@
-//! What a step asks of its integrator, and the one place where it chooses between both.
+//! What a step asks of its integrator.
 
 use crate::contact::VertexEdge;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 use crate::state::{Model, State, Workspace};
 
-use super::explicit::Explicit;
 use super::{Step, StepReport};
 
 /// What the explicit and the implicit integrator do each in its own way.
@@ -33,12 +32,4 @@ pub(super) trait Integrator: Sync {
 
     /// Kinetic energy (J/m) of all blocks that can move, by its own masses.
     fn kinetic(&self, model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64;
-}
-
-/// The integrator of a model.
-pub(super) fn of(model: &Model) -> &dyn Integrator {
-    match &model.implicit {
-        Some(implicit) => implicit,
-        None => &Explicit,
-    }
 }

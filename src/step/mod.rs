@@ -10,6 +10,7 @@ mod implicit;
 mod integrator;
 mod prepare;
 mod quiet;
+mod records;
 mod report;
 mod settle;
 mod times;
@@ -25,10 +26,20 @@ use crate::mechanics::Damping;
 use crate::state::{Model, State, Workspace};
 
 use contacts::CONTACTS;
+use explicit::Explicit;
+use integrator::Integrator;
 use times::{StepTimes, Window};
 
 /// Covers from which a step is worth other threads than the caller's own.
 pub const THREADS_FROM: usize = 4096;
+
+/// The integrator of a model: the one place that chooses.
+fn integrator_of(model: &Model) -> &dyn Integrator {
+    match &model.implicit {
+        Some(implicit) => implicit,
+        None => &Explicit,
+    }
+}
 
 /// How a stage treats velocities and gravity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +106,7 @@ pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) ->
     let rest = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
     step.report = true;
-    integrator::of(model).begin(&mut step, rest)
+    integrator_of(model).begin(&mut step, rest)
 }
 
 /// A copy of the state, with buffers of its own.
@@ -111,7 +122,7 @@ pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) ->
     let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    integrator::of(model).judge(&mut step, dt);
+    integrator_of(model).judge(&mut step, dt);
     (state, workspace)
 }
 
@@ -120,7 +131,7 @@ pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, 
     let (mut state, mut workspace) = beside(model, state, serial);
     let dt = model.dt - state.part;
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    integrator::of(model).each_contact(&mut step, dt, see);
+    integrator_of(model).each_contact(&mut step, dt, see);
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
@@ -171,7 +182,7 @@ impl Step<'_> {
     /// dearer for every parallel part by itself.
     fn on_threads(&mut self, dt: f64) -> StepReport {
         let is_small = self.model.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
-        let integrator = integrator::of(self.model);
+        let integrator = integrator_of(self.model);
         if self.workspace.serial || is_small {
             integrator.cover(self, dt)
         } else {

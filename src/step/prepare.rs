@@ -5,7 +5,7 @@ use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::state::{Model, State, Workspace};
 
-use super::{Regime, applied, integrator, quiet};
+use super::{Regime, applied, integrator_of, quiet};
 
 /// Sizes the buffers and derives masses, support rows and laws from the state: needed after a build, a change of stage
 /// and a restored state.
@@ -27,7 +27,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     hold(model, state, workspace);
     expose(model, &mut workspace.exposed);
     workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
-    integrator::of(model).prepare(model, workspace);
+    integrator_of(model).prepare(model, workspace);
 }
 
 /// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
@@ -71,7 +71,7 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
         force: state.support_force[k],
     }));
     let is_static = !state.stage_displacement.is_empty();
-    let lightness = integrator::of(model).lightness(model);
+    let lightness = integrator_of(model).lightness(model);
     if is_static && lightness > 1.0 {
         mass_matrix.lighten(lightness);
     }
@@ -90,7 +90,7 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
 pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32, start: f64, at_rest: bool) {
     if at_rest {
         state.dt_last = 0.0;
-        integrator::of(model).stop(model, state, stage);
+        integrator_of(model).stop(model, state, stage);
     }
     state.acceleration.clear();
     state.static_stretch = 0.0;

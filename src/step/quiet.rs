@@ -5,7 +5,7 @@ use crate::geometry::Vector;
 use crate::mechanics::ColumnState;
 use crate::state::{Model, State};
 
-use super::{Regime, Step, StepTimes, applied};
+use super::{Regime, Step, StepTimes, records};
 
 /// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
@@ -62,7 +62,7 @@ impl Step<'_> {
                 continue;
             };
             if wave.0 != quiet {
-                wave = (quiet, applied::wave(model, regime, state, window, quiet));
+                wave = (quiet, records::wave(model, regime, state, window, quiet));
             }
             row.viscosity = 0.5 * support.stiffness;
             row.target = 2.0 * support.stiffness * wave.1.dot(&support.direction)

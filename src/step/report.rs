@@ -6,7 +6,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, BlockCovers, MassMatrix};
 use crate::state::{Ledger, Model, State, Workspace};
 
-use super::{integrator, quiet};
+use super::{integrator_of, quiet};
 
 /// A step as seen from outside; energies hold at the step's start.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -95,7 +95,7 @@ pub(super) fn bolt_stored(model: &Model, state: &State) -> f64 {
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
 pub fn energies(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledger {
     Ledger {
-        kinetic: integrator::of(model).kinetic(model, mass_matrix, &state.displacement, &state.velocity),
+        kinetic: integrator_of(model).kinetic(model, mass_matrix, &state.displacement, &state.velocity),
         strain: strain(model, state),
         potential: potential(model, state),
         ..state.ledger

@@ -3,6 +3,7 @@
 
 mod contact;
 mod corner;
+mod interfaces;
 mod model;
 mod program;
 mod refusal;
@@ -153,7 +154,7 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
     let element_block = &simulation.model().covers.element_block;
     let strengths = Strengths::new(&simulation, &bodies);
     let tolerance = 2.0 * simulation.built().noding.tolerance;
-    let mut contacts = contact::interfaces(&outlines, element_block, &strengths, tolerance);
+    let mut contacts = interfaces::interfaces(&outlines, element_block, &strengths, tolerance);
     let interfaces = contacts.len();
     let (points, corners) = corner::corners(&outlines, element_block, &strengths);
     let blocks = [bodies.iter().filter(|body| !body.is_gone).count(), free];

@@ -14,8 +14,7 @@ use enmm_bench::Machine;
 
 use crate::{Plot, Setup, Trouble, Values};
 
-pub use models::{Totals, slope_text};
-pub(crate) use models::{block_displacements, difference, fail};
+pub use crate::slope::{Totals, slope_text};
 
 /// When, by what and on what the times of a document were taken: `cargo xtask` tells commit and date.
 fn origin() -> String {

@@ -18,6 +18,7 @@ mod record;
 pub mod report;
 mod runner;
 mod selection;
+mod slope;
 pub mod text;
 
 pub(crate) use model::wider_open;

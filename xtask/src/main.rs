@@ -11,6 +11,7 @@ mod python;
 mod repository;
 mod sanitize;
 mod tasks;
+mod venv;
 mod wheel;
 
 use std::process::ExitCode;

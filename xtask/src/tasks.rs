@@ -10,6 +10,7 @@ use crate::faults;
 use crate::figures;
 use crate::python;
 use crate::repository::{self, Repository};
+use crate::venv;
 
 const SCHEMA: &str = "docs/case.schema.json";
 const BENCHMARK: &str = "benchmark";
@@ -209,7 +210,7 @@ fn write_cases(repository: &Repository, pictures: &Path) -> Result<(), String> {
 fn write_couplings(repository: &Repository, pictures: &Path) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["build", "--release", "--package", "enmm-capi"]))?;
     for name in COUPLINGS {
-        let mut example = python::command(repository)?;
+        let mut example = venv::command(repository)?;
         example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(pictures.join(format!("{name}.png")));
         repository::run(&mut example)?;
     }

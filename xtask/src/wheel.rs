@@ -3,8 +3,8 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::path::{Path, PathBuf};
 
-use crate::python;
 use crate::repository::{self, Repository};
+use crate::venv;
 
 /// Folder of the package `enmm`.
 const PACKAGE: &str = "ffi/python";
@@ -37,7 +37,7 @@ pub fn pack(repository: &Repository) -> Result<PathBuf, String> {
     for name in libraries.into_iter().chain([format!("enmm{EXE_SUFFIX}")]) {
         strip(repository, &repository.target.join("release").join(&name), &binaries.join(&name))?;
     }
-    let mut pip = python::command(repository)?;
+    let mut pip = venv::command(repository)?;
     pip.args(["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]);
     repository::run(pip.arg("--wheel-dir").arg(&wheels).arg(PACKAGE).env("ENMM_BINARIES", &binaries))?;
     let entries = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;

@@ -3,20 +3,17 @@
 use enmm_lanes::{LANES, Lanes, Places, Values, prefetch};
 
 use crate::contact::{Limits, Pair, SoftSpring, VertexEdge};
-use crate::cover::CoverId;
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
 
 use super::anchor::lever_and_share;
-use super::wide_pairs::{WideBlock, WidePairs};
+use super::wide_block::{F64x8, WideBlock};
 use super::{SolverOptions, SolverView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
 /// Positions by which a contact is fetched ahead.
 pub const AHEAD: usize = 8;
-
-/// A number of each lane.
-pub type F64x8 = [f64; LANES];
 
 /// One material point of each contact. Numbers begin at lines of the cache.
 #[derive(Debug, Clone, Copy, Default)]
@@ -82,13 +79,14 @@ impl ContactView<'_> {
 }
 
 impl WideContact {
-    /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected.
+    /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected;
+    /// `first_block` is the block of each lane that its first points lie in.
     #[inline(always)]
     pub fn load<L: Lanes>(
         &mut self,
         lanes: L,
         turns: [u32; 2],
-        wide_pairs: &WidePairs,
+        first_block: &[BlockId; LANES],
         from: &ContactView,
         first_cover: CoverId,
     ) {
@@ -102,14 +100,14 @@ impl WideContact {
             from.fetch(turns.map(|turn| turn as usize + AHEAD));
         }
         for (lane, &contact) in contacts.iter().enumerate() {
-            self.take(lane, &from.contacts[contact as usize], wide_pairs, from, first_cover);
+            self.take(lane, &from.contacts[contact as usize], first_block, from, first_cover);
         }
         (contacts.len()..LANES).for_each(|lane| self.leave_out(lane));
         self.divide(lanes);
         if self.curved {
             self.take_curved(from);
         }
-        debug_assert!(self.is_apart(contacts.len()), "two manifolds of one colour share a cover");
+        debug_assert!(self.is_apart(contacts.len()), "two contacts of one row share a cover");
     }
 
     /// Its contacts.
@@ -132,14 +130,14 @@ impl WideContact {
         &mut self,
         lane: usize,
         contact: &VertexEdge,
-        wide_pairs: &WidePairs,
+        first_block: &[BlockId; LANES],
         from: &ContactView,
         first_cover: CoverId,
     ) {
         for (answers, answer) in self.answers.iter_mut().zip(&contact.answers) {
             answers.take(lane, answer);
         }
-        let turned = wide_pairs.is_turned(lane, contact.pair.blocks);
+        let turned = contact.pair.blocks[0] != first_block[lane];
         let [first, second] = if turned { [1, 0] } else { [0, 1] };
         self.points[0].take(lane, &contact.pair, first, &from.view, first_cover);
         self.points[1].take(lane, &contact.pair, second, &from.view, first_cover);

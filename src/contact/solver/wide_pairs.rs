@@ -8,7 +8,8 @@ use crate::cover::BlockId;
 
 use super::SolverView;
 use super::anchor::{Accumulators, common_share};
-use super::wide_contact::{ContactView, F64x8, WideContact};
+use super::wide_block::{F64x8, WideBlock, first, put_first};
+use super::wide_contact::{ContactView, WideContact};
 
 /// Change of a force, over what counts as settled, from which its bodies have moved.
 const MOVES: f64 = 0.3;
@@ -54,24 +55,6 @@ pub struct ChangeMeasure {
     pub floor: f64,
     /// Turn of the block pairs; turns grow.
     pub turn: u32,
-}
-
-/// One block of each block pair under impulses (Eq. 17), and what it answers with.
-pub struct WideBlock<L: Values> {
-    /// P (N·s/m).
-    pub impulse: [L::F; 2],
-    /// Z/M (m/s).
-    pub weighted: [L::F; 2],
-    /// L (N·m·s/m).
-    pub moment: L::F,
-    /// Turn in which it last moved by more than what has settled.
-    moved: L::F,
-    /// (1 + S/M)/M (m/kg).
-    pub common: L::F,
-    /// C.
-    pub spin: L::F,
-    /// 1 for a block that keeps impulses.
-    pub unit: L::F,
 }
 
 impl WidePairs {
@@ -141,12 +124,6 @@ impl WidePairs {
         start..start + self.rows as usize
     }
 
-    /// Whether a contact of two blocks has its second point first.
-    #[inline(always)]
-    pub fn is_turned(&self, lane: usize, blocks: [BlockId; 2]) -> bool {
-        blocks[0] != self.first_block[lane]
-    }
-
     /// Whether a block has moved since the block pairs were solved.
     #[inline(always)]
     pub fn is_due<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> bool {
@@ -169,7 +146,7 @@ impl WidePairs {
             (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane].number() - accumulators.first_block.number())));
         }
         for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
-            row.load(lanes, [ends[0], ends[1]], self, from, accumulators.first_cover);
+            row.load(lanes, [ends[0], ends[1]], &self.first_block, from, accumulators.first_cover);
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
         let mut all = self.begin(lanes, accumulators);
@@ -305,35 +282,4 @@ impl<L: Values> PairsInProgress<L> {
         put_first(lanes, &mut self.largest, first.largest);
         put_first(lanes, &mut self.change, first.change);
     }
-}
-
-impl<L: Values> WideBlock<L> {
-    /// The first lane.
-    #[inline(always)]
-    fn first(&self, lanes: L) -> WideBlock<First> {
-        WideBlock {
-            impulse: [first(lanes, self.impulse[0]), first(lanes, self.impulse[1])],
-            weighted: [first(lanes, self.weighted[0]), first(lanes, self.weighted[1])],
-            moment: first(lanes, self.moment),
-            moved: first(lanes, self.moved),
-            common: first(lanes, self.common),
-            spin: first(lanes, self.spin),
-            unit: first(lanes, self.unit),
-        }
-    }
-}
-
-#[inline(always)]
-fn first<L: Values>(lanes: L, numbers: L::F) -> <First as Values>::F {
-    let mut values = [0.0; LANES];
-    lanes.store(numbers, &mut values);
-    First.load(&values)
-}
-
-#[inline(always)]
-fn put_first<L: Values>(lanes: L, numbers: &mut L::F, first: <First as Values>::F) {
-    let mut values = [0.0; LANES];
-    lanes.store(*numbers, &mut values);
-    First.store(first, &mut values);
-    *numbers = lanes.load(&values);
 }

@@ -8,7 +8,7 @@ use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::memory::Demand;
-use super::{BuildStage, law_of};
+use super::{BuildStage, law_of, points};
 
 /// The arranged plane of a case.
 pub(super) struct Plane {
@@ -23,11 +23,6 @@ pub(super) struct Joints {
     /// stays apart.
     pub traces: Vec<(Vec<Point>, LawId)>,
     pub default_law: LawId,
-}
-
-/// Points of a list of pairs.
-pub(super) fn points(list: &[[f64; 2]]) -> Vec<Point> {
-    list.iter().map(|p| Point::from(*p)).collect()
 }
 
 fn invalid(key: &str) -> impl FnOnce(GeometryError) -> Invalid + '_ {

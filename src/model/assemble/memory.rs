@@ -11,7 +11,7 @@ use crate::geometry::{VertexId, grid::CellGrid};
 use crate::model::case::{Case, Invalid, JointSet};
 use crate::step::CUTOFF;
 
-use super::geometry::points;
+use super::points;
 
 /// Bytes that one lattice cell with its share of elements, covers and contacts needs at the peak of a build.
 const BYTES_PER_CELL: f64 = 4000.0;

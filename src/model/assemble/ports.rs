@@ -122,6 +122,6 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         *wet |= water.joints && faces.boundary.trace[edge].is_some();
     }
     let edges = faces.boundary.edges().filter(|&k| wet[k]).collect();
-    let table = super::geometry::points(water.table.as_deref().unwrap_or_default());
+    let table = super::points(water.table.as_deref().unwrap_or_default());
     Ok(Some(Water { density: water.density, level: water.start_level(), table, edges }))
 }

@@ -6,8 +6,8 @@ use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
 use crate::state::Model;
 
-use super::geometry::points;
 use super::locator::Locator;
+use super::points;
 
 /// Elastic constants of a rock of the case.
 pub(super) fn elasticity(rock: &Rock) -> Elasticity {

@@ -4,7 +4,7 @@ use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnDrive, Foot};
 
-use super::{DECAY_MAX, Regime, Step, StepTimes, applied};
+use super::{DECAY_MAX, Regime, Step, StepTimes, records};
 
 impl Step<'_> {
     /// Velocities of the free-field columns after a sub-step.
@@ -13,11 +13,11 @@ impl Step<'_> {
         let (model, state) = (self.model, &*self.state);
         let kick = window.to - window.from;
         let host = state.drive.base_acceleration(state.drive.share(self.time));
-        let acceleration = -(host + applied::base_motion(model, self.regime, state, window));
+        let acceleration = -(host + records::base_motion(model, self.regime, state, window));
         for (k, column) in model.columns.iter().enumerate() {
             let wave = match column.foot {
                 Foot::Rigid => Vector::zeros(),
-                Foot::Quiet(quiet) => applied::wave(model, self.regime, state, window, quiet),
+                Foot::Quiet(quiet) => records::wave(model, self.regime, state, window, quiet),
             };
             let drive = ColumnDrive { acceleration, wave, kick };
             let decay = |block: BlockId| (-(damping * dt * model.block_frequency[block]).min(DECAY_MAX)).exp();

@@ -15,7 +15,7 @@ use crate::state::Model;
 
 use super::contacts::REACH;
 use super::integrator::Integrator;
-use super::{Regime, Step, StepReport, StepTimes, Window, applied, guard, ramp, report};
+use super::{Regime, Step, StepReport, StepTimes, Window, applied, guard, ramp, records, report};
 
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
 const UNSETTLED: f64 = 0.1;

@@ -7,7 +7,7 @@ use crate::mechanics::Damping;
 use crate::state::Workspace;
 
 use super::blocks::KickOut;
-use super::{DECAY_MAX, Regime, Step, StepTimes, Window, applied, blocks, ramp, yielding};
+use super::{DECAY_MAX, Regime, Step, StepTimes, Window, applied, blocks, ramp, records, yielding};
 
 impl Step<'_> {
     /// Plastic strain at the current displacements.
@@ -75,7 +75,7 @@ impl Step<'_> {
 
     /// Acceleration of all rock (m/s²) while forces act.
     pub(super) fn acceleration(&self, window: Window) -> Vector {
-        let base = applied::base_motion(self.model, self.regime, self.state, window);
+        let base = records::base_motion(self.model, self.regime, self.state, window);
         applied::acceleration(self.model, self.state, self.time) * self.ramp() - base
     }
 

@@ -17,7 +17,7 @@ use crate::state::{Implicit, Model, Rule, State, Workspace};
 use self::motion::kinetic_energy;
 use super::contacts::{CUTOFF, REACH};
 use super::integrator::Integrator;
-use super::{Regime, Step, StepReport, Window, applied, ramp};
+use super::{Regime, Step, StepReport, Window, applied, ramp, records};
 
 /// Factor on a sub-step that has not settled.
 const CUT: f64 = 0.3;
@@ -205,7 +205,7 @@ impl Step<'_> {
             }
             let share = ramp(self.regime, time - self.state.stage_start);
             let whole = Window { from: self.time, to: self.time + dt };
-            let base = applied::base_motion(self.model, self.regime, self.state, whole);
+            let base = records::base_motion(self.model, self.regime, self.state, whole);
             let acceleration = applied::acceleration(self.model, self.state, time) * share - base;
             for (force, mass) in force.iter_mut().zip(&self.model.mass_matrix.row_sum) {
                 *force = acceleration * *mass;

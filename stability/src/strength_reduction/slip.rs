@@ -1,9 +1,14 @@
 //! How far joints have slipped, and how far elasticity lets them.
 
-use super::trial::{ELASTIC, height_and_gravity};
 use enmm::contact::ContactHistory;
 use enmm::cover::BlockId;
+use enmm::geometry::polygon;
 use enmm::model::Simulation;
+
+/// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
+pub const ELASTIC: f64 = 1e-3;
+/// Acceleration of gravity (m/s²) for the scales of models that have none.
+const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Largest slip (m) of a contact since it had one of the histories `before`, which are in the order of nodes. Contacts
 /// of two blocks that a bolt ties are left out: a bolt carries force only after they have moved.
@@ -34,4 +39,11 @@ pub fn settling_slip(simulation: &Simulation) -> f64 {
     let settlement = |density: f64, modulus: f64| density * gravity * height * height / modulus;
     let softest = simulation.model().rocks.iter().map(|rock| settlement(rock.density, rock.lambda + 2.0 * rock.mu));
     softest.fold(ELASTIC * height, f64::max)
+}
+
+/// Height of a model (m) and the gravity by which its motion is measured (m/s²), that of the earth where none acts.
+pub fn height_and_gravity(simulation: &Simulation) -> (f64, f64) {
+    let (low, high) = polygon::bounds(&simulation.model().covers.star_position);
+    let gravity = simulation.state().drive.gravity(1.0).norm();
+    ((high - low).y, if gravity > 0.0 { gravity } else { STANDARD_GRAVITY })
 }

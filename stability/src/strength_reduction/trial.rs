@@ -6,10 +6,10 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
-use super::slip::largest_slip;
+use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
 use enmm::cover::BlockId;
-use enmm::geometry::{Vector, polygon};
+use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::Ledger;
 use enmm::step::{StepError, StepReport, block_motion};
@@ -22,12 +22,8 @@ const WAVES: [f64; 2] = [2.0, 8.0];
 const FALLS_MAX: f64 = 12.0;
 /// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
 const STILL: f64 = 0.01;
-/// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
-pub const ELASTIC: f64 = 1e-3;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
-/// Acceleration of gravity (m/s²) for the scales of models that have none.
-const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Why a trial gave no verdict.
 pub enum Stop {
@@ -221,13 +217,6 @@ fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reas
     let [.., before, last] = samples else { return None };
     let running = last.displacement > scales.elastic && last.kinetic > before.kinetic;
     running.then_some((Verdict::Unstable, judge::Reason::Runaway))
-}
-
-/// Height of a model (m) and the gravity by which its motion is measured (m/s²), that of the earth where none acts.
-pub fn height_and_gravity(simulation: &Simulation) -> (f64, f64) {
-    let (low, high) = polygon::bounds(&simulation.model().covers.star_position);
-    let gravity = simulation.state().drive.gravity(1.0).norm();
-    ((high - low).y, if gravity > 0.0 { gravity } else { STANDARD_GRAVITY })
 }
 
 /// Times, speeds and lengths of a model's motion (Eqs. 61, 63).

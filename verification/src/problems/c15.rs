@@ -1,7 +1,7 @@
 //! C15: a jointed slope whose joints dilate by their friction angle moves below the limit and rests above it.
 
 use super::limit::bound_of;
-use crate::comparison::{block_displacements, slope_text};
+use crate::slope::{block_displacements, slope_text};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {

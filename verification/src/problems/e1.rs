@@ -4,7 +4,7 @@ use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::step::StepReport;
 
-use crate::comparison::{Totals, block_displacements, difference, fail, slope_text};
+use crate::slope::{Totals, block_displacements, difference, fail, slope_text};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {

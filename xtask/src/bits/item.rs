@@ -6,8 +6,8 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 
 use super::{Results, read};
-use crate::python;
 use crate::repository::{self, Repository};
+use crate::venv;
 
 /// Something that is run.
 pub struct Item {
@@ -163,7 +163,7 @@ impl Maker<'_> {
     fn fmu(&self, name: &str, version: &str, place: &Path) -> Result<Results, String> {
         let packed = place.join(format!("{name}.fmu"));
         repository::capture(self.command(&["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed))?;
-        let mut steps = python::command(self.repository)?;
+        let mut steps = venv::command(self.repository)?;
         let run = place.join("run");
         repository::run(steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run))?;
         repository::files_of(&run)

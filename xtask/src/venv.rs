@@ -1,0 +1,72 @@
+//! A virtual environment with what `python_tests` needs.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::repository::{self, Repository};
+
+const REQUIREMENTS: &str = "python_tests/requirements.txt";
+/// Folder of the package `enmm`.
+const PACKAGES: &str = "ffi/python";
+const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
+
+/// The C library as `cargo build --release` leaves it.
+fn library(repository: &Repository) -> PathBuf {
+    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    repository.target.join("release").join(name)
+}
+
+/// Python of the environment, which finds the package `enmm` and its library.
+///
+/// # Errors
+/// When the environment cannot be made.
+pub fn command(repository: &Repository) -> Result<Command, String> {
+    let mut python = repository.command(environment(repository)?);
+    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(repository));
+    python.env("ENMM_PROGRAM", repository.enmm());
+    // Cargo names folders with our library here, which would hide that a search does not find it.
+    python.env("PYTHONPATH", repository.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
+    Ok(python)
+}
+
+/// Makes the environment where it is missing or was made for other requirements; returns its Python.
+fn environment(repository: &Repository) -> Result<PathBuf, String> {
+    let (system, version) = system_python()?;
+    let wanted = std::fs::read_to_string(repository.root.join(REQUIREMENTS));
+    let wanted = format!("{version}\n{}", wanted.map_err(|error| format!("{REQUIREMENTS}: {error}"))?);
+    let place = repository.target.join("venv");
+    let python = place.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let stamp = place.join("enmm-requirements");
+    if python.exists() && std::fs::read_to_string(&stamp).is_ok_and(|found| found == wanted) {
+        return Ok(python);
+    }
+    make_environment(system, &place)?;
+    let mut pip = repository.command(&python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]);
+    repository::run(&mut pip)?;
+    std::fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))?;
+    Ok(python)
+}
+
+fn make_environment(system: &str, place: &Path) -> Result<(), String> {
+    let mut make = Command::new(system);
+    make.args(["-m", "venv", "--clear"]).arg(place);
+    let problem = || format!("{system} -m venv {} failed: install Python's venv module {REMEDY}", place.display());
+    if succeeds(&mut make) { Ok(()) } else { Err(problem()) }
+}
+
+/// The first Python 3 on the path, with its version.
+fn system_python() -> Result<(&'static str, String), String> {
+    let version = |name: &str| {
+        let output = Command::new(name).arg("--version").output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+        text.starts_with("Python 3.").then_some(text)
+    };
+    let found = ["python3", "python"].into_iter().find_map(|name| version(name).map(|text| (name, text)));
+    found.ok_or_else(|| format!("python3 was not found: install Python 3.11 or newer {REMEDY}"))
+}
+
+/// Whether a command ends well; its output is left out.
+pub fn succeeds(command: &mut Command) -> bool {
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
