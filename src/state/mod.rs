@@ -21,7 +21,7 @@ pub use model::{
     BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
 };
 pub use quantity::Quantity;
-pub use workspace::{ContactOutcome, PatchSums, Seconds, Workspace};
+pub use workspace::{ChunkSums, ContactOutcome, Seconds, Workspace};
 
 use serde::{Deserialize, Serialize};
 

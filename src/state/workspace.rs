@@ -37,7 +37,7 @@ pub struct Workspace {
     /// Whether contacts, supports or bolts may ask for the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
     /// Sums over chunks.
-    pub sums: Vec<PatchSums>,
+    pub sums: Vec<ChunkSums>,
     /// Current positions of boundary points (m).
     pub position: Vec<Point>,
     /// Boundary edges and nodes at those positions.
@@ -101,7 +101,7 @@ pub struct ContactOutcome {
 
 /// Sums over the covers of a chunk.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PatchSums {
+pub struct ChunkSums {
     /// Part of a block: at the start of the step.
     pub block: BlockSums,
     /// Part of a block: what the whole block has in common.

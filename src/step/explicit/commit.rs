@@ -7,8 +7,8 @@ use crate::geometry::Vector;
 use crate::mechanics;
 use crate::state::{Ledger, Workspace};
 
-use super::blocks::{self, Finish, Finished, Totals};
-use super::{Regime, Step, StepReport, StepTimes, guard, report};
+use super::finish::{Finish, Finished, Totals};
+use super::{Regime, Step, StepReport, StepTimes, blocks, chunk_runs, guard, report};
 
 impl Step<'_> {
     /// Ends a sub-step; returns the report of its start when one is wanted.
@@ -71,7 +71,7 @@ impl Step<'_> {
             exposed,
             moves_for: if self.report { 0.0 } else { dt },
             is_loaded,
-            grain: blocks::grain(*serial),
+            grain: chunk_runs::grain(*serial),
         };
         let displacement = &mut state.displacement;
         let totals = finish.run(Finished { velocity: predicted, displacement, sums });

@@ -1,8 +1,11 @@
 //! One step of the explicit integrator: [`Step::interval`] is the table of contents.
 
 mod blocks;
+mod chunk_runs;
 mod columns;
 mod commit;
+mod finish;
+mod kick;
 mod predict;
 mod touch;
 mod works;

@@ -6,8 +6,8 @@ use crate::geometry::Vector;
 use crate::mechanics::Damping;
 use crate::state::Workspace;
 
-use super::blocks::KickOut;
-use super::{DECAY_MAX, Regime, Step, StepTimes, Window, applied, blocks, ramp, records, yielding};
+use super::kick::{Kick, KickOut};
+use super::{DECAY_MAX, Regime, Step, StepTimes, Window, applied, blocks, chunk_runs, ramp, records, yielding};
 
 impl Step<'_> {
     /// Plastic strain at the current displacements.
@@ -23,11 +23,11 @@ impl Step<'_> {
         self.load();
         self.damping = self.damping_of(times.dt);
         let (acceleration, grain, is_loaded) =
-            (self.acceleration(times.window), blocks::grain(self.workspace.serial), self.workspace.is_loaded);
+            (self.acceleration(times.window), chunk_runs::grain(self.workspace.serial), self.workspace.is_loaded);
         self.damp_blocks();
         let Workspace { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
             &mut *self.workspace;
-        let pass = blocks::Pass {
+        let kick = Kick {
             model: self.model,
             state: &*self.state,
             mass_matrix,
@@ -39,7 +39,7 @@ impl Step<'_> {
             grain,
             load_force: if is_loaded { load_force } else { &[] },
         };
-        pass.kick(&mut KickOut { predicted, motion, start, sums });
+        kick.run(&mut KickOut { predicted, motion, start, sums });
         self.workspace.speed_max = self.workspace.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
         self.kick_columns(times);
         for (spin, motion) in self.workspace.mass_matrix.spin.iter_mut().zip(&self.workspace.motion) {

@@ -3,7 +3,7 @@
 use crate::geometry::Vector;
 use crate::state::Ledger;
 
-use super::blocks::Totals;
+use super::finish::Totals;
 use super::{Step, StepTimes, Window};
 
 impl Step<'_> {

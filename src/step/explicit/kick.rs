@@ -1,0 +1,337 @@
+//! The kick: forces and predicted velocities of every block while its chunk is in the cache. Sums over the parts of one
+//! block are joined in their order.
+
+use std::ops::Range;
+
+use enmm_lanes::{LANES, Lanes, Table, prefetch};
+
+use crate::cover::BlockId;
+use crate::geometry::Vector;
+use crate::mechanics::block_lanes::{Common, Own, Reference, Span};
+use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, KickStep, MassMatrix, element_lanes};
+use crate::state::{ChunkSums, Model, State};
+
+use super::blocks::{inertial, inverse, spread};
+use super::chunk_runs::{Cut, Run, Work};
+
+/// Covers from which on a step does not find them in the caches, and the next chunk is asked for in advance.
+const ASKED: usize = 1 << 17;
+
+/// What every block of a step shares.
+pub(super) struct Kick<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub mass_matrix: &'a MassMatrix,
+    pub acceleration: Vector,
+    /// Covers below which a run of chunks is not split between threads.
+    pub grain: usize,
+    /// Damping of each block.
+    pub damping: &'a [Damping],
+    /// Whether all covers of each chunk can move along both axes.
+    pub movable: &'a [bool],
+    /// Whether contacts, supports or bolts may ask for each cover.
+    pub exposed: &'a [bool],
+    /// Time (s) for which forces act.
+    pub kick: f64,
+    /// Forces of loads on covers (N/m); empty when nothing pushes.
+    pub load_force: &'a [Vector],
+}
+
+impl Kick<'_> {
+    fn step(&self, block: BlockId) -> KickStep {
+        KickStep { acceleration: self.acceleration, damping: self.damping[block], kick: self.kick }
+    }
+
+    fn span(&self, block: BlockId, covers: Range<usize>) -> Span<'_> {
+        Span {
+            star: &self.model.covers.star_position[covers.clone()],
+            displacement: &self.state.displacement[covers.clone()],
+            velocity: &self.state.velocity[covers.clone()],
+            mass: &self.mass_matrix.mass[covers.clone()],
+            inertial: &inertial(self.mass_matrix, block)[covers],
+        }
+    }
+
+    fn reference(&self, block: BlockId) -> Reference {
+        self.span(block, self.model.covers.covers_of(block)).reference()
+    }
+
+    /// How the covers of a block in a chunk are written.
+    fn own(&self, chunk: usize, block: BlockId, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+        let held = !self.mass_matrix.is_free(block);
+        let (factor, masked) = match step.damping {
+            Damping::Deformation(factor) => (factor, factor < 1.0),
+            Damping::Mass(factor) => (factor, false),
+        };
+        Own {
+            factor,
+            kick: self.kick,
+            acceleration: self.acceleration,
+            held: held.then(|| {
+                (&self.mass_matrix.row_sum[covers.clone()], inverse(self.mass_matrix, self.movable[chunk], covers))
+            }),
+            masked,
+        }
+    }
+
+    /// What the chunk after this one will read.
+    fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
+        let (start, count) = (chunk.covers.end, self.state.displacement.len());
+        let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
+        let times = self.model.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
+        Ahead { kick: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
+    }
+
+    /// Adds the element forces of a chunk to the table of its covers (Eq. 7).
+    #[inline(always)]
+    fn push_elements<L: Lanes>(&self, lanes: L, chunk: &Chunk, next: &[Vector], tables: &mut [Table; 2]) {
+        let (model, u) = (self.model, &self.state.displacement);
+        let chunks = &model.chunks;
+        let [displacement, force] = &mut *tables;
+        let (own, halo) = (chunk.covers.len(), chunks.halo(chunk));
+        let local = displacement.first_mut(own + halo.len() + LANES);
+        let (local, behind) = local.split_at_mut(own + halo.len());
+        local[..own].copy_from_slice(&u[chunk.covers.clone()]);
+        for (pair, &cover) in local[own..].iter_mut().zip(halo) {
+            *pair = u[cover];
+        }
+        // Missing elements of a row may reach beyond the last slot.
+        behind.fill(Vector::zeros());
+        lanes.clear(force, own + halo.len() + LANES);
+        if let Some(load) = self.load_force.get(chunk.covers.clone()) {
+            force.first_mut(own).copy_from_slice(load);
+        }
+        let mut ahead = self.ahead(chunk, next);
+        for batch in chunks.batches(chunk) {
+            let rock = &model.rocks[batch.rock as usize];
+            let [in_row, in_group] = chunks.gradients(batch, &model.covers.gradients[batch.set as usize]);
+            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, || ahead.ask());
+            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, || ahead.ask());
+        }
+        if !self.state.plastic.is_empty() {
+            self.relieve(chunk, &mut tables[1]);
+        }
+    }
+
+    /// Adds what plastic strain takes from the forces of the elements of a chunk.
+    #[inline(never)]
+    fn relieve(&self, chunk: &Chunk, force: &mut Table) {
+        let (model, chunks) = (self.model, &self.model.chunks);
+        for batch in chunks.batches(chunk) {
+            let Some(strength) = &model.strengths[batch.rock as usize] else { continue };
+            let g = &model.covers.gradients[batch.set as usize];
+            for (e, slots) in chunks.elements(batch) {
+                let plastic = &self.state.plastic[e];
+                if *plastic == [0.0; 4] {
+                    continue;
+                }
+                let deformation = model.deformation(e, &self.state.displacement);
+                let relief = strength.forces(&deformation, g, model.covers.element_area[e], plastic);
+                slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
+            }
+        }
+    }
+}
+
+/// Covers whose values will be read soon, and are asked for piece by piece: memory is slow to come, and idle while a
+/// chunk is in hand.
+struct Ahead<'a> {
+    kick: &'a Kick<'a>,
+    covers: Range<usize>,
+    /// Predicted velocities from there on.
+    next: &'a [Vector],
+    piece: usize,
+}
+
+impl Ahead<'_> {
+    #[inline(always)]
+    fn ask(&mut self) {
+        if self.covers.is_empty() {
+            return;
+        }
+        let end = (self.covers.start + self.piece).min(self.covers.end);
+        let covers = self.covers.start..end;
+        self.covers.start = end;
+        let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
+        self.next = later;
+        prefetch(now);
+        let Kick { model, state, mass_matrix, .. } = self.kick;
+        prefetch(&state.displacement[covers.clone()]);
+        prefetch(&state.velocity[covers.clone()]);
+        prefetch(&model.covers.star_position[covers.clone()]);
+        prefetch(&mass_matrix.mass[covers.clone()]);
+        prefetch(&mass_matrix.row_sum[covers]);
+    }
+}
+
+/// Output slices of a kick.
+pub(super) struct Kicked<'o> {
+    predicted: &'o mut [Vector],
+    motion: &'o mut [BlockMotion],
+    start: &'o mut [BlockStart],
+    sums: &'o mut [ChunkSums],
+}
+
+impl Cut for Kicked<'_> {
+    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self) {
+        let (predicted, predicted_rest) = self.predicted.split_at_mut(covers);
+        let (motion, motion_rest) = self.motion.split_at_mut(blocks);
+        let (start, start_rest) = self.start.split_at_mut(blocks);
+        let (sums, sums_rest) = self.sums.split_at_mut(chunks);
+        let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
+        (Kicked { predicted, motion, start, sums }, rest)
+    }
+
+    fn asked(&self) -> &[Vector] {
+        self.predicted
+    }
+}
+
+impl Work for Kick<'_> {
+    type Out<'o> = Kicked<'o>;
+
+    /// Forces and kick of the blocks of a chunk; of a part of a block all but what is common to the block.
+    #[inline(always)]
+    fn chunk<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
+        let chunk = self.model.chunks.get(number);
+        let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
+        sums.fastest = 0.0;
+        let fixed = match chunk.part_of {
+            Some(block) => self.mass_matrix.fixed[block],
+            None => chunk.blocks.clone().all(|b| self.mass_matrix.fixed[b]),
+        };
+        if fixed {
+            let squares = self.state.velocity[chunk.covers.clone()].iter().map(|v| v.norm_squared());
+            sums.fastest = squares.fold(0.0, f64::max);
+            predicted.fill(Vector::zeros());
+            motion.fill(BlockMotion::default());
+            return;
+        }
+        self.push_elements(lanes, chunk, next, tables);
+        let force = tables[1].first(chunk.covers.len());
+        if let Some(block) = chunk.part_of {
+            self.kick_part(lanes, (number, block), force, predicted, sums);
+            return;
+        }
+        for (k, block) in BlockId::range(chunk.blocks.clone()).enumerate() {
+            let covers = self.model.covers.covers_of(block);
+            let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
+            let (force, predicted) = (&force[local.clone()], &mut predicted[local]);
+            (motion[k], start[k]) = self.kick_block(lanes, (number, block), force, predicted, &mut sums.fastest);
+        }
+    }
+}
+
+impl Kick<'_> {
+    #[inline(always)]
+    fn kick_block<L: Lanes>(
+        &self,
+        lanes: L,
+        (chunk, block): (usize, BlockId),
+        force: &[Vector],
+        predicted: &mut [Vector],
+        fastest: &mut f64,
+    ) -> (BlockMotion, BlockStart) {
+        let covers = self.model.covers.covers_of(block);
+        if self.mass_matrix.fixed[block] {
+            let squares = self.state.velocity[covers].iter().map(|v| v.norm_squared());
+            *fastest = squares.fold(*fastest, f64::max);
+            predicted.fill(Vector::zeros());
+            return Default::default();
+        }
+        let (span, step) = (self.span(block, covers.clone()), self.step(block));
+        let from = span.reference();
+        let sums = span.sums(lanes, &from, self.mass_matrix.is_free(block).then_some(force));
+        let start = BlockStart::new(self.mass_matrix, block, from, &sums);
+        let common = start.common(self.mass_matrix, block, &sums, &step);
+        let own = self.own(chunk, block, covers, &step);
+        *fastest = fastest.max(span.kick(lanes, &from, &own, &common, (force, predicted)));
+        (start.motion(self.mass_matrix, block), start)
+    }
+
+    #[inline(always)]
+    fn kick_part<L: Lanes>(
+        &self,
+        lanes: L,
+        (chunk, block): (usize, BlockId),
+        force: &[Vector],
+        predicted: &mut [Vector],
+        sums: &mut ChunkSums,
+    ) {
+        let covers = self.model.chunks.get(chunk).covers.clone();
+        let (span, step, from) = (self.span(block, covers.clone()), self.step(block), self.reference(block));
+        let own = self.own(chunk, block, covers, &step);
+        (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
+    }
+
+    /// Fills predicted velocities and block motions of the workspace, and the largest speed before.
+    pub fn run(&self, out: &mut KickOut) {
+        let chunks = &self.model.chunks;
+        let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };
+        Run { work: self, chunks, range: 0..chunks.len(), out: kicked }.share(self.grain);
+        let mut is_cut = false;
+        for first in chunks.cut_blocks() {
+            is_cut |= self.join_parts(first, out);
+        }
+        if is_cut {
+            let exposed = Exposed { kick: self, sums: out.sums, start: out.start };
+            Run { work: &exposed, chunks, range: 0..chunks.len(), out: Predicted(out.predicted) }.share(self.grain);
+        }
+    }
+
+    /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
+    fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
+        let chunks = &self.model.chunks;
+        let block = BlockId::new(chunks.get(first).blocks.start);
+        if self.mass_matrix.fixed[block] {
+            return false;
+        }
+        let mut sums = out.sums[first].block;
+        let parts = chunks.parts(first);
+        parts.clone().skip(1).for_each(|part| sums += out.sums[part].block);
+        let start = BlockStart::new(self.mass_matrix, block, self.reference(block), &sums);
+        let common = start.common(self.mass_matrix, block, &sums, &self.step(block));
+        parts.for_each(|part| out.sums[part].common = common);
+        (out.motion[block], out.start[block]) = (start.motion(self.mass_matrix, block), start);
+        common != Common::default()
+    }
+}
+
+/// What a kick fills.
+pub(super) struct KickOut<'a> {
+    pub predicted: &'a mut [Vector],
+    pub motion: &'a mut [BlockMotion],
+    pub start: &'a mut [BlockStart],
+    pub sums: &'a mut [ChunkSums],
+}
+
+/// Adds what is common to a block to covers of its parts that contacts, supports or bolts may ask for.
+struct Exposed<'a> {
+    kick: &'a Kick<'a>,
+    sums: &'a [ChunkSums],
+    start: &'a [BlockStart],
+}
+
+struct Predicted<'o>(&'o mut [Vector]);
+
+impl Cut for Predicted<'_> {
+    fn cut(self, covers: usize, _: usize, _: usize) -> (Self, Self) {
+        let (left, right) = self.0.split_at_mut(covers);
+        (Self(left), Self(right))
+    }
+}
+
+impl Work for Exposed<'_> {
+    type Out<'o> = Predicted<'o>;
+
+    #[inline(always)]
+    fn chunk<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
+        let Kick { model, mass_matrix, movable, exposed, .. } = *self.kick;
+        let chunk = model.chunks.get(k);
+        let Some(block) = chunk.part_of.filter(|&b| !mass_matrix.fixed[b]) else { return };
+        if let Some(spread) = spread(mass_matrix, (chunk, block), movable[k], exposed, &self.sums[k].common) {
+            let from = &self.start[block].from;
+            self.kick.span(block, chunk.covers.clone()).spread(lanes, from, &spread, predicted);
+        }
+    }
+}
