@@ -19,7 +19,7 @@ const WINDOW_UPDATES: u64 = 1_000_000;
 /// Fewest and most steps of a window.
 const WINDOW_STEPS: [u64; 2] = [20, 200];
 /// Parts of state and buffers that grow with contacts.
-const OF_CONTACTS: [&str; 4] = ["near pairs", "search", "judged pairs", "contacts"];
+const OF_CONTACTS: [&str; 4] = ["near pairs", "search", "accepted pairs", "contacts"];
 /// Fewest windows.
 const WINDOWS_MIN: usize = 2;
 /// What the processor's clock may be late by (s).
@@ -264,7 +264,7 @@ impl Measured {
         self.stages = StageMilliseconds { search, elements, entrance, sweep, commit, rest };
         let after = simulation.state().counters;
         let per_second = |count: f64, ms: f64| count / (1e-3 * ms);
-        let judged = (after.judged - before.judged) as f64 / steps;
+        let judged = (after.contacts_solved - before.contacts_solved) as f64 / steps;
         self.sweeps_mean = (after.sweeps - before.sweeps) as f64 / (after.substeps - before.substeps) as f64;
         self.contact_sweeps_per_second = (judged > 0.0).then(|| per_second(judged, sweep));
         self.elements_per_second = per_second(self.elements as f64, elements);

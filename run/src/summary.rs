@@ -344,7 +344,7 @@ impl Summary {
                 halved: counters.halved,
                 deep_contacts: counters.deep_contacts,
                 deepest_contact: counters.deepest_contact,
-                judged: counters.judged,
+                judged: counters.contacts_solved,
                 searches: counters.searches,
             },
             energy: *record.ledger,

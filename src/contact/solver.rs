@@ -54,7 +54,7 @@ pub struct SolverReport {
     /// Sweeps done, those over what still moved included.
     pub sweeps: u32,
     /// Contacts solved, summed over the sweeps.
-    pub judged: u64,
+    pub contacts_solved: u64,
     /// Largest change of a force in the last sweep, which is one over all contacts, over the largest force.
     pub unsettled: f64,
 }
@@ -230,7 +230,7 @@ impl OpenClose {
             let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
             let change = outcome.change.max(support_change).max(bolt_change);
             report.sweeps += 1;
-            report.judged += outcome.judged;
+            report.contacts_solved += outcome.contacts_solved;
             if all {
                 report.unsettled = change;
             }

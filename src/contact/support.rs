@@ -20,7 +20,7 @@ pub enum Resistance {
 #[doc(alias = "Lysmer-Kuhlemeyer")]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
-    /// Fixity of the case that it belongs to.
+    /// Fixity that it belongs to: those of the case, then those of quiet boundaries.
     pub fix: u32,
     /// Block.
     pub block: BlockId,
@@ -60,7 +60,10 @@ pub struct SupportRow {
 impl Support {
     /// Whether it is a dashpot.
     pub fn is_dashpot(&self) -> bool {
-        self.resistance != Resistance::Spring
+        match self.resistance {
+            Resistance::Spring => false,
+            Resistance::Dashpot(_) => true,
+        }
     }
 
     /// Sum of a cover field at the point, along the direction.

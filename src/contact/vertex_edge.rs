@@ -111,7 +111,7 @@ impl VertexEdge {
     /// Whether spring or strength follow a curve.
     #[inline(always)]
     pub fn is_curved(&self) -> bool {
-        self.closes_on_a_curve() || matches!(self.limits, Limits::BartonBandis { .. })
+        self.closes_on_a_curve() || self.limits.is_curved()
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).

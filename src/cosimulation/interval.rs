@@ -12,7 +12,7 @@ use super::{Cosimulation, CosimulationError, Interpolation};
 const SAME_TIME: f64 = 1e-6;
 /// Relative difference of times that hosts sum up.
 const SUM_ERROR: f64 = 1e-9;
-/// Internal steps before which energies cannot be judged: a step from rest does half of its work.
+/// Internal steps before which energies say nothing: a step from rest does half of its work.
 const JUDGED_FROM: u64 = 4;
 /// Most internal steps of one communication step.
 const STEPS_MAX: f64 = 1e12;
@@ -146,7 +146,7 @@ impl Cosimulation {
         if self.simulation.stage_is_over(None) {
             self.next_stage()?;
         }
-        let rest = self.internal_step() - self.simulation.state().part;
+        let rest = self.simulation.state().rest_of_step(self.simulation.model());
         if left >= rest - same {
             self.step(None, false)?;
             self.grid = None;

@@ -2,7 +2,7 @@
 //!
 //! Strengths are those at time 0: when a stage up to the first dynamic one changes a law, the parameter is that change.
 
-use crate::model::case::{Case, JointLaw, LawChange, Rock, StageKind};
+use crate::model::case::{Case, JointLaw, JointLawKind, LawChange, Rock, StageKind};
 
 use super::{Cosimulation, initial_stages};
 
@@ -102,17 +102,20 @@ fn law_parameters(case: &Case, name: &str, law: &JointLaw) -> Vec<Parameter> {
     let friction = changed(|c| c.friction_deg).unwrap_or(law.friction_deg).to_radians();
     let cohesion = changed(|c| c.cohesion).unwrap_or(law.cohesion);
     let tension = changed(|c| c.tension).unwrap_or(law.tension);
-    let mut list = match (law.jrc, law.jcs) {
-        (Some(jrc), Some(jcs)) => vec![
-            of(LawKey::Friction, "friction", "rad", "Residual friction angle", friction, (0.0, 1.22)),
-            of(LawKey::Jrc, "jrc", "", "Joint roughness coefficient", jrc, (0.0, 30.0)),
-            of(LawKey::Jcs, "jcs", "Pa", "Joint wall compressive strength", jcs, (1e-3, 1e12)),
-        ],
-        _ => vec![
+    let mut list = match law.kind {
+        JointLawKind::MohrCoulomb => vec![
             of(LawKey::Friction, "friction", "rad", "Friction angle", friction, (0.0, 1.57)),
             of(LawKey::Cohesion, "cohesion", "Pa", "Cohesion", cohesion, (0.0, 1e12)),
             of(LawKey::Tension, "tension", "Pa", "Tensile strength", tension, (0.0, 1e12)),
         ],
+        JointLawKind::BartonBandis => {
+            let [jrc, jcs] = [law.jrc, law.jcs].map(Option::unwrap_or_default);
+            vec![
+                of(LawKey::Friction, "friction", "rad", "Residual friction angle", friction, (0.0, 1.22)),
+                of(LawKey::Jrc, "jrc", "", "Joint roughness coefficient", jrc, (0.0, 30.0)),
+                of(LawKey::Jcs, "jcs", "Pa", "Joint wall compressive strength", jcs, (1e-3, 1e12)),
+            ]
+        }
     };
     let stiffness = (1e-3, 1e18);
     if let Some(value) = law.normal_stiffness {

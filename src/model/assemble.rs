@@ -240,11 +240,14 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
         dilation: tangent(law.dilation_deg),
         dilation_slip: law.dilation_slip.unwrap_or(f64::INFINITY),
         closure_max: law.closure_max.unwrap_or(f64::INFINITY),
-        roughness: (law.kind == case::JointLawKind::BartonBandis).then(|| Roughness {
-            angle: law.friction_deg.to_radians(),
-            jrc: law.jrc.unwrap_or_default(),
-            jcs: law.jcs.unwrap_or_default(),
-        }),
+        roughness: match law.kind {
+            case::JointLawKind::MohrCoulomb => None,
+            case::JointLawKind::BartonBandis => Some(Roughness {
+                angle: law.friction_deg.to_radians(),
+                jrc: law.jrc.unwrap_or_default(),
+                jcs: law.jcs.unwrap_or_default(),
+            }),
+        },
     }
 }
 

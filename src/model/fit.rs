@@ -366,7 +366,7 @@ fn check_counters(counters: &Counters) -> Fit {
         dt_min,
         dt_max,
         searches,
-        judged,
+        contacts_solved,
         factorisations,
     } = counters;
     for (field, value) in [
@@ -376,7 +376,7 @@ fn check_counters(counters: &Counters) -> Fit {
         ("unsettled", unsettled),
         ("deep_contacts", deep_contacts),
         ("searches", searches),
-        ("judged", judged),
+        ("contacts_solved", contacts_solved),
         ("factorisations", factorisations),
     ] {
         at_most(format_args!("counters.{field}"), value, COUNT)?;

@@ -12,7 +12,7 @@ pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, build};
 pub use fit::Unfit;
-pub use observe::BlockState;
+pub use observe::{BLOCK_QUANTITIES, BlockState};
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;
 

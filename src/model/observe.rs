@@ -8,7 +8,7 @@ use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
-use crate::state::{Model, State};
+use crate::state::{Model, Quantity, State};
 use crate::step;
 
 use super::Simulation;
@@ -50,6 +50,43 @@ pub struct BlockState {
     /// Largest penetration of its contacts (m).
     pub penetration_max: f64,
 }
+
+/// Numbers of a block as outputs show them, in the order of the columns of `blocks.csv`. The second name is that of an
+/// array of the FMUs, and empty where they have none.
+pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
+    Quantity::new(["centroid_x", "block_x"], "m", "Centroid now, x", |block| block.centroid.x),
+    Quantity::new(["centroid_y", "block_y"], "m", "Centroid now, y up", |block| block.centroid.y),
+    Quantity::new(["displacement_x", "block_displacement_x"], "m", "Displacement, x", |block| block.displacement.x),
+    Quantity::new(["displacement_y", "block_displacement_y"], "m", "Displacement, y up", |block| block.displacement.y),
+    Quantity::new(["rotation", "block_rotation"], "rad", "Rotation, counter-clockwise", |block| block.rotation),
+    Quantity::new(["velocity_x", "block_velocity_x"], "m/s", "Velocity, x", |block| block.velocity.x),
+    Quantity::new(["velocity_y", "block_velocity_y"], "m/s", "Velocity, y up", |block| block.velocity.y),
+    Quantity::new(
+        ["angular_velocity", "block_angular_velocity"],
+        "rad/s",
+        "Angular velocity, counter-clockwise",
+        |block| block.angular_velocity,
+    ),
+    Quantity::new(["mean_stress_xx", "block_stress_xx"], "Pa", "Mean stress xx, tension positive", |block| {
+        block.mean_stress[0]
+    }),
+    Quantity::new(["mean_stress_yy", "block_stress_yy"], "Pa", "Mean stress yy, tension positive", |block| {
+        block.mean_stress[1]
+    }),
+    Quantity::new(["mean_stress_xy", "block_stress_xy"], "Pa", "Mean stress xy", |block| block.mean_stress[2]),
+    Quantity::new(["area", ""], "m2", "Area in the reference configuration", |block| block.area),
+    Quantity::new(["mass", ""], "kg/m", "Mass", |block| block.mass),
+    Quantity::new(["kinetic_energy", ""], "J/m", "Kinetic energy", |block| block.kinetic_energy),
+    Quantity::new(["strain_energy", ""], "J/m", "Strain energy", |block| block.strain_energy),
+    Quantity {
+        is_count: true,
+        ..Quantity::new(["contacts", "block_contact_count"], "", "Contacts that carry force", |block| {
+            f64::from(block.contact_count)
+        })
+    },
+    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| block.penetration_max),
+    Quantity::new(["speed", ""], "m/s", "Speed of the centroid", |block| block.velocity.norm()),
+];
 
 impl Simulation {
     /// The model now, without excavated blocks.

@@ -205,12 +205,12 @@ impl Simulation {
         *self.report.get_or_init(|| report)
     }
 
-    /// The contacts that the next step will judge, with the forces of the last one; nothing advances.
+    /// The contacts that the next step will find, with the forces of the last one; nothing advances.
     pub fn contacts(&self) -> Vec<VertexEdge> {
         self.look_ahead().1.contacts
     }
 
-    /// State and buffers as the next step will have them when it has judged its contacts; nothing advances.
+    /// State and buffers as the next step will have them when it has found its contacts; nothing advances.
     pub fn look_ahead(&self) -> (State, Workspace) {
         self.look_ahead_on(self.workspace.serial)
     }

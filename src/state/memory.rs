@@ -117,7 +117,7 @@ impl Workspace {
             ("masses", mass_matrix(&self.mass_matrix)),
             ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
             ("places", self.position.bytes() + self.frames.bytes()),
-            ("judged pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
+            ("accepted pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
             ("search", self.search.bytes()),
             ("contacts", sum(&[&self.contacts, &self.outcomes])),
             ("open–close iteration", self.open_close.bytes()),

@@ -93,6 +93,11 @@ pub struct State {
 }
 
 impl State {
+    /// What is left (s) of the internal step that the model is in.
+    pub fn rest_of_step(&self, model: &Model) -> f64 {
+        model.dt - self.part
+    }
+
     /// Copies another state of the same model without allocating. Every field is named here, so that none is forgotten.
     pub fn copy_from(&mut self, other: &Self) {
         let Self {
@@ -175,8 +180,8 @@ pub struct Counters {
     pub dt_max: f64,
     /// Searches for near edges.
     pub searches: u64,
-    /// Contacts judged, summed over sub-steps and sweeps.
-    pub judged: u64,
+    /// Contacts solved, summed over sub-steps and sweeps.
+    pub contacts_solved: u64,
     /// Implicit: numeric factorisations.
     pub factorisations: u64,
 }

@@ -21,13 +21,13 @@ pub(super) trait Integrator: Sync {
     /// Advances by `dt` (s), by sub-steps where it must; returns the report of the start when one is wanted.
     fn cover(&self, step: &mut Step, dt: f64) -> StepReport;
 
-    /// Goes as far into a step of `dt` (s) as the report of its start needs; the state is then spoilt.
+    /// Goes as far into a step of `dt` (s) as the report of its start needs; the state is then of no further use.
     fn begin(&self, step: &mut Step, dt: f64) -> StepReport;
 
     /// Goes as far into a step of `dt` (s) as its contacts need.
-    fn judge(&self, step: &mut Step, dt: f64);
+    fn find_contacts(&self, step: &mut Step, dt: f64);
 
-    /// Shows the contacts of a step of `dt` (s); the near pairs are then spoilt.
+    /// Shows the contacts of a step of `dt` (s); the near pairs are then of no further use.
     fn each_contact(&self, step: &mut Step, dt: f64, see: &mut dyn FnMut(&VertexEdge));
 
     /// Kinetic energy (J/m) of all blocks that can move, by its own masses.

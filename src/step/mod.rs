@@ -59,7 +59,7 @@ pub enum Regime {
 /// Advances one internal step; with `report` the energies and the unbalanced ratio at its start are computed as well.
 ///
 /// # Errors
-/// Fails on a non-finite state, a runaway block or a penetration beyond the limit; `state` is then spoilt.
+/// Fails on a non-finite state, a runaway block or a penetration beyond the limit; `state` is then of no further use.
 pub fn advance(
     model: &Model,
     regime: Regime,
@@ -67,7 +67,7 @@ pub fn advance(
     workspace: &mut Workspace,
     report: bool,
 ) -> Result<StepReport, StepError> {
-    let rest = model.dt - state.part;
+    let rest = state.rest_of_step(model);
     let mut step = Step::new(model, regime, state, workspace);
     step.report = report;
     let outcome = step.on_threads(rest);
@@ -103,7 +103,7 @@ pub fn advance_part(
 pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) -> StepReport {
     let mut workspace = Workspace { serial, ..Workspace::default() };
     prepare(model, &state, &mut workspace);
-    let rest = model.dt - state.part;
+    let rest = state.rest_of_step(model);
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
     step.report = true;
     integrator_of(model).begin(&mut step, rest)
@@ -116,20 +116,20 @@ fn beside(model: &Model, state: &State, serial: bool) -> (State, Workspace) {
     (state.clone(), workspace)
 }
 
-/// State and buffers as the next step will have them when it has judged its contacts; nothing advances. With `serial`
+/// State and buffers as the next step will have them when it has found its contacts; nothing advances. With `serial`
 /// it keeps to the calling thread.
 pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) -> (State, Workspace) {
     let (mut state, mut workspace) = beside(model, state, serial);
-    let dt = model.dt - state.part;
+    let dt = state.rest_of_step(model);
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    integrator_of(model).judge(&mut step, dt);
+    integrator_of(model).find_contacts(&mut step, dt);
     (state, workspace)
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
 pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
     let (mut state, mut workspace) = beside(model, state, serial);
-    let dt = model.dt - state.part;
+    let dt = state.rest_of_step(model);
     let mut step = Step::new(model, regime, &mut state, &mut workspace);
     integrator_of(model).each_contact(&mut step, dt, see);
 }

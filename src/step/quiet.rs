@@ -56,10 +56,13 @@ impl Step<'_> {
             row.displacement = support.sample(&state.displacement) - state.support_rest[k];
             row.approach = support.sample(&workspace.predicted);
             row.force = state.support_force[k];
-            let Resistance::Dashpot(quiet) = support.resistance else {
-                row.target = support.preload - support.stiffness * row.displacement;
-                row.viscosity = support.stiffness * model.theta * dt;
-                continue;
+            let quiet = match support.resistance {
+                Resistance::Spring => {
+                    row.target = support.preload - support.stiffness * row.displacement;
+                    row.viscosity = support.stiffness * model.theta * dt;
+                    continue;
+                }
+                Resistance::Dashpot(quiet) => quiet,
             };
             if wave.0 != quiet {
                 wave = (quiet, records::wave(model, regime, state, window, quiet));

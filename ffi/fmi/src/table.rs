@@ -2,8 +2,8 @@
 
 use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
 use enmm::cosimulation::{Parameter, PortKind, TOTALS, parameters};
-use enmm::model::Case;
 use enmm::model::case::Port;
+use enmm::model::{BLOCK_QUANTITIES, Case};
 use enmm::state::ENERGIES;
 use uuid::Uuid;
 
@@ -62,7 +62,7 @@ pub enum Component {
     Xy,
 }
 
-/// Output of a port, and of a block in arrays.
+/// Output of a port; some are outputs of monitors too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// Displacement (m).
@@ -83,12 +83,6 @@ pub enum Motion {
     ShearForce,
     /// Largest slip (m).
     Slip,
-    /// Centroid now (m).
-    Centroid(Axis),
-    /// Largest penetration (m).
-    Penetration,
-    /// Contacts that carry force.
-    ContactCount,
 }
 
 /// An output of the whole model.
@@ -149,8 +143,8 @@ pub enum Quantity {
     Monitor(usize, Motion),
     /// Output of the whole model.
     Total(Total),
-    /// Output of all blocks.
-    Blocks(Motion),
+    /// Output of all blocks: its place in [`BLOCK_QUANTITIES`].
+    Blocks(usize),
 }
 
 impl Quantity {
@@ -261,7 +255,15 @@ impl Table {
         match quantity {
             Quantity::Port(port, motion) => of_motion(motion).map(|motion| Quantity::Port(port, motion)),
             Quantity::Monitor(k, motion) => of_motion(motion).map(|motion| Quantity::Monitor(k, motion)),
-            Quantity::Blocks(motion) => of_motion(motion).map(Quantity::Blocks),
+            Quantity::Blocks(place) => {
+                let rate = match BLOCK_QUANTITIES[place].column {
+                    "block_displacement_x" => "block_velocity_x",
+                    "block_displacement_y" => "block_velocity_y",
+                    "block_rotation" => "block_angular_velocity",
+                    _ => return None,
+                };
+                place_of_block_output(rate).map(Quantity::Blocks)
+            }
             _ => None,
         }
     }
@@ -481,11 +483,12 @@ impl Rows {
 
     fn block_outputs(&mut self) {
         let blocks = self.blocks;
-        for &(motion, word, what, unit) in BLOCK_MOTIONS {
-            let row =
-                self.output(&format!("block_{word}"), &format!("{what}, every block"), unit, Quantity::Blocks(motion));
+        for place in BLOCK_OUTPUTS.into_iter().filter_map(place_of_block_output) {
+            let quantity = &BLOCK_QUANTITIES[place];
+            let what = format!("{}, every block", quantity.text);
+            let row = self.output(quantity.column, &what, quantity.unit, Quantity::Blocks(place));
             row.length = Some(blocks);
-            if motion == Motion::ContactCount {
+            if quantity.is_count {
                 row.kind = Type::Integer;
             }
         }
@@ -519,21 +522,28 @@ const JOINT_MOTIONS: [Row; 3] = [
     (Motion::Slip, "slip", "Largest accumulated slip along the joints", "m"),
 ];
 
-const BLOCK_MOTIONS: &[Row] = &[
-    (Motion::Centroid(Axis::X), "x", "Centroid now, x", "m"),
-    (Motion::Centroid(Axis::Y), "y", "Centroid now, y up", "m"),
-    (Motion::Displacement(Axis::X), "displacement_x", "Displacement, x", "m"),
-    (Motion::Displacement(Axis::Y), "displacement_y", "Displacement, y up", "m"),
-    (Motion::Rotation, "rotation", "Rotation, counter-clockwise", "rad"),
-    (Motion::Velocity(Axis::X), "velocity_x", "Velocity, x", "m/s"),
-    (Motion::Velocity(Axis::Y), "velocity_y", "Velocity, y up", "m/s"),
-    (Motion::AngularVelocity, "angular_velocity", "Angular velocity, counter-clockwise", "rad/s"),
-    (Motion::Stress(Component::Xx), "stress_xx", "Mean stress xx, tension positive", "Pa"),
-    (Motion::Stress(Component::Yy), "stress_yy", "Mean stress yy, tension positive", "Pa"),
-    (Motion::Stress(Component::Xy), "stress_xy", "Mean stress xy", "Pa"),
-    (Motion::Penetration, "penetration", "Largest penetration", "m"),
-    (Motion::ContactCount, "contact_count", "Contacts that carry force", ""),
+/// Outputs of all blocks, by their names in the table of the engine. Their order has always been this one, and value
+/// references follow it.
+const BLOCK_OUTPUTS: [&str; 13] = [
+    "block_x",
+    "block_y",
+    "block_displacement_x",
+    "block_displacement_y",
+    "block_rotation",
+    "block_velocity_x",
+    "block_velocity_y",
+    "block_angular_velocity",
+    "block_stress_xx",
+    "block_stress_yy",
+    "block_stress_xy",
+    "block_penetration",
+    "block_contact_count",
 ];
+
+/// Place of a number of blocks in the table of the engine, by the name of its variable.
+fn place_of_block_output(name: &str) -> Option<usize> {
+    BLOCK_QUANTITIES.iter().position(|quantity| quantity.column == name)
+}
 
 /// Outputs of a port of a kind.
 fn port_motions(kind: PortKind) -> &'static [Row] {
@@ -608,6 +618,13 @@ fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_output_of_blocks_is_in_the_table_of_the_engine() {
+        assert!(BLOCK_OUTPUTS.into_iter().all(|name| place_of_block_output(name).is_some()));
+        let named = BLOCK_QUANTITIES.iter().filter(|quantity| !quantity.column.is_empty()).count();
+        assert_eq!(named, BLOCK_OUTPUTS.len());
+    }
 
     #[test]
     fn every_first_output_is_in_a_table() {

@@ -88,6 +88,15 @@ impl Limits {
         }
     }
 
+    /// Whether the greatest shear force is no straight line over the normal force, so that sweeps ask for it anew.
+    #[inline(always)]
+    pub fn is_curved(&self) -> bool {
+        match self {
+            Self::MohrCoulomb { .. } => false,
+            Self::BartonBandis { .. } => true,
+        }
+    }
+
     /// Greatest tensile force (N/m).
     #[inline(always)]
     pub fn tension(&self) -> f64 {

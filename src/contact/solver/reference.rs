@@ -86,7 +86,7 @@ pub fn solve<'a>(
             *change = solve_contact(contact, &mut impulses, options.kick);
         }
         report.sweeps += 1;
-        report.judged += contacts.len() as u64;
+        report.contacts_solved += contacts.len() as u64;
         report.unsettled = unsettled(contacts, &changes);
         if report.unsettled <= options.tolerance {
             break;

@@ -38,12 +38,12 @@ pub struct SweepOutcome {
     /// Largest change of a force over its size.
     pub change: f64,
     /// Contacts solved.
-    pub judged: u64,
+    pub contacts_solved: u64,
 }
 
 impl SweepOutcome {
     fn and(self, other: Self) -> Self {
-        Self { change: self.change.max(other.change), judged: self.judged + other.judged }
+        Self { change: self.change.max(other.change), contacts_solved: self.contacts_solved + other.contacts_solved }
     }
 }
 
@@ -169,7 +169,7 @@ impl Subdomain<'_> {
             if all || wide_pairs.is_due(lanes, accumulators) {
                 let rows = &mut rows[wide_pairs.rows_after(first[1])];
                 let change = wide_pairs.solve(lanes, rows, &pass.from, ChangeMeasure { floor, turn }, accumulators);
-                outcome = outcome.and(SweepOutcome { change, judged: u64::from(wide_pairs.contacts) });
+                outcome = outcome.and(SweepOutcome { change, contacts_solved: u64::from(wide_pairs.contacts) });
             }
         }
         outcome

@@ -25,7 +25,7 @@ const UNSETTLED: f64 = 0.1;
 /// Largest decay c·dt of velocities in a step: a factor d before the kick needs (ω dt)² < 2(1 + d), which holds at 0.9
 /// of the critical step for d > 0.62.
 const DECAY_MAX: f64 = 0.3;
-/// Near pairs that are judged together, about, when contacts are only shown.
+/// Near pairs that are taken together, about, when contacts are only shown.
 const PIECE: usize = 1 << 16;
 /// Most times that a step is halved.
 const HALVINGS_MAX: u32 = 4;
@@ -46,7 +46,7 @@ impl Integrator for Explicit {
         step.interval(dt, 0)
     }
 
-    fn judge(&self, step: &mut Step, dt: f64) {
+    fn find_contacts(&self, step: &mut Step, dt: f64) {
         let times = step.times(dt);
         step.set_out(times);
         step.touch(times);
@@ -90,8 +90,8 @@ impl Step<'_> {
         self.predict(times);
     }
 
-    /// The contacts of a sub-step, judged piece by piece: all together they can be larger than the model. The
-    /// near pairs of the state are spoilt.
+    /// The contacts of a sub-step, found piece by piece: all together they can be larger than the model. The
+    /// near pairs of the state are then of no further use.
     fn entrance_by_pieces(&mut self, times: StepTimes, see: &mut dyn FnMut(&VertexEdge)) {
         let all = std::mem::take(&mut self.state.neighbours.pairs);
         let mut rest = all.as_slice();
@@ -111,7 +111,7 @@ impl Step<'_> {
         counters.sweeps += u64::from(swept.sweeps);
         counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
         counters.unsettled += u64::from(swept.unsettled > self.model.tolerance);
-        counters.judged += swept.judged;
+        counters.contacts_solved += swept.contacts_solved;
         counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
         counters.dt_max = counters.dt_max.max(dt);
     }

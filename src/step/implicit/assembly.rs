@@ -62,7 +62,7 @@ impl Step<'_> {
         );
     }
 
-    /// Assembles the matrix at the positions reached and the contacts as they are judged, and factorises it.
+    /// Assembles the matrix at the positions reached and the states of the contacts, and factorises it.
     pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
         self.workspace.implicit.matrix.zero();
         self.add_elements(inertia.element_mass, inertia.factor, 1.0);

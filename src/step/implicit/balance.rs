@@ -25,13 +25,13 @@ impl Step<'_> {
         }
     }
 
-    /// Judges all contacts at the positions reached; returns whether one is not as the factor holds it.
-    pub(super) fn implicit_judge(&mut self) -> bool {
+    /// Updates all contacts to the positions reached; returns whether one is not as the factor holds it.
+    pub(super) fn update_contacts(&mut self) -> bool {
         let workspace = &mut *self.workspace;
         let buffers = &workspace.implicit;
         let mut changed = buffers.factored.len() != workspace.contacts.len();
         for (k, contact) in workspace.contacts.iter_mut().enumerate() {
-            judge(contact, &buffers.moved);
+            update(contact, &buffers.moved);
             changed |= buffers.factored.get(k) != Some(&contact.history.state);
         }
         self.bear();
@@ -43,7 +43,7 @@ impl Step<'_> {
         let workspace = &mut *self.workspace;
         let buffers = &workspace.implicit;
         for (contact, pressing) in workspace.contacts.iter_mut().zip(&buffers.pressing) {
-            judge_under(contact, &buffers.moved, *pressing);
+            update_under(contact, &buffers.moved, *pressing);
         }
         self.bear();
     }
@@ -127,13 +127,13 @@ impl Step<'_> {
 
 /// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the positions reached,
 /// within what the joint can carry.
-fn judge(contact: &mut VertexEdge, moved: &[Vector]) {
+fn update(contact: &mut VertexEdge, moved: &[Vector]) {
     let [normal, shear] = springs(contact, moved);
     contact.decide(normal, shear);
 }
 
 /// The same with the shear limit of an earlier normal force.
-fn judge_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
+fn update_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
     let [normal, shear] = springs(contact, moved);
     let limit = contact.shear_limit(pressing);
     contact.decide(normal, shear);

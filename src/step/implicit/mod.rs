@@ -69,7 +69,7 @@ impl Integrator for Implicit {
         step.implicit_begin(self, dt)
     }
 
-    fn judge(&self, step: &mut Step, dt: f64) {
+    fn find_contacts(&self, step: &mut Step, dt: f64) {
         step.implicit_contacts(dt);
     }
 

@@ -34,9 +34,9 @@ pub fn stop(model: &Model, implicit: &Implicit, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// M·a = forces at the start of the sub-step, solved for a; contacts are judged by the limits that hold now.
+    /// M·a = forces at the start of the sub-step, solved for a; contacts have the limits that hold now.
     pub(super) fn implicit_start_acceleration(&mut self, implicit: &Implicit) {
-        self.implicit_judge();
+        self.update_contacts();
         let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
         self.workspace.implicit.forces_before.clear();
         self.workspace.implicit.forces_before.extend(forces);

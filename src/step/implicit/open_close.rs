@@ -1,4 +1,4 @@
-//! The open–close iteration: solve, judge every contact open, slip or lock, factorise anew where a state has changed,
+//! The open–close iteration: solve, decide for every contact whether it is open, slips or locks, factorise anew where a state has changed,
 //! until nothing changes and the forces balance. Each solution is a step of Newton's method for the rotations as well.
 
 use std::time::Instant;
@@ -112,13 +112,13 @@ impl Step<'_> {
     fn evaluate(&mut self, inertia: &Inertia) -> Balance {
         let clock = Instant::now();
         self.implicit_internal();
-        let changed = self.implicit_judge();
+        let changed = self.update_contacts();
         let [residual, scale] = self.implicit_residual(inertia);
         self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         Balance { changed, residual, scale }
     }
 
-    /// New contacts that touch count as locked in the first factor: whether they open is then judged.
+    /// New contacts that touch count as locked in the first factor: whether they open is then decided.
     fn presume_closed(&mut self) {
         let touching = TOUCHING * self.model.covers.mesh.size;
         for contact in self.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
@@ -154,7 +154,7 @@ impl Step<'_> {
             share = (low[0] * far[1] - far[0] * low[1]) / (far[1] - low[1]);
             share = share.clamp(low[0] + 0.05 * (far[0] - low[0]), far[0] - 0.05 * (far[0] - low[0]));
         }
-        let changed = self.implicit_judge();
+        let changed = self.update_contacts();
         let [residual, scale] = self.implicit_residual(inertia);
         Balance { changed, residual, scale }
     }
@@ -199,7 +199,7 @@ impl Step<'_> {
         }
     }
 
-    /// A new factor for the contacts as judged; false when the matrix is not positive definite.
+    /// A new factor for the contacts in their new states; false when the matrix is not positive definite.
     fn refactor(&mut self, inertia: &Inertia) -> bool {
         let clock = Instant::now();
         let done = self.implicit_factorise(inertia).is_ok();
@@ -229,7 +229,7 @@ impl Step<'_> {
         counters.substeps += 1;
         counters.sweeps += u64::from(solutions);
         counters.sweeps_max = counters.sweeps_max.max(solutions);
-        counters.judged += u64::from(solutions + 1) * contacts;
+        counters.contacts_solved += u64::from(solutions + 1) * contacts;
         counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
         counters.dt_max = counters.dt_max.max(dt);
     }

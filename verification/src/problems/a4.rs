@@ -136,7 +136,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
                   1e-11";
     let within = |row: Row| row.within(Tolerance::AtMost(1e-11), reason);
     let counters = &simulation.state().counters;
-    let judged = counters.judged as f64;
+    let judged = counters.contacts_solved as f64;
     if counters.penetration_max < LEAST {
         let deepest = counters.penetration_max;
         return Err(Trouble(format!(

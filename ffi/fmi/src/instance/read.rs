@@ -2,7 +2,7 @@
 
 use enmm::cosimulation::{EventKind, PortState, TOTALS, Totals};
 use enmm::geometry::Vector;
-use enmm::model::BlockState;
+use enmm::model::{BLOCK_QUANTITIES, BlockState};
 use enmm::state::ENERGIES;
 
 use crate::log::Status;
@@ -127,11 +127,25 @@ impl Instance {
                 };
             }
             Quantity::Total(total) => values[0] = self.total(total),
-            Quantity::Blocks(motion) => {
+            Quantity::Blocks(place) => {
                 let states = self.cache.blocks.get_or_insert_with(|| self.model.block_states());
-                values.iter_mut().zip(states).for_each(|(value, state)| *value = of_block(state, motion));
+                let get = BLOCK_QUANTITIES[place].get;
+                values.iter_mut().zip(states).for_each(|(value, state)| *value = get(state));
             }
-            _ => {}
+            Quantity::Snapshot
+            | Quantity::Parameter(_)
+            | Quantity::Threads
+            | Quantity::InterpolateInputs
+            | Quantity::Gravity(_)
+            | Quantity::BaseAcceleration(_)
+            | Quantity::WaterLevel
+            | Quantity::StrengthFactor
+            | Quantity::PortForce(..)
+            | Quantity::PortMoment(_)
+            | Quantity::PortTraction(..)
+            | Quantity::PortPressure(_)
+            | Quantity::BlockForce(_)
+            | Quantity::BlockMoment => {} // not outputs
         }
     }
 
@@ -192,21 +206,5 @@ fn of_port(port: &PortState, motion: Motion) -> f64 {
         Motion::NormalForce => port.normal_force,
         Motion::ShearForce => port.shear_force,
         Motion::Slip => port.slip,
-        Motion::Centroid(_) | Motion::Penetration | Motion::ContactCount => 0.0,
-    }
-}
-
-fn of_block(block: &BlockState, motion: Motion) -> f64 {
-    match motion {
-        Motion::Centroid(Axis::X) => block.centroid.x,
-        Motion::Centroid(Axis::Y) => block.centroid.y,
-        Motion::Displacement(axis) => along(block.displacement, axis),
-        Motion::Velocity(axis) => along(block.velocity, axis),
-        Motion::Rotation => block.rotation,
-        Motion::AngularVelocity => block.angular_velocity,
-        Motion::Stress(which) => component(block.mean_stress, which),
-        Motion::Penetration => block.penetration_max,
-        Motion::ContactCount => f64::from(block.contact_count),
-        Motion::ContactForce(_) | Motion::NormalForce | Motion::ShearForce | Motion::Slip => 0.0,
     }
 }
