@@ -1,4 +1,4 @@
-//! The open–close iteration: solve, decide for every contact whether it is open, slips or locks, factorise anew where a state has changed,
+//! The open–close iteration: solve, decide for every contact whether it is open, slips or locks, factorise again where
 //! until nothing changes and the forces balance. Each solution is a step of Newton's method for the rotations as well.
 
 use std::time::Instant;
