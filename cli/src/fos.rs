@@ -12,6 +12,7 @@ use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
 
+use crate::progress::Search;
 use crate::run::{INTERRUPT, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
@@ -72,15 +73,20 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
     }
+    let search = Search::new(arguments.json);
     let mut hear = |trial: &Trial, progress: Progress| {
-        if !arguments.json {
-            if progress.trials == 1 {
+        search.trial(progress.trials, progress.expected, || {
+            if progress.trials == 1 && !arguments.json {
                 print_line(HEAD);
             }
-            print_line(&row(trial, progress));
-        }
+            if !arguments.json {
+                print_line(&row(trial, progress));
+            }
+        });
     };
-    match enmm_run::fos(&loaded, &options, &mut hear) {
+    let found = enmm_run::fos(&loaded, &options, &mut hear);
+    search.close();
+    match found {
         Ok(found) => report(arguments, &found, &options.directory),
         Err(error @ FosError::NoRest(_)) => {
             warn(&loaded);

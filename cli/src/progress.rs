@@ -45,11 +45,20 @@ impl Screen {
     }
 
     fn line(&self, progress: &RunProgress) -> String {
-        let RunProgress { stage, stage_number, stage_count, time, time_left, .. } = *progress;
+        let RunProgress { stage, stage_number, stage_count, time, time_left, time_expected, unbalanced, .. } =
+            *progress;
         let wall = self.start.elapsed().as_secs_f64();
         let rate = (time - self.start_time.unwrap_or(time)) / wall.max(1e-9);
-        let left = if rate > 0.0 { clock(time_left / rate) } else { "?".to_owned() };
-        format!("{stage} ({stage_number}/{stage_count})  t = {time:.4} s  {rate:.3} s/s  at most {left} left")
+        let left = match (time_expected, rate > 0.0) {
+            (_, false) => "time left unknown yet".to_owned(),
+            (Some(expected), true) => format!("about {} left", clock(expected / rate)),
+            (None, true) => format!("at most {} left", clock(time_left / rate)),
+        };
+        let fall =
+            unbalanced.map_or_else(String::new, |[now, target]| format!("unbalanced {now:.1e} → {target:.0e}  "));
+        format!(
+            "{stage} ({stage_number}/{stage_count})  simulated {time:.4} s, {rate:.3} s per second of work  {fall}{left}"
+        )
     }
 }
 
@@ -85,8 +94,9 @@ impl Observer for Screen {
         let line = self.line(progress);
         match &self.bar {
             Some(bar) => {
-                let whole = progress.time + progress.time_left;
-                bar.set_position((BAR as f64 * progress.time / whole.max(f64::MIN_POSITIVE)) as u64);
+                let whole = progress.time + progress.time_expected.unwrap_or(progress.time_left);
+                let share = (BAR as f64 * progress.time / whole.max(f64::MIN_POSITIVE)) as u64;
+                bar.set_position(share.max(bar.position()));
                 bar.set_message(line);
             }
             None => drop(writeln!(std::io::stderr(), "{line}")),
@@ -101,6 +111,44 @@ impl Observer for Screen {
         match &self.bar {
             Some(bar) => bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}"))),
             None => drop(writeln!(std::io::stderr(), "{line}")),
+        }
+    }
+}
+
+/// Shows on a terminal how a search for a factor of safety goes.
+pub struct Search {
+    bar: Option<ProgressBar>,
+    start: Instant,
+}
+
+impl Search {
+    /// A bar on a terminal; nothing elsewhere, or when it is to be quiet.
+    pub fn new(quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal() && !quiet;
+        let bar = terminal.then(|| {
+            let style = ProgressStyle::with_template("{spinner} {bar:30} {msg}  ({elapsed})");
+            let bar = ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_message("the slope comes to rest before the first trial");
+            bar.enable_steady_tick(REDRAW);
+            bar
+        });
+        Self { bar, start: Instant::now() }
+    }
+
+    /// Prints by a function while the bar is away, and goes on after `done` of about `expected` trials.
+    pub fn trial(&self, done: usize, expected: usize, print: impl FnOnce()) {
+        let Some(bar) = &self.bar else { return print() };
+        bar.suspend(print);
+        let left = self.start.elapsed().as_secs_f64() * (expected - done.min(expected)) as f64 / done.max(1) as f64;
+        bar.set_length(expected as u64);
+        bar.set_position(done as u64);
+        bar.set_message(format!("{done} of about {expected} trials, about {} left", clock(left)));
+    }
+
+    /// Removes the bar.
+    pub fn close(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
         }
     }
 }

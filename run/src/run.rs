@@ -3,6 +3,7 @@
 //! Everything that can fail as input fails before anything is written. Prints nothing: an [`Observer`] hears.
 
 mod driver;
+mod outlook;
 mod results;
 mod rows;
 
@@ -42,6 +43,10 @@ pub struct RunProgress<'a> {
     pub time: f64,
     /// Simulated time left at most (s).
     pub time_left: f64,
+    /// Simulated time that is expected to be left (s); none while nothing is known of a static stage.
+    pub time_expected: Option<f64>,
+    /// Unbalanced ratio at the last report of a static stage, and the one at which the stage ends.
+    pub unbalanced: Option<[f64; 2]>,
     /// Steps done.
     pub step: u64,
 }

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::Vector;
 pub use crate::model::case::limits;
 use crate::model::case::{Case, Invalid, StageKind};
-use crate::model::settle::{self, Cadence};
+use crate::model::settle;
 use crate::model::{BlockState, Simulation};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM};
@@ -201,9 +201,8 @@ impl Cosimulation {
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
         for _ in 0..initial_stages(self.case()) {
-            let cadence = Cadence::of(&self.simulation);
             let step = |model: &mut Self| {
-                let wanted = cadence.report_due(model.simulation.state().stage_step);
+                let wanted = model.simulation.rest_due();
                 model.step(None, wanted).map(|report| wanted.then_some(report))
             };
             let last = settle::until_over(self, Self::simulation, step)?;

@@ -9,36 +9,6 @@ use super::case::StageKind;
 
 /// Steps between reports of a static stage, which tell whether it is at rest.
 pub const REST_STEPS: u64 = 10;
-/// Rows of the history of a stage that names no interval.
-const ROWS: f64 = 500.0;
-
-/// Which steps of a stage report.
-#[derive(Debug, Clone, Copy)]
-pub struct Cadence {
-    row: u64,
-    rest: Option<u64>,
-}
-
-impl Cadence {
-    /// That of the stage in progress.
-    pub fn of(simulation: &Simulation) -> Self {
-        let (stage, interval) = (simulation.stage(), simulation.case().output.history_interval);
-        Self {
-            row: simulation.steps_in(interval.unwrap_or(stage.duration / ROWS)),
-            rest: (stage.kind == StageKind::Static).then_some(REST_STEPS),
-        }
-    }
-
-    /// Whether a row of the history is due at the start of a step of the stage.
-    pub fn row_due(&self, step: u64) -> bool {
-        step.is_multiple_of(self.row)
-    }
-
-    /// Whether a step of the stage must report: for a row, or to see whether the stage is at rest.
-    pub fn report_due(&self, step: u64) -> bool {
-        step == 0 || self.row_due(step) || self.rest.is_some_and(|every| step.is_multiple_of(every))
-    }
-}
 
 /// Takes steps until the stage in progress of a simulation is over; `of` finds it in its `host`. `step` takes one
 /// step, and returns its report when it asked for one. Returns that of the last step, or the error that ended it.
@@ -58,6 +28,12 @@ pub fn until_over<H, E>(
 }
 
 impl Simulation {
+    /// Whether the report of the next step says if a static stage is at rest. Reports for outputs do not: how often they
+    /// are written changes no result.
+    pub fn rest_due(&self) -> bool {
+        self.stage().kind == StageKind::Static && self.state().stage_step.is_multiple_of(REST_STEPS)
+    }
+
     /// Runs the stage in progress to its end; returns the last report.
     ///
     /// # Errors

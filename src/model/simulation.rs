@@ -232,12 +232,19 @@ impl Simulation {
         state.stage_step >= self.steps_in(stage.duration) || report.is_some_and(|r| self.at_rest(r))
     }
 
+    /// Time (s) over which gravity grows in the static stage in progress, and the unbalanced ratio at which it is at
+    /// rest; none in dynamic stages.
+    pub fn rest_target(&self) -> Option<(f64, f64)> {
+        let Regime::Static { ramp } = self.regime else { return None };
+        Some((ramp, self.stage().convergence.unwrap_or(CONVERGENCE)))
+    }
+
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out.
     pub fn at_rest(&self, report: &StepReport) -> bool {
-        let Regime::Static { ramp } = self.regime else { return false };
+        let Some((ramp, unbalanced)) = self.rest_target() else { return false };
         let energy = report.ledger.potential.abs().max(report.ledger.strain.abs());
         report.time >= self.state().stage_start + 1.5 * ramp
-            && report.unbalanced <= self.stage().convergence.unwrap_or(CONVERGENCE)
+            && report.unbalanced <= unbalanced
             && report.ledger.kinetic <= REST * energy
     }
 

@@ -24,6 +24,7 @@ use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
 use enmm_report::{Axis, FILM, Note, Quantity};
 
+use super::outlook::Outlook;
 use super::results::Past;
 use super::rows::{self, Plan};
 use super::{Observer, RunError, RunOptions, RunProgress, results};
@@ -92,6 +93,7 @@ struct Driver<'a> {
     observer: &'a mut dyn Observer,
     simulation: Simulation,
     progress: Progress,
+    outlook: Outlook,
     good: Saved,
     history: HistoryWriter,
     frames: Option<PvdWriter>,
@@ -168,6 +170,7 @@ impl<'a> Driver<'a> {
             observer,
             simulation,
             progress,
+            outlook: Outlook::default(),
             good,
             history,
             frames,
@@ -254,7 +257,8 @@ impl<'a> Driver<'a> {
         if row {
             self.begin_row();
         }
-        let wanted = plan.report_due(step);
+        let rest_due = self.simulation.rest_due();
+        let wanted = step == 0 || row || rest_due;
         let report = self.simulation.advance(wanted).map_err(|error| Ok(StageEnd::Failed(error)))?;
         if !wanted {
             return Ok(None);
@@ -263,7 +267,7 @@ impl<'a> Driver<'a> {
         if row {
             self.write_row(&report, &before, dt_before, sweeps_mean).map_err(Err)?;
         }
-        Ok(Some(report))
+        Ok(rest_due.then_some(report))
     }
 
     /// Notes that there is a row now.
@@ -273,6 +277,7 @@ impl<'a> Driver<'a> {
     }
 
     fn note(&mut self, report: &StepReport) {
+        self.outlook.note(&self.simulation, report);
         let progress = &mut self.progress;
         progress.potential_start.get_or_insert(report.ledger.potential);
         progress.penetration_max = progress.penetration_max.max(report.penetration_max);
@@ -319,6 +324,9 @@ impl<'a> Driver<'a> {
         if !recorded {
             self.warn_of_stage(converged)?;
             let rests = self.simulation.stage().kind == StageKind::Static;
+            if rests {
+                self.outlook.end(self.simulation.time() - self.simulation.state().stage_start);
+            }
             let outcome = if !rests {
                 "over"
             } else if converged {
@@ -383,6 +391,8 @@ impl<'a> Driver<'a> {
             stage_count: stages.len(),
             time,
             time_left: (state.stage_start + simulation.stage().duration - time).max(0.0) + later,
+            time_expected: self.outlook.left(simulation),
+            unbalanced: simulation.rest_target().map(|(_, target)| [self.progress.unbalanced, target]),
             step: state.step,
         });
     }

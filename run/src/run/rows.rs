@@ -4,16 +4,20 @@ use std::io;
 use std::path::Path;
 
 use enmm::geometry::Vector;
-use enmm::model::settle::Cadence;
+use enmm::model::case::StageKind;
+use enmm::model::settle::REST_STEPS;
 use enmm::model::{Case, Simulation};
 use enmm::state::{ENERGIES, Quantity};
 use enmm::step::StepReport;
 use enmm_picture::Series;
 
-/// Frames of a stage that names no interval.
-const FRAMES: f64 = 20.0;
-/// Least and most frames of the film of a stage that lasts as long as it may.
-const FILM_FRAMES: [f64; 2] = [60.0, 200.0];
+/// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
+/// number of steps doubles.
+const ROWS: [f64; 2] = [500.0, 32.0];
+/// Frames of a stage that names no interval: of a dynamic one, and of a doubling of the steps of a static one.
+const FRAMES: [f64; 2] = [20.0, 2.0];
+/// Least and most frames of the film of a dynamic stage, and those of a doubling of the steps of a static one.
+const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
 /// What a row tells of its step behind the energies.
 const REPORTED: [Quantity<StepReport>; 4] = [
@@ -23,12 +27,46 @@ const REPORTED: [Quantity<StepReport>; 4] = [
     Quantity::count("slipping", "Contacts at their shear limit", |report| f64::from(report.slipping)),
 ];
 
+/// Steps at which something is due.
+#[derive(Debug, Clone, Copy)]
+enum Due {
+    /// Every so many steps.
+    Every(u64),
+    /// At multiples of [`REST_STEPS`], so many times at least while the number of steps doubles: nobody knows how long a
+    /// static stage lasts.
+    Doubling(u64),
+}
+
+impl Due {
+    /// At times of so many seconds; without them as often as the two numbers say: in a dynamic stage, and in each
+    /// doubling of a static one.
+    fn of(simulation: &Simulation, interval: Option<f64>, [of_stage, of_doubling]: [f64; 2]) -> Self {
+        let stage = simulation.stage();
+        match (interval, stage.kind) {
+            (Some(interval), _) => Self::Every(simulation.steps_in(interval)),
+            (None, StageKind::Dynamic) => Self::Every(simulation.steps_in(stage.duration / of_stage)),
+            (None, StageKind::Static) => Self::Doubling(of_doubling as u64),
+        }
+    }
+
+    /// Whether it is due at the start of a step of the stage.
+    fn at(self, step: u64) -> bool {
+        match self {
+            Self::Every(steps) => step.is_multiple_of(steps),
+            Self::Doubling(times) => {
+                let doublings = (step / (REST_STEPS * 2 * times)).checked_ilog2().map_or(0, |power| power + 1);
+                step.is_multiple_of(REST_STEPS << doublings)
+            }
+        }
+    }
+}
+
 /// Steps between outputs of one stage.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
-    cadence: Cadence,
-    frame: u64,
-    film: u64,
+    row: Due,
+    frame: Due,
+    film: Due,
     checkpoint: Option<u64>,
     first: bool,
 }
@@ -36,11 +74,11 @@ pub struct Plan {
 impl Plan {
     /// The plan of the stage in progress.
     pub fn of(simulation: &Simulation) -> Self {
-        let (stage, output) = (simulation.stage(), &simulation.case().output);
+        let output = &simulation.case().output;
         Self {
-            cadence: Cadence::of(simulation),
-            frame: simulation.steps_in(output.frame_interval.unwrap_or(stage.duration / FRAMES)),
-            film: simulation.steps_in(film_interval(stage.duration, output.frame_interval)),
+            row: Due::of(simulation, output.history_interval, ROWS),
+            frame: Due::of(simulation, output.frame_interval, FRAMES),
+            film: film_due(simulation, output.frame_interval),
             checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
             first: simulation.state().stage == 0,
         }
@@ -48,17 +86,17 @@ impl Plan {
 
     /// Whether a row is due at the start of a step; the end of the stage before wrote that of step 0.
     pub fn row_due(&self, step: u64) -> bool {
-        self.cadence.row_due(step) && self.begins(step)
+        self.row.at(step) && self.begins(step)
     }
 
     /// Whether a frame is due at the start of a step.
     pub fn frame_due(&self, step: u64) -> bool {
-        step.is_multiple_of(self.frame) && self.begins(step)
+        self.frame.at(step) && self.begins(step)
     }
 
     /// Whether a frame of the film is due at the start of a step.
     pub fn film_due(&self, step: u64) -> bool {
-        step.is_multiple_of(self.film) && self.begins(step)
+        self.film.at(step) && self.begins(step)
     }
 
     /// Whether a checkpoint is due at the start of a step.
@@ -66,20 +104,18 @@ impl Plan {
         step > 0 && self.checkpoint.is_some_and(|every| step.is_multiple_of(every))
     }
 
-    /// Whether a step must report.
-    pub fn report_due(&self, step: u64) -> bool {
-        self.cadence.report_due(step)
-    }
-
     fn begins(&self, step: u64) -> bool {
         step > 0 || self.first
     }
 }
 
-/// Time (s) between two frames of the film: that of the frames, unless a film would be too coarse or too long by it.
-fn film_interval(duration: f64, frames: Option<f64>) -> f64 {
-    let [least, most] = FILM_FRAMES;
-    frames.unwrap_or(f64::INFINITY).clamp(duration / most, duration / least)
+/// When frames of the film are due: with those of the results, unless a film would be too coarse or too long by it.
+fn film_due(simulation: &Simulation, frames: Option<f64>) -> Due {
+    let [least, most, of_doubling] = FILM_FRAMES;
+    let (duration, kind) = (simulation.stage().duration, simulation.stage().kind);
+    let frames = frames.filter(|_| kind == StageKind::Dynamic);
+    let interval = frames.map(|interval| interval.clamp(duration / most, duration / least));
+    Due::of(simulation, interval, [least, of_doubling])
 }
 
 /// Names and units of the columns.
