@@ -14,7 +14,7 @@ use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::PvdWriter;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm::model::case::{Invalid, StageKind};
+use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::settle;
 use enmm::state::bytes::BytesError;
@@ -147,7 +147,7 @@ impl<'a> Driver<'a> {
         if used && past != Some(Past::Here) {
             observer.warn(&format!("the results of an earlier run in {} are overwritten", directory.display()));
         }
-        if simulation.case().output.pictures {
+        if simulation.case().output.pictures.include(PictureKind::Model) {
             results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
         }
         let resumed = saved.is_some();
@@ -426,7 +426,7 @@ impl<'a> Driver<'a> {
         self.history.check_place().map_err(RunError::Output)?;
         let directory = &self.options.directory;
         write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
-        if self.simulation.case().output.pictures && status != RunStatus::Interrupted {
+        if self.simulation.case().output.pictures.include(PictureKind::Deformed) && status != RunStatus::Interrupted {
             results::draw_end(&self.simulation, directory).map_err(RunError::Output)?;
         }
         let mut stages = self.progress.done.clone();
