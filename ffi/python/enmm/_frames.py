@@ -26,7 +26,10 @@ class Frame:
     point_data: dict[str, npt.NDArray[Any]]
     """`displacement` (m), `velocity` (m/s): shape (points, 2)."""
     cell_data: dict[str, npt.NDArray[Any]]
-    """A value for each element: `stress_xx`, ... (Pa, tension positive), `block`, `rock`."""
+    """A value for each element: `stress_xx`, `principal_min`, ... (Pa, tension positive), `block`, `rock`.
+
+    `stress` is the tensor: xx, yy, zz, xy, yz, xz, of which those out of the plane are zero.
+    """
 
     def __init__(self, time: float, path: Path) -> None:
         self.time = time
