@@ -60,12 +60,19 @@ pub struct Joints {
     faces: usize,
 }
 
-/// Force (N/m) on the first block of a face and on its first block along and across it.
+/// Forces (N/m) on the first block of a face: their sum, and their parts across (tension positive) and along it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Load {
     force: Vector,
     normal: f64,
     shear: f64,
+}
+
+/// Forces on all faces, and those between edges that did not face each other, by the node at or before the edge and the
+/// other block.
+struct Forces {
+    faces: Vec<Load>,
+    touched: BTreeMap<(NodeId, u32), Touch>,
 }
 
 impl Joints {
@@ -137,8 +144,13 @@ impl Joints {
         let (model, removed) = (simulation.model(), &simulation.state().removed);
         let boundary = &model.boundary;
         let positions = simulation.positions();
-        let states = edge_states(simulation);
-        let (loads, touched) = self.loads(simulation);
+        let mut states = EdgeStates::new(boundary, &positions);
+        let mut forces = Forces { faces: vec![Load::default(); self.faces], touched: BTreeMap::new() };
+        simulation.each_contact(|contact| {
+            states.see(contact);
+            self.add(boundary, contact, &mut forces);
+        });
+        let (states, Forces { faces: loads, touched }) = (states.found, forces);
         let state = |piece: &Facing| strongest(piece.edges.map(|edge| states[edge].unwrap_or_default()));
         let length = |piece: &Facing| {
             let [a, b] = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
@@ -167,37 +179,29 @@ impl Joints {
         found
     }
 
-    /// Forces on all faces, and those of contacts between edges that did not face each other, by the node at or before
-    /// the edge and the other block.
-    fn loads(&self, simulation: &Simulation) -> (Vec<Load>, BTreeMap<(NodeId, u32), Touch>) {
-        let boundary = &simulation.model().boundary;
-        let mut loads = vec![Load::default(); self.faces];
-        let mut touched: BTreeMap<(NodeId, u32), Touch> = BTreeMap::new();
-        simulation.each_contact(|contact: &VertexEdge| {
-            let history = &contact.history;
-            if history.state == ContactState::Open {
-                return;
+    /// Adds the forces of a contact to its face, or else to those between edges that did not face each other.
+    fn add(&self, boundary: &Boundary, contact: &VertexEdge, forces: &mut Forces) {
+        let history = &contact.history;
+        if history.state == ContactState::Open {
+            return;
+        }
+        let force = contact.normal * history.normal_force + contact.tangent() * history.shear_force;
+        let add = |load: &mut Load, sign: f64| {
+            load.force += force * sign;
+            load.normal -= history.normal_force;
+            load.shear += history.shear_force;
+        };
+        match self.face_between(boundary, history.edge, history.node) {
+            Some((face, is_first)) => add(&mut forces.faces[face], if is_first { -1.0 } else { 1.0 }),
+            None => {
+                let other = boundary.block[boundary.node_point[history.node]];
+                let key = (boundary.node_before[history.edge], other.number());
+                let touch = forces.touched.entry(key).or_default();
+                add(&mut touch.load, -1.0);
+                touch.law = contact.law.number();
+                touch.state = strongest([touch.state, history.state]);
             }
-            let force = contact.normal * history.normal_force + contact.tangent() * history.shear_force;
-            let add = |load: &mut Load, sign: f64| {
-                load.force += force * sign;
-                load.normal -= history.normal_force;
-                load.shear += history.shear_force;
-            };
-            let node = boundary.node_point[history.node];
-            let other = boundary.block[node];
-            match self.face_between(boundary, history.edge, history.node) {
-                Some((face, is_first)) => add(&mut loads[face], if is_first { -1.0 } else { 1.0 }),
-                None => {
-                    let key = (boundary.node_before[history.edge], other.number());
-                    let touch = touched.entry(key).or_default();
-                    add(&mut touch.load, -1.0);
-                    touch.law = contact.law.number();
-                    touch.state = strongest([touch.state, history.state]);
-                }
-            }
-        });
-        (loads, touched)
+        }
     }
 
     /// The face of a contact between a node and an edge, and whether the edge is on the first block of the face.
@@ -320,40 +324,59 @@ fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u
 /// State of each edge of the boundary; none where neither a joint nor a contact is. A contact stands for the stretch
 /// between two nodes in which it lies, and for the stretch beside its own node that lies flat on the other block.
 pub fn edge_states(simulation: &Simulation) -> Vec<Option<ContactState>> {
-    let boundary = &simulation.model().boundary;
-    let mut states: Vec<Option<ContactState>> =
-        boundary.trace.iter().map(|trace| trace.map(|_| ContactState::Open)).collect();
     let positions = simulation.positions();
-    let mut mark = |node: NodeId, state: ContactState| {
+    let mut states = EdgeStates::new(&simulation.model().boundary, &positions);
+    simulation.each_contact(|contact| states.see(contact));
+    states.found
+}
+
+/// States of edges, as contacts give them one by one.
+struct EdgeStates<'a> {
+    boundary: &'a Boundary,
+    positions: &'a [Point],
+    found: Vec<Option<ContactState>>,
+}
+
+impl<'a> EdgeStates<'a> {
+    fn new(boundary: &'a Boundary, positions: &'a [Point]) -> Self {
+        let found = boundary.trace.iter().map(|trace| trace.map(|_| ContactState::Open)).collect();
+        Self { boundary, positions, found }
+    }
+
+    fn see(&mut self, contact: &VertexEdge) {
+        let (boundary, state) = (self.boundary, contact.history.state);
+        if state == ContactState::Open {
+            return;
+        }
+        let node = contact.history.node;
+        self.mark(boundary.node_before[contact.history.edge], state);
+        if self.lies_flat(boundary.node_point[node], contact) {
+            self.mark(node, state);
+        }
+        if self.lies_flat(boundary.node_edge_before[node], contact) {
+            self.mark(boundary.node_previous[node], state);
+        }
+    }
+
+    /// Whether an edge lies flat on that of a contact.
+    fn lies_flat(&self, edge: EdgeId, contact: &VertexEdge) -> bool {
+        let along = self.positions[self.boundary.after(edge)] - self.positions[edge];
+        Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
+    }
+
+    /// Marks the edges from a node to the next one.
+    fn mark(&mut self, node: NodeId, state: ContactState) {
+        let boundary = self.boundary;
         let mut edge = boundary.node_point[node];
         let end = boundary.node_point[boundary.node_next[node]];
         loop {
-            if states[edge] != Some(ContactState::Slip) {
-                states[edge] = Some(state);
+            if self.found[edge] != Some(ContactState::Slip) {
+                self.found[edge] = Some(state);
             }
             edge = boundary.after(edge);
             if edge == end {
                 break;
             }
         }
-    };
-    simulation.each_contact(|contact: &VertexEdge| {
-        let state = contact.history.state;
-        if state == ContactState::Open {
-            return;
-        }
-        let node = contact.history.node;
-        mark(boundary.node_before[contact.history.edge], state);
-        let flat = |edge: EdgeId| {
-            let along = positions[boundary.after(edge)] - positions[edge];
-            Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
-        };
-        if flat(boundary.node_point[node]) {
-            mark(node, state);
-        }
-        if flat(boundary.node_edge_before[node]) {
-            mark(boundary.node_previous[node], state);
-        }
-    });
-    states
+    }
 }

@@ -9,8 +9,9 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 
 /// Bytes that are compressed together.
 const BLOCK: usize = 1 << 16;
-/// Effort of the compression, of 0 to 10: frames are 4 % larger than by 6, in half the time.
-const EFFORT: u8 = 3;
+/// Effort of the compression, of 0 to 10: frames of the fractured slope are 2.4 % larger than by 6, in a quarter of the
+/// time.
+const EFFORT: u8 = 1;
 
 /// Hands the values of an array over, as little-endian bytes.
 type Values<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
