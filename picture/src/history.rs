@@ -4,7 +4,7 @@ use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
 use super::colour::{Colour, GREY, INK, LINES};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
+use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
@@ -197,7 +197,7 @@ impl Chart {
         sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
     }
 
-    /// Broken lines where stages begin, and above the first frame their names as far as there is room.
+    /// Broken lines where stages begin, and their names above the first frame, or upwards in it where stages are short.
     fn draw_stages(&self, sheet: &mut Svg, times: Range, stages: &[StageStart], with_names: bool) {
         let frame = &self.frame;
         let place = |stage: &StageStart| frame.left + times.fraction(stage.time) * frame.width;
@@ -207,9 +207,12 @@ impl Chart {
                 sheet.line([x, frame.top], [x, frame.bottom()], Style::line(GREY, 1.4).dashed());
             }
             let room = stages.get(k + 1).map_or(frame.right(), place) - x - 8.0;
-            if with_names && room > 3.0 * LABEL_SIZE {
-                let name = fitted(&stage.name, LABEL_SIZE, room);
-                sheet.text([x + 4.0, frame.top - 7.0], &name, TextStyle::new(LABEL_SIZE).colour(GREY));
+            let style = TextStyle::new(LABEL_SIZE).colour(GREY);
+            if with_names && text_width(&stage.name, LABEL_SIZE) <= room {
+                sheet.text([x + 4.0, frame.top - 7.0], &stage.name, style);
+            } else if with_names && room > LABEL_SIZE {
+                let name = fitted(&stage.name, LABEL_SIZE, 0.8 * frame.height);
+                sheet.text([x + LABEL_SIZE, frame.bottom() - 8.0], &name, style.halo().upward());
             }
         }
     }
