@@ -3,11 +3,11 @@
 use enmm::contact::EdgeId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm::model::case::{Axes, Load, LoadKind, Port};
+use enmm::model::case::{Anchorage, Axes, Load, LoadKind, Port};
 
 use crate::axes::{number_text, si_text};
 use crate::signs::Held;
-use crate::structures::{BoltKind, SupportKind, bolts, supports, water_surface};
+use crate::structures::{SupportKind, bolts, supports, water_surface};
 use crate::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Distance from a supported point, relative to the mesh size, at which rock is looked for.
@@ -119,11 +119,7 @@ fn load_mark(load: &Load) -> Option<LoadMark> {
         }
         LoadKind::Traction => {
             let traction = Vector::from(load.traction?);
-            Some(LoadMark::Traction {
-                edge: edge?,
-                traction: [traction; 2],
-                label: named(si_text(traction.norm(), "Pa")),
-            })
+            Some(LoadMark::Traction { edge: edge?, traction, label: named(si_text(traction.norm(), "Pa")) })
         }
         LoadKind::Pressure => {
             let pressure = load.pressure?;
@@ -163,7 +159,7 @@ fn load_of_port(port: &Port) -> Option<LoadMark> {
             Some(point_load(point, force, port.moment, &unnamed))
         }
         PortPlace::Boundary(edge) if traction != Vector::zeros() => {
-            Some(LoadMark::Traction { edge, traction: [traction; 2], label: si_text(traction.norm(), "Pa") })
+            Some(LoadMark::Traction { edge, traction, label: si_text(traction.norm(), "Pa") })
         }
         PortPlace::Boundary(edge) if port.pressure != 0.0 => {
             Some(LoadMark::Pressure { edge, pressure: port.pressure, label: si_text(port.pressure, "Pa") })
@@ -189,16 +185,18 @@ fn facts(simulation: &Simulation) -> Vec<String> {
     facts
 }
 
-/// One mark for each bolt of the case, from its head to its end.
+/// One mark for each bolt of the case, from its head to its end: where they are now, or before if it is grouted.
 pub fn bolt_marks(simulation: &Simulation) -> Vec<BoltMark> {
     let lines = bolts(simulation);
     let mark = |(k, bolt): (usize, &enmm::model::case::Bolt)| {
         let own = lines.iter().filter(|line| line.bolt as usize == k);
+        // Grouted bars have short free lengths at joints only.
+        let ends = own.clone().next().filter(|_| bolt.anchorage == Anchorage::Ends).map(|line| line.ends);
         BoltMark {
             name: bolt.name.clone(),
-            ends: bolt.points.map(Point::from),
+            ends: ends.unwrap_or(bolt.points.map(Point::from)),
             force: own.clone().map(|line| line.force).fold(0.0, f64::max),
-            kind: own.map(|line| line.kind).fold(BoltKind::Absent, |a, b| if (b as u8) > a as u8 { b } else { a }),
+            kind: own.map(|line| line.kind).max().unwrap_or_default(),
         }
     };
     simulation.case().bolts.iter().enumerate().map(mark).collect()

@@ -105,12 +105,12 @@ pub enum LoadMark {
         /// Name and value.
         label: String,
     },
-    /// Traction (Pa) at both ends of an edge.
+    /// Traction along an edge.
     Traction {
         /// The edge.
         edge: [Point; 2],
         /// Traction (Pa).
-        traction: [Vector; 2],
+        traction: Vector,
         /// Name and value.
         label: String,
     },
@@ -317,7 +317,7 @@ impl Model<'_> {
                     (tail, label)
                 }
                 LoadMark::Traction { edge, traction, label } => {
-                    (draw_row_of_arrows(sheet, view, edge, traction[0], style), label)
+                    (draw_row_of_arrows(sheet, view, edge, *traction, style), label)
                 }
                 LoadMark::Pressure { edge, pressure, label } => {
                     let inward = self.inward(edge) * pressure.signum();

@@ -5,7 +5,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 
 /// What a bolt is at one instant.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BoltKind {
     /// A stage installs it later, or its rock is gone.
     #[default]

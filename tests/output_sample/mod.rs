@@ -104,7 +104,7 @@ fn annotations() -> ModelAnnotations {
         ],
         loads: vec![
             LoadMark::Point { point: crest, force: Vector::new(3e5, -1e5), moment: 1e4, label: "push".to_owned() },
-            LoadMark::Traction { edge, traction: [Vector::new(0.0, -1e4); 2], label: "10 kPa".to_owned() },
+            LoadMark::Traction { edge, traction: Vector::new(0.0, -1e4), label: "10 kPa".to_owned() },
             LoadMark::Pressure { edge: PROFILE_FACE.map(Point::from), pressure: 1e4, label: "lake 10 kPa".to_owned() },
             LoadMark::Joint { edge: [Point::new(70.0, 30.0), Point::new(80.0, 38.0)], label: "40 kPa".to_owned() },
         ],
