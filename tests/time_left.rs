@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use enmm::model::case::Pictures;
 use enmm_run::{Observer, RunOptions, RunProgress, run};
 
 /// Simulated time at each step, and that which was expected to be left.
@@ -19,7 +20,7 @@ impl Observer for Record {
 fn ratio_after_a_tenth(case: &str) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases").join(case);
     let mut loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{case}: {error}"));
-    (loaded.case.output.frames, loaded.case.output.pictures) = (false, false);
+    (loaded.case.output.frames, loaded.case.output.pictures) = (false, Pictures::Usual(false));
     let folder = tempfile::tempdir().expect("a folder");
     let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
     let mut record = Record::default();

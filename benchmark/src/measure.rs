@@ -12,6 +12,7 @@ use super::{BenchError, BenchOptions, Machine, peers};
 use enmm::model::Simulation;
 use enmm::state::bytes::encode;
 use enmm::state::{Counters, Seconds};
+use enmm_picture::joints::Joints;
 use enmm_run::vtu::{write_joints_vtu, write_vtu};
 
 /// Element updates in a window; small models take more steps, and large ones the fewest.
@@ -287,7 +288,9 @@ impl Measured {
         let folder = std::env::temp_dir();
         let file = |kind: &str| folder.join(format!("enmm-bench-{}-{kind}.vtu", std::process::id()));
         let files = [file("elements"), file("joints")];
-        let written = write_vtu(&snapshot, &files[0]).and_then(|()| write_joints_vtu(&snapshot, &files[1]));
+        let joints = Joints::of(simulation).now(simulation);
+        let (laws, time) = (&snapshot.joint_laws, snapshot.time);
+        let written = write_vtu(&snapshot, &files[0]).and_then(|()| write_joints_vtu(&joints, laws, time, &files[1]));
         self.frame_ms = 1e3 * clock.elapsed().as_secs_f64();
         files.iter().for_each(|file| drop(std::fs::remove_file(file)));
         written?;

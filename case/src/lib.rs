@@ -6,6 +6,7 @@ mod fingerprint;
 mod ground;
 pub mod key;
 pub mod limits;
+mod pictures;
 mod validate;
 
 use std::collections::BTreeMap;
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bolt::{Anchorage, Bolt};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
+pub use pictures::{PictureKind, Pictures};
 pub use validate::Invalid;
 
 /// A closed or open list of points (m).
@@ -673,13 +675,20 @@ pub struct Output {
     pub checkpoint_interval: Option<f64>,
     /// Whether to write VTU frames.
     pub frames: bool,
-    /// Whether to draw pictures.
-    pub pictures: bool,
+    /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each stage
+    /// `displacement`, `joints`, `stress`), `false` for none, or a list of exactly those to draw.
+    pub pictures: Pictures,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { frame_interval: None, history_interval: None, checkpoint_interval: None, frames: true, pictures: true }
+        Self {
+            frame_interval: None,
+            history_interval: None,
+            checkpoint_interval: None,
+            frames: true,
+            pictures: Pictures::Usual(true),
+        }
     }
 }
 

@@ -9,33 +9,43 @@ use enmm_run::Observer;
 use enmm_run::check::Check;
 
 use crate::progress::Screen;
-use crate::{BAD_INPUT, fail, print_line};
+use crate::{BAD_INPUT, FAILED, fail, print_line};
 
-/// Builds the model of a case and prints what it is.
-pub fn check(path: &Path, json: bool) -> ExitCode {
+/// Builds the model of a case, prints what it is, and draws it into a directory if there is one.
+pub fn check(path: &Path, directory: Option<&Path>, json: bool) -> ExitCode {
     let mut screen = Screen::new(json);
     let looked = look(path, &mut screen);
     screen.close();
-    match looked {
-        Ok(found) if json => print_line(&json_line(&found)),
-        Ok(found) => print_line(&table(&found)),
-        Err(error) => {
-            if json {
-                print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
-            }
-            return fail(&error, BAD_INPUT);
+    let refuse = |error: &dyn std::fmt::Display, status| {
+        if json {
+            print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
         }
+        fail(&error, status)
+    };
+    let (simulation, found) = match looked {
+        Ok(looked) => looked,
+        Err(error) => return refuse(&error, BAD_INPUT),
+    };
+    if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
+        return refuse(&format!("cannot draw the model ({error}): choose another directory with -o"), FAILED);
+    }
+    if json {
+        print_line(&json_line(&found));
+    } else {
+        let picture = |directory: &Path| format!("\n{:<21} {}", "picture", directory.join("model.png").display());
+        print_line(&(table(&found) + &directory.map_or(String::new(), picture)));
     }
     ExitCode::SUCCESS
 }
 
-fn look(path: &Path, screen: &mut Screen) -> Result<Check, CaseError> {
+fn look(path: &Path, screen: &mut Screen) -> Result<(Simulation, Check), CaseError> {
     let loaded = enmm_io::load_case(path)?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
-    Ok(enmm_run::check(&simulation, &loaded.warnings))
+    let found = enmm_run::check(&simulation, &loaded.warnings);
+    Ok((simulation, found))
 }
 
 /// Memory while the model runs, and what of it is the model, its state (held twice) and the buffers of a step.

@@ -42,6 +42,9 @@ enum Command {
     Check {
         /// Case file (TOML).
         case: PathBuf,
+        /// Directory to draw the model into, as model.png.
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
         /// Print one JSON object.
         #[arg(long)]
         json: bool,
@@ -72,7 +75,7 @@ fn main() -> ExitCode {
 fn execute(command: Command) -> ExitCode {
     match command {
         Command::Run(arguments) => run::run(&arguments),
-        Command::Check { case, json } => check::check(&case, json),
+        Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),

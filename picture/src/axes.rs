@@ -10,8 +10,8 @@ pub const TICK_SIZE: f64 = 15.0;
 pub const LABEL_SIZE: f64 = 16.0;
 /// Length (px) of a tick.
 const TICK_LENGTH: f64 = 6.0;
-/// Distance (px) of the ticks that are aimed at.
-const TICK_DISTANCE: f64 = 90.0;
+/// Distance (px) of the ticks that are aimed at, along x and y.
+const TICK_DISTANCE: [f64; 2] = [90.0, 60.0];
 /// Coordinates beyond this (m) are taken for numerical failures and left out.
 const FARTHEST: f64 = 1e9;
 /// The shorter side of a view is at least this part of the longer one.
@@ -120,7 +120,7 @@ impl View {
 
     fn draw_horizontal_axis(&self, sheet: &mut Svg) {
         let bottom = self.area.bottom();
-        let most = (self.area.width / TICK_DISTANCE).max(2.0);
+        let most = (self.area.width / TICK_DISTANCE[0]).max(2.0);
         let ticks = Ticks::new(self.world.min.x, self.world.max.x, most);
         for &value in &ticks.values {
             let x = self.area.left + (value - self.world.min.x) * self.scale;
@@ -134,7 +134,7 @@ impl View {
 
     fn draw_vertical_axis(&self, sheet: &mut Svg) {
         let left = self.area.left;
-        let most = (self.area.height / TICK_DISTANCE).max(2.0);
+        let most = (self.area.height / TICK_DISTANCE[1]).max(3.0);
         let ticks = Ticks::new(self.world.min.y, self.world.max.y, most);
         for &value in &ticks.values {
             let y = self.area.bottom() - (value - self.world.min.y) * self.scale;
@@ -208,6 +208,16 @@ pub fn number_text(value: f64) -> String {
         return with_minus(format!("{mantissa} × 10{}", superscript(exponent)));
     }
     with_minus(trimmed(format!("{value:.*}", (3 - exponent).max(0) as usize)))
+}
+
+/// A value in three digits with the prefix in which it reads well: `1.25 MPa`.
+pub fn si_text(value: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];
+    let fits = PREFIXES.into_iter().find(|(size, _)| value.abs() >= 0.9995 * size);
+    let (size, prefix) = fits.filter(|_| value.is_finite()).unwrap_or((1.0, ""));
+    let scaled = value / size;
+    let decimals = 2 - scaled.abs().max(1.0).log10().floor().clamp(0.0, 2.0) as usize;
+    with_minus(format!("{} {prefix}{unit}", trimmed(format!("{:.decimals$}", scaled + 0.0))))
 }
 
 /// A whole number in raised digits.

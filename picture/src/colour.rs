@@ -15,6 +15,17 @@ pub const PALE: Colour = Colour(214, 218, 222);
 /// Marks that must be found at once.
 pub const ACCENT: Colour = Colour(190, 18, 90);
 
+/// Water.
+pub const WATER: Colour = Colour(0, 158, 224);
+/// Water outside the rock.
+pub const POND: Colour = Colour(214, 234, 246);
+/// Rock behind other marks.
+pub const ROCK: Colour = Colour(238, 233, 222);
+/// Joints that lock; that slip (vermilion and blue of M. Okabe and K. Ito, told apart by all kinds of sight).
+pub const LOCK: Colour = Colour(0, 90, 150);
+/// Joints that slip, and tension.
+pub const SLIP: Colour = Colour(213, 94, 0);
+
 /// Soft fills of blocks.
 pub const BLOCKS: [Colour; 8] = [
     Colour(205, 224, 240),

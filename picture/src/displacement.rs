@@ -1,21 +1,20 @@
 //! The deformed slope coloured by the size of its displacement.
 
 use super::Picture;
-use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, is_drawable, number_text, round_above};
+use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, round_above};
+use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
 use super::slope::{
     BELOW_FRAME, LEFT, Labels, TOP, WIDTH, corners, draw_absence, draw_block_outlines, draw_filled, draw_title,
     outlines, time_text,
 };
-use super::svg::{Anchor, Rect, Style, Svg, TextStyle, text_width};
+use super::svg::{Rect, Style, Svg, TextStyle, text_width};
 use enmm::geometry::Vector;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::Polygons;
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 820.0;
-/// Room (px) at the right of the frame for the colour bar.
-const BAR_ROOM: f64 = 180.0;
 /// Height (px) of the notes at the bottom.
 const NOTES: f64 = 60.0;
 /// Length (px) of the length bar at least.
@@ -123,26 +122,14 @@ fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, ref
 }
 
 fn draw_colour_bar(sheet: &mut Svg, frame: &Rect, field: &Field) {
-    let bar = Rect { left: frame.right() + 34.0, width: 26.0, ..*frame };
-    let step_height = bar.height / SCALE_STEPS as f64;
-    for step in 0..SCALE_STEPS {
-        let top = bar.bottom() - (step + 1) as f64 * step_height;
-        sheet.rect(&Rect { top, height: step_height, ..bar }, Style::fill(scale(step)).crisp());
-    }
-    sheet.rect(&bar, Style::line(INK, 1.2));
     let (unit, size) = field.unit();
     let largest = field.largest / size;
-    let ticks = Ticks::new(0.0, largest, (bar.height / 60.0).max(2.0));
+    let ticks = Ticks::new(0.0, largest, (frame.height / 60.0).max(2.0));
     // Without a displacement the bar says zero.
     let values = if ticks.values.is_empty() { &[0.0] } else { &ticks.values[..] };
-    for &value in values {
-        let y = bar.bottom() - if largest > 0.0 { value / largest } else { 0.0 } * bar.height;
-        sheet.line([bar.right(), y], [bar.right() + 6.0, y], Style::line(INK, 1.2));
-        sheet.text([bar.right() + 10.0, y + 0.36 * TICK_SIZE], &ticks.label(value), TextStyle::new(TICK_SIZE));
-    }
-    let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
-    let middle = bar.top + 0.5 * bar.height;
-    sheet.text([bar.right() + 74.0, middle], &format!("displacement [{unit}]"), style);
+    let fraction = |value: f64| if largest > 0.0 { value / largest } else { 0.0 };
+    let ticks: Vec<_> = values.iter().map(|&value| (fraction(value), ticks.label(value))).collect();
+    draw_bar(sheet, frame, &format!("displacement [{unit}]"), &ticks);
 }
 
 /// Below the frame: a length, the dashed line explained, the largest value, the factor of deformation.
@@ -166,7 +153,7 @@ fn draw_notes(sheet: &mut Svg, view: &View, field: &Field, factor: f64) {
 }
 
 /// Draws a bar of a round length; returns where the next note starts.
-fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
+pub fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
     let length = round_above(LENGTH_MIN / view.scale);
     let (left, right) = (LEFT, LEFT + length * view.scale);
     let style = Style::line(INK, 2.5);

@@ -1,10 +1,10 @@
-//! Histories as small multiples: one frame per unit, a common time axis.
+//! Histories as small multiples: one frame per quantity, a common time axis with the stages.
 
 use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
 use super::colour::{Colour, GREY, INK, LINES};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
+use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
@@ -27,15 +27,26 @@ const FARTHEST: f64 = 1e300;
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// Unit, such as `m` or `J`; series of one unit share a frame.
+    /// What it is, such as `displacement`; series of one quantity and unit share a frame.
+    pub quantity: String,
+    /// Unit, such as `m` or `J`.
     pub unit: String,
     /// Time (s) and value.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Draws series over time, those of one unit in one frame.
-pub fn history_picture(title: &str, series: &[Series]) -> Picture {
-    let groups = by_unit(series);
+/// Where a stage begins on the time axis.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StageStart {
+    /// Name of the stage.
+    pub name: String,
+    /// Its first time (s).
+    pub time: f64,
+}
+
+/// Draws series over time, those of one quantity in one frame; a broken line and a name mark each of several stages.
+pub fn history_picture(title: &str, series: &[Series], stages: &[StageStart]) -> Picture {
+    let groups = by_quantity(series);
     let count = groups.len().max(1) as f64;
     let height = ((SHARED_HEIGHT - BETWEEN * (count - 1.0)) / count).clamp(LOWEST, HIGHEST);
     let mut sheet = Svg::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
@@ -50,6 +61,9 @@ pub fn history_picture(title: &str, series: &[Series]) -> Picture {
         let values = Range::of(group.iter().flat_map(|series| drawable(series)).map(|(_, value)| value));
         let chart = Chart { frame: frame(k), times, values: values.map(Range::with_margin) };
         chart.draw(&mut sheet, group);
+        if let Some(times) = times.filter(|_| stages.len() > 1) {
+            chart.draw_stages(&mut sheet, times, stages, k == 0);
+        }
     }
     if groups.is_empty() {
         Chart { frame: frame(0), times: None, values: None }.draw(&mut sheet, &[]);
@@ -58,16 +72,20 @@ pub fn history_picture(title: &str, series: &[Series]) -> Picture {
     sheet.finish()
 }
 
-/// The series of each unit, in the order of their first.
-fn by_unit(series: &[Series]) -> Vec<Vec<&Series>> {
+/// The series of each quantity and unit, in the order of their first.
+fn by_quantity(series: &[Series]) -> Vec<Vec<&Series>> {
     let mut groups: Vec<Vec<&Series>> = Vec::new();
     for series in series {
-        match groups.iter_mut().find(|group| group[0].unit == series.unit) {
+        match groups.iter_mut().find(|group| is_alike(group[0], series)) {
             Some(group) => group.push(series),
             None => groups.push(vec![series]),
         }
     }
     groups
+}
+
+fn is_alike(a: &Series, b: &Series) -> bool {
+    a.unit == b.unit && a.quantity == b.quantity
 }
 
 fn draw_time_title(sheet: &mut Svg, last: &Rect) {
@@ -129,17 +147,17 @@ struct Chart {
 
 impl Chart {
     fn draw(&self, sheet: &mut Svg, group: &[&Series]) {
-        let unit = group.first().map_or("", |series| &series.unit);
+        let [quantity, unit] = group.first().map_or(["", ""], |series| [&series.quantity, &series.unit]);
         match (self.times, self.values) {
             (Some(times), Some(values)) => {
                 self.draw_time_ticks(sheet, times);
-                self.draw_value_ticks(sheet, values, unit);
+                self.draw_value_ticks(sheet, values, quantity, unit);
                 sheet.clipped(&self.frame, |sheet| self.draw_lines(sheet, group, times, values));
             }
             _ => {
                 let middle = [self.frame.left + 0.5 * self.frame.width, self.frame.top + 0.5 * self.frame.height];
                 sheet.text(middle, "no data", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
-                self.draw_value_title(sheet, &unit_title(unit, 0));
+                self.draw_value_title(sheet, &axis_title(quantity, unit, 0));
             }
         }
         sheet.rect(&self.frame, Style::line(INK, 1.2));
@@ -161,7 +179,7 @@ impl Chart {
         }
     }
 
-    fn draw_value_ticks(&self, sheet: &mut Svg, values: Range, unit: &str) {
+    fn draw_value_ticks(&self, sheet: &mut Svg, values: Range, quantity: &str, unit: &str) {
         let exponent = values.exponent();
         let divisor = 10.0_f64.powi(exponent);
         let ticks =
@@ -171,12 +189,32 @@ impl Chart {
             draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
             draw_left_number(sheet, [self.frame.left, y], &ticks.label(value));
         }
-        self.draw_value_title(sheet, &unit_title(unit, exponent));
+        self.draw_value_title(sheet, &axis_title(quantity, unit, exponent));
     }
 
     fn draw_value_title(&self, sheet: &mut Svg, title: &str) {
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
         sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
+    }
+
+    /// Broken lines where stages begin, and their names above the first frame, or upwards in it where stages are short.
+    fn draw_stages(&self, sheet: &mut Svg, times: Range, stages: &[StageStart], with_names: bool) {
+        let frame = &self.frame;
+        let place = |stage: &StageStart| frame.left + times.fraction(stage.time) * frame.width;
+        for (k, stage) in stages.iter().enumerate().filter(|(_, stage)| stage.time.abs() < FARTHEST) {
+            let x = place(stage);
+            if k > 0 {
+                sheet.line([x, frame.top], [x, frame.bottom()], Style::line(GREY, 1.4).dashed());
+            }
+            let room = stages.get(k + 1).map_or(frame.right(), place) - x - 8.0;
+            let style = TextStyle::new(LABEL_SIZE).colour(GREY);
+            if with_names && text_width(&stage.name, LABEL_SIZE) <= room {
+                sheet.text([x + 4.0, frame.top - 7.0], &stage.name, style);
+            } else if with_names && room > LABEL_SIZE {
+                let name = fitted(&stage.name, LABEL_SIZE, 0.8 * frame.height);
+                sheet.text([x + LABEL_SIZE, frame.bottom() - 8.0], &name, style.halo().upward());
+            }
+        }
     }
 
     fn draw_lines(&self, sheet: &mut Svg, group: &[&Series], times: Range, values: Range) {
@@ -214,14 +252,12 @@ fn line_colour(k: usize) -> Colour {
     LINES[k % LINES.len()]
 }
 
-/// `[m]`, `[10⁶ J]`; nothing for a bare number.
-fn unit_title(unit: &str, exponent: i32) -> String {
-    match (unit, exponent) {
-        ("", 0) => String::new(),
-        (unit, 0) => format!("[{unit}]"),
-        ("", exponent) => format!("[10{}]", superscript(exponent)),
-        (unit, exponent) => format!("[10{} {unit}]", superscript(exponent)),
-    }
+/// `displacement [m]`, `energy [10⁶ J]`; the quantity alone for a bare number.
+fn axis_title(quantity: &str, unit: &str, exponent: i32) -> String {
+    let power = if exponent == 0 { String::new() } else { format!("10{}", superscript(exponent)) };
+    let scale = [power.as_str(), unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+    let scale = if scale.is_empty() { scale } else { format!("[{scale}]") };
+    [quantity, &scale].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Of the positions in one column of pixels only the first, the lowest, the highest and the last: the line looks the

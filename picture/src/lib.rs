@@ -6,13 +6,20 @@
 
 mod annotations;
 mod axes;
+mod bar;
 mod chart;
 mod colour;
+mod covers;
 mod displacement;
 mod history;
+pub mod joints;
+mod legend;
 mod model;
 mod reduction;
+mod signs;
 mod slope;
+mod stage;
+pub mod structures;
 mod svg;
 
 use std::io;
@@ -23,12 +30,18 @@ use resvg::{tiny_skia, usvg};
 
 use enmm_io::files::{at_path, write_atomic};
 
-pub use annotations::model_annotations;
+pub use annotations::{bolt_marks, counted, model_annotations, stars};
+pub use axes::number_text;
 pub use chart::{Chart, ChartSeries, chart_picture};
+pub use covers::covers_picture;
 pub use displacement::displacement_picture;
-pub use history::{Series, history_picture};
-pub use model::{ModelAnnotations, model_picture};
+pub use history::{Series, StageStart, history_picture};
+pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
 pub use reduction::{failure_picture, trials_picture};
+pub use signs::Held;
+pub use stage::{
+    StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
+};
 
 /// The embedded font (DejaVu Sans), read once.
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {

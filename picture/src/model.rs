@@ -1,123 +1,243 @@
-//! The model before it moves: blocks, mesh, joints, supports, monitors and the covers of the stars.
+//! The model before it moves: blocks, joints and joint sets, supports, loads, water, bolts, monitors and ports.
 
 use std::collections::HashSet;
 
 use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
-use super::colour::{ACCENT, BLOCKS, COVERS, Colour, GREY, INK, LINES, WHITE};
+use super::colour::{ACCENT, BLOCKS, GREY, INK, LINES, POND, WATER, WHITE};
+use super::legend::{self, Entry, Legend, Sign};
+use super::signs::{self, Held, draw_held};
 use super::slope::{
-    BELOW_FRAME, LEFT, LINE_HEIGHT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines,
-    draw_filled, draw_title, outlines, outlines_show, time_text,
+    BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines, draw_filled,
+    draw_title, outlines, outlines_show, time_text,
 };
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
-use enmm::geometry::Point;
+use super::structures::{BoltKind, height_at};
+use super::svg::{Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
+use enmm::geometry::{Point, Vector};
 use enmm::model::Snapshot;
 
-/// Side (px) of the detail.
-const DETAIL: f64 = 440.0;
-/// Height (px) of the main frame at most.
-const HEIGHT_MAX: f64 = 680.0;
-/// More stars than this are shown in the detail only.
-const STARS_MAX: usize = 3000;
-/// Stars along a side of the detail, about.
-const STARS_ACROSS: f64 = 9.0;
+/// Height (px) of the frame at most.
+const HEIGHT_MAX: f64 = 760.0;
 /// Mean element area (px²) below which the mesh would only grey the picture.
 const MESH_AREA: f64 = 60.0;
 /// More pieces of joint traces than this are drawn as thin lines.
 const TRACES_MANY: usize = 2500;
-/// Distance (px) of marks of supports at least.
-const SUPPORT_DISTANCE: f64 = 11.0;
-/// Lines of a legend at most.
-const LINES_MAX: usize = 9;
+/// Distance (px) of the signs of supports along an edge.
+const SUPPORT_DISTANCE: f64 = 32.0;
+/// Length (px) of the arrow of the largest force, and of a traction.
+const ARROWS: [f64; 2] = [64.0, 26.0];
+/// Distance (px) of the arrows of a traction.
+const ARROW_DISTANCE: f64 = 36.0;
 
 /// What a picture of the model shows besides its elements and blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ModelAnnotations {
     /// Title of the picture.
     pub title: String,
-    /// Position (m) of each star and the number of its physical covers.
-    pub stars: Vec<(Point, u32)>,
-    /// Points (m) that are held.
-    pub fixed: Vec<Point>,
+    /// Rows of supported points.
+    pub held: Vec<HeldRow>,
+    /// Boxes `[xmin, ymin, xmax, ymax]` (m) whose covers are held.
+    pub held_boxes: Vec<[f64; 4]>,
     /// Name and position (m) of each monitor.
     pub monitors: Vec<(String, Point)>,
+    /// Ports.
+    pub ports: Vec<PortMark>,
+    /// Loads with a place.
+    pub loads: Vec<LoadMark>,
+    /// What acts on all rock, in words.
+    pub facts: Vec<String>,
     /// Lines of text about the size of the model.
     pub counts: Vec<String>,
     /// Pieces of joint traces: both ends (m), and the index of the joint law in [`Snapshot::joint_laws`].
     pub trace_segments: Vec<([Point; 2], u32)>,
-    /// Head and far end (m) of each bolt.
-    pub bolts: Vec<[Point; 2]>,
+    /// Joint sets.
+    pub sets: Vec<SetMark>,
+    /// Bolts.
+    pub bolts: Vec<BoltMark>,
+    /// Surface of the water from left to right (m), level beyond its ends; empty without water.
+    pub water: Vec<Point>,
+    /// Whether the water also stands outside the rock.
+    pub pond: bool,
 }
 
-/// Draws the model: blocks in soft colours, mesh, joints by law, supports and monitors, and, enlarged, the position
-/// where the stars have most covers.
+/// Points (m) that are held alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldRow {
+    /// How.
+    pub held: Held,
+    /// Unit direction away from the rock.
+    pub outward: Vector,
+    /// The points (m), along one edge.
+    pub points: Vec<Point>,
+}
+
+/// Where hosts exchange values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PortMark {
+    /// Name.
+    pub name: String,
+    /// Where.
+    pub place: PortPlace,
+}
+
+/// The extent of a port (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PortPlace {
+    /// The block that holds a point.
+    Block(Point),
+    /// A segment of the outer boundary.
+    Boundary([Point; 2]),
+    /// A segment along a joint.
+    Joint([Point; 2]),
+}
+
+/// A load with a place (m).
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadMark {
+    /// Force (N/m) and moment (N·m/m, counter-clockwise).
+    Point {
+        /// Where.
+        point: Point,
+        /// Force (N/m).
+        force: Vector,
+        /// Moment (N·m/m).
+        moment: f64,
+        /// Name and value.
+        label: String,
+    },
+    /// Traction along an edge.
+    Traction {
+        /// The edge.
+        edge: [Point; 2],
+        /// Traction (Pa).
+        traction: Vector,
+        /// Name and value.
+        label: String,
+    },
+    /// Pressure (Pa) that pushes into the rock.
+    Pressure {
+        /// The edge.
+        edge: [Point; 2],
+        /// Pressure (Pa).
+        pressure: f64,
+        /// Name and value.
+        label: String,
+    },
+    /// Fluid pressure in joints along a segment.
+    Joint {
+        /// The segment.
+        edge: [Point; 2],
+        /// Name and value.
+        label: String,
+    },
+}
+
+/// A bolt of the case.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct BoltMark {
+    /// Name.
+    pub name: Option<String>,
+    /// Head and far end (m).
+    pub ends: [Point; 2],
+    /// Largest tension (N per metre of depth) along it.
+    pub force: f64,
+    /// What it is.
+    pub kind: BoltKind,
+}
+
+/// A joint set of the case.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SetMark {
+    /// Name, such as `set 1`.
+    pub name: String,
+    /// Angle and spacing.
+    pub detail: String,
+    /// Unit direction of its joints.
+    pub direction: Vector,
+    /// A point of one of its joints (m); none when it cuts no rock.
+    pub place: Option<Point>,
+}
+
+/// Draws the model: blocks, or rocks where there are several, in soft colours, mesh, joints by law, joint sets,
+/// supports by kind, loads, water, bolts, monitors and ports.
 pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Picture {
-    let model = Model { snapshot, annotations, spacing: star_spacing(annotations) };
-    let detail = model.detail();
-    let right = if detail.is_some() { WIDTH - MARGIN - DETAIL - LEFT } else { WIDTH - MARGIN };
-    let area = Rect { left: LEFT, top: TOP, width: right - LEFT, height: HEIGHT_MAX };
-    let view = View::fit(model.bounds(), area);
-    let bottom = view.area.bottom().max(detail.map_or(0.0, |detail| detail.area.bottom()));
+    let model = Model { snapshot, annotations };
     let legends = model.legends();
-    let lines = legends.iter().map(|legend| legend.entries.len()).max().unwrap_or(0);
-    let legend_top = bottom + BELOW_FRAME + 30.0;
-    let mut sheet = Svg::new(WIDTH, legend_top + LINE_HEIGHT * (lines as f64 + 0.5) + MARGIN);
+    let wide = Rect { left: LEFT, top: TOP, width: WIDTH - MARGIN - LEFT, height: HEIGHT_MAX };
+    let view = View::fit(model.bounds(), wide);
+    let beside = WIDTH - MARGIN - legend::BESIDE - view.area.right() >= legend::COLUMN;
+    let below = view.area.bottom() + BELOW_FRAME;
+    let bottom = if beside {
+        below.max(TOP + legend::height_beside(&legends))
+    } else {
+        below + 30.0 + legend::height_below(&legends)
+    };
+    let mut sheet = Svg::new(WIDTH, bottom + MARGIN);
     draw_title(&mut sheet, &annotations.title, &time_text(snapshot.time));
     model.draw(&mut sheet, &view);
-    if let Some(detail) = detail {
-        model.draw_detail(&mut sheet, &view, &detail);
+    if beside {
+        legend::draw_beside(&mut sheet, &legends, [view.area.right() + legend::BESIDE, TOP]);
+    } else {
+        legend::draw_below(&mut sheet, &legends, LEFT, below + 30.0);
     }
-    draw_legends(&mut sheet, &legends, legend_top);
     sheet.finish()
 }
 
-struct Model<'a> {
-    snapshot: &'a Snapshot,
-    annotations: &'a ModelAnnotations,
-    /// Distance (m) of neighbouring stars, about.
-    spacing: f64,
+/// A model to be drawn.
+pub(super) struct Model<'a> {
+    /// Its blocks and elements.
+    pub snapshot: &'a Snapshot,
+    /// What decorates them.
+    pub annotations: &'a ModelAnnotations,
 }
 
 impl Model<'_> {
-    fn bounds(&self) -> Option<Bounds> {
+    /// What there is to see (m).
+    pub fn bounds(&self) -> Option<Bounds> {
         let traces = self.annotations.trace_segments.iter().flat_map(|(ends, _)| ends);
         let blocks = self.snapshot.boundaries.iter().flat_map(|boundary| &boundary.loops.points);
-        Bounds::of(self.snapshot.elements.points.iter().chain(blocks).chain(traces))
-    }
-
-    /// The enlarged view; none without stars.
-    fn detail(&self) -> Option<View> {
-        let area = Rect { left: WIDTH - MARGIN - DETAIL, top: TOP, width: DETAIL, height: DETAIL };
-        let half_width = 0.5 * STARS_ACROSS * self.spacing;
-        let centre = busiest(&self.annotations.stars, half_width)?;
-        (half_width > 0.0).then(|| View::exact(Bounds::square(centre, half_width), area))
+        let bolts = self.annotations.bolts.iter().flat_map(|bolt| &bolt.ends);
+        Bounds::of(self.snapshot.elements.points.iter().chain(blocks).chain(traces).chain(bolts))
     }
 
     fn draw(&self, sheet: &mut Svg, view: &View) {
-        let elements = self.snapshot.elements.len().max(1) as f64;
-        let element_area = view.area.width * view.area.height / elements;
         sheet.clipped(&view.area, |sheet| {
-            self.draw_blocks(sheet, view, element_area > MESH_AREA);
-            let many = self.annotations.trace_segments.len() > TRACES_MANY;
-            if !many || outlines_show(self.snapshot, view) {
-                self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
-            }
-            if self.annotations.stars.len() <= STARS_MAX {
-                self.draw_stars(sheet, view, (0.1 * self.spacing * view.scale).clamp(0.8, 2.2));
-            }
+            self.draw_pond(sheet, view);
+            self.draw_rock(sheet, view);
+            self.draw_water(sheet, view);
+            self.draw_boxes(sheet, view);
         });
-        self.draw_bolts(sheet, view);
+        let mut labels = Labels::new(view.area);
+        draw_bolts(sheet, view, &self.annotations.bolts);
         draw_absence(sheet, view, &self.snapshot.elements);
-        self.draw_supports(sheet, view);
-        self.draw_monitors(sheet, view);
+        self.draw_held(sheet, view);
+        self.draw_loads(sheet, view, &mut labels);
+        self.draw_ports_and_monitors(sheet, view, &mut labels);
+        self.draw_sets(sheet, view, &mut labels);
         view.draw_axes(sheet);
     }
 
+    /// Blocks, mesh and joints.
+    pub fn draw_rock(&self, sheet: &mut Svg, view: &View) {
+        let elements = self.snapshot.elements.len().max(1) as f64;
+        let element_area = view.area.width * view.area.height / elements;
+        self.draw_blocks(sheet, view, element_area > MESH_AREA);
+        let many = self.annotations.trace_segments.len() > TRACES_MANY;
+        if !many || outlines_show(self.snapshot, view) {
+            self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
+        }
+    }
+
+    /// Whether colours stand for rocks.
+    fn has_rocks(&self) -> bool {
+        self.snapshot.rocks.len() > 1
+    }
+
     /// Fills, mesh, hatched held blocks, block outlines.
-    fn draw_blocks(&self, sheet: &mut Svg, view: &View, with_mesh: bool) {
+    pub fn draw_blocks(&self, sheet: &mut Svg, view: &View, with_mesh: bool) {
         let snapshot = self.snapshot;
-        let block = |k: usize| snapshot.block.get(k).map_or(0, |&block| block as usize);
-        draw_filled(sheet, &snapshot.elements, view, &BLOCKS, block);
+        let of = if self.has_rocks() { &snapshot.rock } else { &snapshot.block };
+        draw_filled(sheet, &snapshot.elements, view, &BLOCKS, |k| of.get(k).map_or(0, |&number| number as usize));
         if with_mesh {
             sheet.path(&outlines(&snapshot.elements, view), Style::line(WHITE, 0.8).opacity(0.9));
         }
@@ -125,7 +245,8 @@ impl Model<'_> {
         draw_block_outlines(sheet, snapshot, view);
     }
 
-    fn draw_traces(&self, sheet: &mut Svg, view: &View, width: f64) {
+    /// Joints, coloured by law.
+    pub fn draw_traces(&self, sheet: &mut Svg, view: &View, width: f64) {
         for (law, &colour) in LINES.iter().enumerate() {
             let mut path = Path::default();
             let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
@@ -137,253 +258,268 @@ impl Model<'_> {
         }
     }
 
-    /// A line with a plate at the head for each bolt.
-    fn draw_bolts(&self, sheet: &mut Svg, view: &View) {
+    /// Water outside the rock, which is drawn over it afterwards.
+    fn draw_pond(&self, sheet: &mut Svg, view: &View) {
+        let bounds = self.bounds().filter(|_| self.annotations.pond);
+        if let (Some(bounds), false) = (bounds, self.annotations.water.is_empty()) {
+            let mut corners = surface_between(&self.annotations.water, bounds.min.x, bounds.max.x);
+            corners.iter_mut().for_each(|p| p.y = p.y.max(bounds.min.y));
+            corners.extend([Point::new(bounds.max.x, bounds.min.y), bounds.min]);
+            let mut path = Path::default();
+            path.polygon(corners.iter().map(|corner| view.pixel(corner)));
+            sheet.path(&path, Style::fill(POND));
+        }
+    }
+
+    /// The surface of the water with its triangle.
+    fn draw_water(&self, sheet: &mut Svg, view: &View) {
+        draw_water(sheet, view, &self.annotations.water);
+    }
+
+    fn draw_boxes(&self, sheet: &mut Svg, view: &View) {
         let mut path = Path::default();
-        for ends in self.annotations.bolts.iter().filter(|ends| ends.iter().all(is_drawable)) {
-            let [[x, y], [u, v]] = [view.pixel(&ends[0]), view.pixel(&ends[1])];
-            let length = (u - x).hypot(v - y).max(f64::MIN_POSITIVE);
-            let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
-            path.line([[x, y], [u, v]]);
-            path.line([[x + plate[0], y + plate[1]], [x - plate[0], y - plate[1]]]);
-        }
-        sheet.path(&path, Style::line(ACCENT, 2.6));
-    }
-
-    fn draw_stars(&self, sheet: &mut Svg, view: &View, radius: f64) {
-        for (position, covers) in self.stars_in(view) {
-            sheet.circle(view.pixel(position), radius, Style::fill(cover_colour(*covers)));
-        }
-    }
-
-    fn stars_in(&self, view: &View) -> impl Iterator<Item = &(Point, u32)> {
-        let world = view.world;
-        self.annotations.stars.iter().filter(move |(position, _)| is_drawable(position) && world.contains(position))
-    }
-
-    /// Triangles below the held points, thinned where they would overlap.
-    fn draw_supports(&self, sheet: &mut Svg, view: &View) {
-        let mut marked = HashSet::new();
-        let mut path = Path::default();
-        for point in self.annotations.fixed.iter().filter(|point| is_drawable(point)) {
-            let [x, y] = view.pixel(point);
-            if marked.insert([x, y].map(|coordinate| (coordinate / SUPPORT_DISTANCE).floor() as i64)) {
-                path.polygon(support([x, y]));
+        for [left, low, right, high] in &self.annotations.held_boxes {
+            let corners = [[left, low], [right, low], [right, high], [left, high]];
+            let corners = corners.map(|[x, y]| Point::new(*x, *y));
+            if corners.iter().all(is_drawable) {
+                path.polygon(corners.iter().map(|corner| view.pixel(corner)));
             }
         }
-        sheet.path(&path, Style::fill(WHITE).edged(INK, 1.3));
+        sheet.path(&path, Style::line(INK, 1.6).dashed());
     }
 
-    fn draw_monitors(&self, sheet: &mut Svg, view: &View) {
-        let mut labels = Labels::new(view.area);
-        let monitors = self.annotations.monitors.iter().filter(|(_, position)| is_drawable(position));
-        let marks: Vec<_> = monitors.map(|(name, position)| (name, view.pixel(position))).collect();
-        for (_, mark) in &marks {
-            draw_monitor(sheet, *mark);
-            labels.avoid(Rect { left: mark[0], top: mark[1], width: 0.0, height: 0.0 }.grown(7.0));
-        }
-        for (name, mark) in marks {
-            let name = fitted(name, LABEL_SIZE, 260.0);
-            if let Some(position) = labels.position(mark, &name) {
-                sheet.text(position, &name, TextStyle::new(LABEL_SIZE).halo());
+    /// Signs along held edges, evenly where there are supports.
+    fn draw_held(&self, sheet: &mut Svg, view: &View) {
+        for row in &self.annotations.held {
+            let out = [row.outward.x, -row.outward.y];
+            for tip in spread(row, view) {
+                draw_held(sheet, row.held, tip, out);
             }
         }
     }
 
-    /// The enlarged part, and in the main view the frame of what it enlarges.
-    fn draw_detail(&self, sheet: &mut Svg, main: &View, detail: &View) {
-        let [left, top] = main.pixel(&Point::new(detail.world.min.x, detail.world.max.y));
-        let side = detail.world.size().x * main.scale;
-        let frame = Rect { left, top, width: side, height: side };
-        sheet.clipped(&main.area, |sheet| sheet.rect(&frame, Style::line(ACCENT, 2.2)));
-        let radius = (0.2 * self.spacing * detail.scale).clamp(3.0, 11.0);
-        sheet.clipped(&detail.area, |sheet| {
-            self.draw_blocks(sheet, detail, true);
-            self.draw_traces(sheet, detail, 2.6);
-            for (position, covers) in self.stars_in(detail) {
-                draw_star(sheet, detail.pixel(position), *covers, radius);
-            }
+    fn draw_loads(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+        let forces = self.annotations.loads.iter().filter_map(|load| match load {
+            LoadMark::Point { force, .. } => Some(force.norm()),
+            _ => None,
         });
-        detail.draw_axes(sheet);
-        sheet.rect(&detail.area, Style::line(ACCENT, 2.2));
-        let style = TextStyle::new(LABEL_SIZE).colour(ACCENT);
-        sheet.text([detail.area.left, TOP - 10.0], "Detail: covers of each star", style);
+        let largest = forces.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        let style = Style::line(INK, 2.2);
+        for load in &self.annotations.loads {
+            let (at, label) = match load {
+                LoadMark::Point { point, force, moment, label } => {
+                    let tip = view.pixel(point);
+                    let tail = tail(tip, *force, ARROWS[0] * (force.norm() / largest).max(0.3));
+                    signs::draw_arrow(sheet, tail, tip, style);
+                    if *moment != 0.0 {
+                        signs::draw_moment(sheet, tip, *moment > 0.0, style);
+                    }
+                    (tail, label)
+                }
+                LoadMark::Traction { edge, traction, label } => {
+                    (draw_row_of_arrows(sheet, view, edge, *traction, style), label)
+                }
+                LoadMark::Pressure { edge, pressure, label } => {
+                    let inward = self.inward(edge) * pressure.signum();
+                    (draw_row_of_arrows(sheet, view, edge, inward, style), label)
+                }
+                LoadMark::Joint { edge, label } => {
+                    let [a, b] = edge.map(|end| view.pixel(&end));
+                    sheet.line(a, b, Style::line(WATER, 4.0).dashed());
+                    ([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], label)
+                }
+            };
+            draw_label(sheet, labels, at, label);
+        }
+    }
+
+    /// Unit normal of an edge into the rock.
+    fn inward(&self, [a, b]: &[Point; 2]) -> Vector {
+        let along = b - a;
+        let normal = Vector::new(-along.y, along.x) / along.norm().max(f64::MIN_POSITIVE);
+        let blocks = self.snapshot.boundaries.iter().flat_map(|boundary| &boundary.loops.points);
+        let rock = Bounds::of(blocks).map_or(*a, |bounds| (bounds.min + bounds.max) * 0.5);
+        if (rock - (a + b) * 0.5).dot(&normal) < 0.0 { -normal } else { normal }
+    }
+
+    /// Marks of ports and monitors with their names; one name where both share name and place.
+    fn draw_ports_and_monitors(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+        let mut named: Vec<(&String, Pixel)> = Vec::new();
+        for port in &self.annotations.ports {
+            let mark = match port.place {
+                PortPlace::Block(point) => point,
+                PortPlace::Boundary(ends) | PortPlace::Joint(ends) => {
+                    let style = Style::line(ACCENT, 4.0).opacity(0.55);
+                    let style = if matches!(port.place, PortPlace::Joint(_)) { style.dashed() } else { style };
+                    if ends.iter().all(is_drawable) {
+                        sheet.line(view.pixel(&ends[0]), view.pixel(&ends[1]), style);
+                    }
+                    (ends[0] + ends[1]) * 0.5
+                }
+            };
+            if is_drawable(&mark) {
+                signs::draw_port(sheet, view.pixel(&mark));
+                named.push((&port.name, view.pixel(&mark)));
+            }
+        }
+        for (name, position) in self.annotations.monitors.iter().filter(|(_, position)| is_drawable(position)) {
+            signs::draw_monitor(sheet, view.pixel(position));
+            let mark = view.pixel(position);
+            let near = |other: &Pixel| (other[0] - mark[0]).hypot(other[1] - mark[1]) < 12.0;
+            if !named.iter().any(|(other, place)| *other == name && near(place)) {
+                named.push((name, mark));
+            }
+        }
+        for (_, mark) in &named {
+            labels.avoid(Rect { left: mark[0], top: mark[1], width: 0.0, height: 0.0 }.grown(8.0));
+        }
+        for (name, mark) in named {
+            draw_label(sheet, labels, mark, name);
+        }
+    }
+
+    fn draw_sets(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+        for set in &self.annotations.sets {
+            if let Some(place) = set.place.filter(is_drawable) {
+                let [x, y] = view.pixel(&place);
+                let [u, v] = [18.0 * set.direction.x, -18.0 * set.direction.y];
+                sheet.line([x - u, y - v], [x + u, y + v], Style::line(INK, 4.0));
+                draw_label(sheet, labels, [x, y], &set.name);
+            }
+        }
     }
 
     fn legends(&self) -> Vec<Legend> {
-        let marks = Legend { title: "Marks", entries: self.mark_entries() };
-        let joints = Legend { title: "Joints", entries: self.joint_entries() };
-        let stars = Legend { title: "Covers of a star", entries: self.star_entries() };
-        let counts =
-            self.annotations.counts.iter().map(|line| Entry { sign: Sign::None, text: line.clone() }).collect();
-        let all = [joints, marks, stars, Legend { title: "Model", entries: counts }];
-        all.into_iter().filter(|legend| !legend.entries.is_empty()).map(Legend::shortened).collect()
+        let counts = self.annotations.counts.iter().chain(&self.annotations.facts);
+        let all = [
+            Legend { title: "Rock", entries: self.rock_entries() },
+            Legend { title: "Joints", entries: self.joint_entries() },
+            Legend { title: "Supports and marks", entries: self.mark_entries() },
+            Legend { title: "Model", entries: counts.map(|line| Entry::new(Sign::None, line)).collect() },
+        ];
+        all.into_iter().filter(|legend| !legend.entries.is_empty()).collect()
+    }
+
+    fn rock_entries(&self) -> Vec<Entry> {
+        let rocks = self.snapshot.rocks.iter().enumerate().filter(|_| self.has_rocks());
+        rocks.map(|(k, name)| Entry::new(Sign::Fill(BLOCKS[k % BLOCKS.len()]), name)).collect()
     }
 
     fn joint_entries(&self) -> Vec<Entry> {
         let used: HashSet<u32> = self.annotations.trace_segments.iter().map(|(_, law)| *law).collect();
         let laws = self.snapshot.joint_laws.iter().enumerate().filter(|(law, _)| used.contains(&(*law as u32)));
-        laws.map(|(law, name)| Entry { sign: Sign::Line(LINES[law % LINES.len()]), text: name.clone() }).collect()
+        let mut entries: Vec<Entry> =
+            laws.map(|(law, name)| Entry::new(Sign::Line(LINES[law % LINES.len()], 2.4), name)).collect();
+        let sets = self.annotations.sets.iter().filter(|set| set.place.is_some());
+        entries.extend(sets.map(|set| Entry::new(Sign::None, format!("{}: {}", set.name, set.detail))));
+        entries
     }
 
     fn mark_entries(&self) -> Vec<Entry> {
-        let held_blocks = self.snapshot.boundaries.iter().any(|boundary| boundary.fixed);
+        let annotations = self.annotations;
+        let held = |held: Held| annotations.held.iter().any(|row| row.held == held);
+        let place = |is: fn(&PortPlace) -> bool| annotations.ports.iter().any(|port| is(&port.place));
+        let bolt = |later: bool| annotations.bolts.iter().any(|bolt| (bolt.kind == BoltKind::Absent) == later);
+        let joints = annotations.loads.iter().any(|load| matches!(load, LoadMark::Joint { .. }));
+        let forces = annotations.loads.iter().any(|load| !matches!(load, LoadMark::Joint { .. }));
         let all = [
-            (!self.snapshot.boundaries.is_empty(), Sign::Line(INK), "block outline"),
-            (held_blocks, Sign::Hatch, "block held"),
-            (!self.annotations.fixed.is_empty(), Sign::Support, "point held"),
-            (!self.annotations.bolts.is_empty(), Sign::Line(ACCENT), "bolt"),
-            (!self.annotations.monitors.is_empty(), Sign::Monitor, "monitor or port"),
+            (held(Held::Pinned), Sign::Held(Held::Pinned), "held along x and y"),
+            (held(Held::Roller), Sign::Held(Held::Roller), "held along one axis"),
+            (held(Held::Quiet), Sign::Held(Held::Quiet), "quiet boundary"),
+            (held(Held::FreeField), Sign::Held(Held::FreeField), "free field"),
+            (!annotations.held_boxes.is_empty(), Sign::Dashed(INK, 1.6), "box held"),
+            (self.snapshot.boundaries.iter().any(|boundary| boundary.fixed), Sign::Hatch, "block held"),
+            (!annotations.water.is_empty(), Sign::Water, "water table"),
+            (forces, Sign::Arrow(INK), "load"),
+            (joints, Sign::Dashed(WATER, 4.0), "pressure in joints"),
+            (bolt(false), Sign::Bolt, "bolt"),
+            (bolt(true), Sign::Dashed(ACCENT, 2.0), "bolt installed later"),
+            (!annotations.monitors.is_empty(), Sign::Monitor, "monitor"),
+            (place(|place| !matches!(place, PortPlace::Joint(_))), Sign::Port, "port"),
+            (place(|place| matches!(place, PortPlace::Joint(_))), Sign::Dashed(ACCENT, 4.0), "port in joints"),
         ];
         let present = all.into_iter().filter(|(present, ..)| *present);
-        present.map(|(_, sign, text)| Entry { sign, text: text.to_owned() }).collect()
-    }
-
-    fn star_entries(&self) -> Vec<Entry> {
-        let names = ["1 cover", "2 covers", "3 covers", "4 or more"];
-        let count =
-            |class: usize| self.annotations.stars.iter().filter(|(_, covers)| cover_class(*covers) == class).count();
-        let classes = names.iter().enumerate().map(|(class, name)| (class, name, count(class)));
-        let entry =
-            |(class, name, count)| Entry { sign: Sign::Dot(COVERS[class]), text: format!("{name}: {count} stars") };
-        classes.filter(|(_, _, count)| *count > 0).map(entry).collect()
+        present.map(|(_, sign, text)| Entry::new(sign, text)).collect()
     }
 }
 
-/// Index into [`COVERS`].
-fn cover_class(covers: u32) -> usize {
-    (covers.clamp(1, COVERS.len() as u32) - 1) as usize
+/// A text in a white rim near a position, unless there is no room.
+pub fn draw_label(sheet: &mut Svg, labels: &mut Labels, at: Pixel, text: &str) {
+    let text = fitted(text, LABEL_SIZE, 260.0);
+    if let Some(position) = labels.position(at, &text).filter(|_| !text.is_empty()) {
+        sheet.text(position, &text, TextStyle::new(LABEL_SIZE).halo());
+    }
 }
 
-fn cover_colour(covers: u32) -> Colour {
-    COVERS[cover_class(covers)]
+/// Bolts with their plates; those that a stage installs later are broken lines.
+pub fn draw_bolts(sheet: &mut Svg, view: &View, bolts: &[BoltMark]) {
+    for bolt in bolts.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
+        let style = Style::line(ACCENT, 2.6);
+        let style = if bolt.kind == BoltKind::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
+        signs::draw_bolt(sheet, bolt.ends.map(|end| view.pixel(&end)), style);
+    }
 }
 
-/// Distance (m) of neighbours if the stars were spread evenly over a triangular lattice.
-fn star_spacing(annotations: &ModelAnnotations) -> f64 {
-    let nearest = |position: &Point| {
-        let others = annotations.stars.iter().map(|(other, _)| (other - position).norm_squared());
-        others.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min).sqrt()
+/// The surface of water across a view, with its triangle.
+pub fn draw_water(sheet: &mut Svg, view: &View, surface: &[Point]) {
+    if surface.is_empty() || !surface.iter().all(is_drawable) {
+        return;
+    }
+    let line = surface_between(surface, view.world.min.x, view.world.max.x);
+    let mut path = Path::default();
+    path.line(line.iter().map(|point| view.pixel(point)));
+    sheet.path(&path, Style::line(WATER, 2.4));
+    let x = view.world.min.x + 0.06 * view.world.size().x;
+    signs::draw_water_mark(sheet, view.pixel(&Point::new(x, height_at(surface, x))));
+}
+
+/// A surface from `left` to `right` (m), level beyond its ends.
+fn surface_between(surface: &[Point], left: f64, right: f64) -> Vec<Point> {
+    let end = |x: f64| Point::new(x, height_at(surface, x));
+    let inside = surface.iter().filter(|point| left < point.x && point.x < right).copied();
+    std::iter::once(end(left)).chain(inside).chain(std::iter::once(end(right))).collect()
+}
+
+/// Where an arrow of a length (px) along a force begins that ends at `tip`.
+fn tail(tip: Pixel, force: Vector, length: f64) -> Pixel {
+    let size = force.norm();
+    if size > 0.0 { [tip[0] - length * force.x / size, tip[1] + length * force.y / size] } else { tip }
+}
+
+/// Arrows onto an edge with a line through their tails; returns the middle of that line.
+fn draw_row_of_arrows(sheet: &mut Svg, view: &View, edge: &[Point; 2], force: Vector, style: Style) -> Pixel {
+    let [a, b] = edge.map(|end| view.pixel(&end));
+    let at = |share: f64| [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
+    let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / ARROW_DISTANCE).clamp(1.0, 60.0).round();
+    let mut path = Path::default();
+    for k in 0..=count as usize {
+        let tip = at(k as f64 / count);
+        signs::push_arrow(&mut path, tail(tip, force, ARROWS[1]), tip, 7.0);
+    }
+    path.line([0.0, 1.0].map(|share| tail(at(share), force, ARROWS[1])));
+    sheet.path(&path, style);
+    // A label beside the middle keeps off the arrows.
+    tail(at(0.5), force, ARROWS[1] + LABEL_SIZE)
+}
+
+/// Where signs stand along a row of supported points: evenly, where a point is near.
+fn spread(row: &HeldRow, view: &View) -> Vec<Pixel> {
+    let points: Vec<Pixel> = row.points.iter().filter(|p| is_drawable(p)).map(|p| view.pixel(p)).collect();
+    let along = [row.outward.y, row.outward.x];
+    let place = |p: &Pixel| p[0] * along[0] + p[1] * along[1];
+    let (low, high) =
+        points.iter().map(place).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let count = ((high - low) / SUPPORT_DISTANCE).floor().max(1.0);
+    let reach = 0.75 * SUPPORT_DISTANCE.max(1.5 * (high - low) / points.len() as f64);
+    let targets = (0..count as usize).map(|k| low + (k as f64 + 0.5) * (high - low) / count);
+    let nearest = |s: f64| {
+        let distance = |p: &&Pixel| (place(p) - s).abs();
+        let near = points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let shift = s - place(near);
+        (shift.abs() <= reach).then(|| [near[0] + along[0] * shift, near[1] + along[1] * shift])
     };
-    // The lattice is regular: the nearest neighbour of any star tells its size.
-    let first = annotations
-        .stars
-        .iter()
-        .map(|(position, _)| position)
-        .find(|position| is_drawable(position))
-        .map_or(0.0, nearest);
-    if first.is_finite() { first } else { 1.0 }
-}
-
-/// The star about which, within `half_width` (m), the stars have most covers per star.
-fn busiest(stars: &[(Point, u32)], half_width: f64) -> Option<Point> {
-    let drawable: Vec<_> = stars.iter().filter(|(position, _)| is_drawable(position)).collect();
-    let most = drawable.iter().map(|(_, covers)| *covers).max()?;
-    let covers_about = |centre: &Point| {
-        let near = Bounds::square(*centre, half_width);
-        drawable
-            .iter()
-            .filter(|(position, _)| near.contains(position))
-            .map(|(_, covers)| u64::from(*covers))
-            .sum::<u64>()
-    };
-    let candidates = drawable.iter().filter(|(_, covers)| *covers == most).take(200).map(|(position, _)| *position);
-    // The first of equals wins.
-    candidates
-        .map(|position| (covers_about(&position), position))
-        .reduce(|best, next| if next.0 > best.0 { next } else { best })
-        .map(|(_, position)| position)
-}
-
-fn draw_star(sheet: &mut Svg, [x, y]: Pixel, covers: u32, radius: f64) {
-    sheet.circle([x, y], radius, Style::fill(cover_colour(covers)).edged(WHITE, 1.2));
-    if radius >= 8.0 {
-        let size = 1.35 * radius;
-        let style = TextStyle::new(size).anchor(Anchor::Middle).colour(WHITE);
-        sheet.text([x, y + 0.36 * size], &covers.to_string(), style);
-    }
-}
-
-/// A triangle whose top is the held point.
-fn support([x, y]: Pixel) -> [Pixel; 3] {
-    [[x, y], [x - 5.0, y + 9.0], [x + 5.0, y + 9.0]]
-}
-
-fn draw_monitor(sheet: &mut Svg, position: Pixel) {
-    sheet.circle(position, 6.0, Style::fill(WHITE).edged(ACCENT, 2.2));
-    sheet.circle(position, 2.0, Style::fill(ACCENT));
-}
-
-/// A column of explained signs.
-struct Legend {
-    title: &'static str,
-    entries: Vec<Entry>,
-}
-
-struct Entry {
-    sign: Sign,
-    text: String,
-}
-
-enum Sign {
-    None,
-    Line(Colour),
-    Dot(Colour),
-    Hatch,
-    Support,
-    Monitor,
-}
-
-/// Width (px) kept for a sign.
-const SIGN_WIDTH: f64 = 44.0;
-
-impl Legend {
-    /// With the last lines replaced by their number, if there are too many.
-    fn shortened(mut self) -> Self {
-        if self.entries.len() > LINES_MAX {
-            let left_out = self.entries.len() - (LINES_MAX - 1);
-            self.entries.truncate(LINES_MAX - 1);
-            self.entries.push(Entry { sign: Sign::None, text: format!("and {left_out} more") });
-        }
-        self
-    }
-}
-
-/// Draws the legends side by side.
-fn draw_legends(sheet: &mut Svg, legends: &[Legend], top: f64) {
-    let width = (WIDTH - LEFT - MARGIN) / legends.len().max(1) as f64;
-    for (k, legend) in legends.iter().enumerate() {
-        let left = LEFT + k as f64 * width;
-        sheet.text([left, top], legend.title, TextStyle::new(LABEL_SIZE + 1.0).colour(GREY));
-        for (line, entry) in legend.entries.iter().enumerate() {
-            let y = top + LINE_HEIGHT * (line + 1) as f64;
-            let indent = draw_sign(sheet, &entry.sign, [left, y - 5.0]);
-            let text = fitted(&entry.text, LABEL_SIZE, width - indent - 20.0);
-            sheet.text([left + indent, y], &text, TextStyle::new(LABEL_SIZE));
-        }
-    }
-}
-
-/// Draws a sign centred on the height of `y`; returns the room it takes (px).
-fn draw_sign(sheet: &mut Svg, sign: &Sign, [left, y]: Pixel) -> f64 {
-    let middle = left + 0.4 * SIGN_WIDTH;
-    match *sign {
-        Sign::None => return 0.0,
-        Sign::Line(colour) => sheet.line([left, y], [left + 0.8 * SIGN_WIDTH, y], Style::line(colour, 2.4)),
-        Sign::Dot(colour) => sheet.circle([middle, y], 7.0, Style::fill(colour)),
-        Sign::Monitor => draw_monitor(sheet, [middle, y]),
-        Sign::Support => {
-            let mut path = Path::default();
-            path.polygon(support([middle, y - 5.0]));
-            sheet.path(&path, Style::fill(WHITE).edged(INK, 1.3));
-        }
-        Sign::Hatch => {
-            let (right, half) = (left + 0.8 * SIGN_WIDTH, 8.0);
-            let mut path = Path::default();
-            path.polygon([[left, y - half], [right, y - half], [right, y + half], [left, y + half]]);
-            sheet.hatched(&path, GREY);
-            sheet.path(&path, Style::line(INK, 0.9));
-        }
-    }
-    SIGN_WIDTH
+    targets.filter_map(nearest).collect()
 }

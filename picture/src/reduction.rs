@@ -1,6 +1,7 @@
 //! Pictures of a strength reduction: trials against F, and the slope with the blocks that fail.
 
 use super::Picture;
+use super::annotations::counted;
 use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, superscript};
 use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE};
 use super::slope::{
@@ -145,6 +146,16 @@ impl Chart {
     }
 }
 
+/// What the blocks of a trial do.
+fn verb(trial: &Trial) -> &'static str {
+    match (trial.verdict == Verdict::Caught, trial.failing.len() == 1) {
+        (true, true) => "slides and is caught",
+        (true, false) => "slide and are caught",
+        (false, true) => "fails",
+        (false, false) => "fail",
+    }
+}
+
 /// Draws the slope at the end of the least unstable trial, with the blocks that fail; at rest when there was none.
 pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
     let snapshot = reduction.simulation.snapshot();
@@ -156,9 +167,9 @@ pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
     let mut sheet = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     let caption = match trial {
         Some(trial) => format!(
-            "{} blocks {} at F = {:.4}: {:.4} m², {:.1} % of the free rock",
-            trial.failing.len(),
-            if trial.verdict == Verdict::Caught { "slide and are caught" } else { "fail" },
+            "{} {} at F = {:.4}: {:.4} m², {:.1} % of the free rock",
+            counted(trial.failing.len(), "block"),
+            verb(trial),
             trial.factor,
             trial.failing_area(),
             100.0 * trial.failing_area() / reduction.free_area

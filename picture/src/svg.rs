@@ -234,9 +234,12 @@ pub struct Svg {
 impl Svg {
     /// A white sheet (px).
     pub fn new(width: f64, height: f64) -> Self {
-        let mut sheet = Self { width, height: height.ceil(), definitions: String::new(), body: String::new(), ids: 0 };
-        sheet.rect(&Rect { left: 0.0, top: 0.0, width, height: sheet.height }, Style::fill(WHITE));
-        sheet
+        Self { width, height: height.ceil(), definitions: String::new(), body: String::new(), ids: 0 }
+    }
+
+    /// The same sheet with another height (px).
+    pub fn cut(self, height: f64) -> Self {
+        Self { height: height.ceil(), ..self }
     }
 
     /// Draws a rectangle.
@@ -319,7 +322,8 @@ impl Svg {
         let Self { width, height, definitions, body, .. } = self;
         let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"");
         let _ = writeln!(svg, " viewBox=\"0 0 {width} {height}\" font-family=\"{FONT}, Verdana, sans-serif\">");
-        let _ = write!(svg, "<defs>\n{definitions}</defs>\n{body}</svg>\n");
+        let paper = format!("<rect width=\"{width}\" height=\"{height}\"{}/>", Style::fill(WHITE));
+        let _ = write!(svg, "<defs>\n{definitions}</defs>\n{paper}\n{body}</svg>\n");
         Picture { svg }
     }
 }

@@ -8,14 +8,12 @@ use enmm_report::{
     PAGE, Quantity, write_page,
 };
 
-use enmm::contact::{ContactState, EdgeId, NodeId, VertexEdge};
+use enmm::contact::{ContactState, EdgeId, NodeId};
 use enmm::cover::BlockId;
-use enmm::geometry::{Point, TraceId, Vector, polygon};
+use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::{BlockState, Simulation};
 use enmm_io::LoadedCase;
-
-/// Cosine of the angle between a face and the normal of a contact on it from which the face lies flat on the other.
-const FLAT: f64 = -0.94;
+use enmm_picture::joints;
 
 /// A film of a model.
 #[derive(Debug)]
@@ -260,44 +258,13 @@ fn block_frame(state: &BlockState) -> BlockFrame {
     }
 }
 
-/// State of each edge of the boundary. A contact stands for the stretch between two nodes in which it lies, and for
-/// the stretch beside its own node that lies flat on the other block.
+/// State of each edge of the boundary.
 fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
-    let boundary = &simulation.model().boundary;
-    let joint = |trace: &Option<TraceId>| if trace.is_none() { EdgeState::Free } else { EdgeState::Open };
-    let mut states: Vec<EdgeState> = boundary.trace.iter().map(joint).collect();
-    let positions = simulation.positions();
-    let mut mark = |node: NodeId, state: EdgeState| {
-        let mut edge = boundary.node_point[node];
-        let end = boundary.node_point[boundary.node_next[node]];
-        loop {
-            if states[edge] != EdgeState::Slip {
-                states[edge] = state;
-            }
-            edge = boundary.after(edge);
-            if edge == end {
-                break;
-            }
-        }
+    let shown = |state| match state {
+        None => EdgeState::Free,
+        Some(ContactState::Open) => EdgeState::Open,
+        Some(ContactState::Slip) => EdgeState::Slip,
+        Some(ContactState::Lock) => EdgeState::Lock,
     };
-    simulation.each_contact(|contact: &VertexEdge| {
-        let state = match contact.history.state {
-            ContactState::Open => return,
-            ContactState::Slip => EdgeState::Slip,
-            ContactState::Lock => EdgeState::Lock,
-        };
-        let node = contact.history.node;
-        mark(boundary.node_before[contact.history.edge], state);
-        let flat = |edge: EdgeId| {
-            let along = positions[boundary.after(edge)] - positions[edge];
-            Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
-        };
-        if flat(boundary.node_point[node]) {
-            mark(node, state);
-        }
-        if flat(boundary.node_edge_before[node]) {
-            mark(boundary.node_previous[node], state);
-        }
-    });
-    states
+    joints::edge_states(simulation).into_iter().map(shown).collect()
 }

@@ -17,5 +17,5 @@ pub use bound::{BoundFailure, bound, bound_record};
 pub use check::check;
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::write_bound_page;
-pub use run::{Observer, RunError, RunOptions, RunProgress, run};
+pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};
 pub use summary::{RunStatus, Summary};

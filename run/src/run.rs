@@ -17,6 +17,8 @@ use enmm_io::CaseError;
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint::CheckpointError;
 
+pub use results::draw_checked;
+
 /// How to run a case.
 #[derive(Debug, Default)]
 pub struct RunOptions<'a> {

@@ -1,32 +1,37 @@
 //! Frames for ParaView: VTK unstructured grids and the collection that puts them on a time axis.
 //!
-//! Every array is inline base64 (`format="binary"`, uncompressed, little-endian, 64-bit header): the one encoding that
-//! VTK, ParaView and meshio all read. Displacement jumps across joints, so elements share no points.
+//! Every array is inline base64 (`format="binary"`, zlib blocks, little-endian, 64-bit header), which VTK, ParaView and
+//! meshio all read. Displacement jumps across joints, so elements share no points. Names (of laws, rocks, bolts,
+//! fixities, states) are the component names of arrays of the field data, whose values are the numbers that stand for
+//! them: arrays of texts stop meshio.
+
+mod array;
 
 use std::fs;
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use base64::prelude::BASE64_STANDARD;
-use base64::write::EncoderWriter;
+use array::Array;
 use enmm::contact::ContactState;
-use enmm::geometry::Vector;
-use enmm::model::Snapshot;
-use enmm::model::snapshot::JointPoint;
+use enmm::geometry::Point;
+use enmm::model::{Simulation, Snapshot};
 use enmm_io::files::{at_path, write_atomic, write_atomic_by};
+use enmm_picture::joints::{JointPiece, Joints};
+use enmm_picture::structures::{self, BoltKind, BoltLine, SupportKind, SupportPoint, WetEdge};
 
-/// Bytes that become text together.
-const PIECE: usize = 1 << 13;
 /// Cell types of VTK.
 const VERTEX: u8 = 1;
 const POLY_VERTEX: u8 = 2;
+const LINE: u8 = 3;
 const POLYGON: u8 = 7;
 
 /// Writes the elements of a snapshot: one polygon each, with its own points at their current position.
 ///
-/// Point data: `displacement` (m), `velocity` (m/s), three components each. Cell data: `stress_xx`, `stress_yy`,
-/// `stress_xy` (Pa, tension positive), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (both Pa, in
-/// the plane), `block`, `rock`, and `plastic_strain` = √(⅔ εp:εp) where rock can yield. Field data: `TimeValue` (s).
+/// Point data: `displacement` (m), `velocity` (m/s), three components each. Cell data: `stress` (Pa, tension positive;
+/// XX, YY, ZZ, XY, YZ, XZ, of which those out of the plane are written as zero), its parts `stress_xx`, `stress_yy`,
+/// `stress_xy`, the principal stresses in the plane `principal_max` and `principal_min` (so that the greatest
+/// compression is `principal_min`), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (all Pa),
+/// `block`, `rock`, and `plastic_strain` = √(⅔ εp:εp) where rock can yield. Field data: `TimeValue` (s), `rock_names`.
 ///
 /// # Errors
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
@@ -38,18 +43,22 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     let plastic = yielding.then(|| Array::numbers("plastic_strain", snapshot.plastic_strain.iter().copied()));
     let mut grid = Grid {
         time: snapshot.time,
-        points: Array::vectors("Points", elements.points.iter()),
+        names: vec![Array::names("rock_names", &snapshot.rocks)],
+        points: Array::vectors("Points", elements.points.iter().copied()),
         cell_type: POLYGON,
         offsets: Array::ids("offsets", elements.start.get(1..).unwrap_or_default()),
         used: elements.start.last().map_or(0, |&end| end as usize),
         point_data: vec![
-            Array::vectors("displacement", snapshot.displacement.iter()),
-            Array::vectors("velocity", snapshot.velocity.iter()),
+            Array::vectors("displacement", snapshot.displacement.iter().copied()),
+            Array::vectors("velocity", snapshot.velocity.iter().copied()),
         ],
         cell_data: vec![
+            Array::tensors("stress", &snapshot.stress),
             of_stress("stress_xx", |[xx, _, _]| xx),
             of_stress("stress_yy", |[_, yy, _]| yy),
             of_stress("stress_xy", |[_, _, xy]| xy),
+            of_stress("principal_max", |[xx, yy, xy]| 0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)),
+            of_stress("principal_min", |[xx, yy, xy]| 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy)),
             of_stress("mean_stress", |[xx, yy, _]| 0.5 * (xx + yy)),
             of_stress("max_shear", |[xx, yy, xy]| (0.5 * (xx - yy)).hypot(xy)),
             Array::ids("block", &snapshot.block),
@@ -60,33 +69,126 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     grid.write(path)
 }
 
-/// Writes the joint points of a snapshot: one vertex each.
+/// Writes joints: one line for each piece of a joint, on the face of its first block, and for each piece of boundary
+/// that another block has come to touch.
 ///
-/// Point data: `normal_stress` (Pa, tension positive), `shear_stress` (Pa), `length` (m), `normal` (three components),
-/// `state` (0 open, 1 slip, 2 lock), `law` (index of the joint law). Field data: `TimeValue` (s).
+/// Cell data: `block_1`, `block_2` (equal where a joint ends inside a block), `opening` (m, apart positive), `slip` (m,
+/// along the joint), both since the start, of what lay face to face then; `force` (N/m, three components) on the first
+/// block, which sums over the pieces of a face to the force on it; `normal_stress` (Pa, tension positive) and
+/// `shear_stress` (Pa), the force on the face over the length of it that is closed; `state` (0 open, 1 slip, 2 lock),
+/// `law` (index of the joint law), `is_joint` (0 for a touched boundary, whose opening and slip are zero), `normal`
+/// (three components, out of the first block). Field data: `TimeValue` (s), `law_names`, `state_names`.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
-pub fn write_joints_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
-    let joints = &snapshot.joints;
-    let of_joint = |name, part: fn(&JointPoint) -> f64| Array::numbers(name, joints.iter().map(part));
+pub fn write_joints_vtu(joints: &[JointPiece], laws: &[String], time: f64, path: &Path) -> io::Result<()> {
+    let of_joint = |name, part: fn(&JointPiece) -> f64| Array::numbers(name, joints.iter().map(part));
+    let block = |name, k: usize| Array::integers(name, joints.iter().map(move |joint| joint.blocks[k] as usize));
+    let cell_data = vec![
+        block("block_1", 0),
+        block("block_2", 1),
+        of_joint("opening", |joint| joint.opening),
+        of_joint("slip", |joint| joint.slip),
+        Array::vectors("force", joints.iter().map(|joint| joint.force)),
+        of_joint("normal_stress", |joint| joint.normal_stress),
+        of_joint("shear_stress", |joint| joint.shear_stress),
+        Array::bytes("state", joints.iter().map(|joint| state_code(joint.state))),
+        Array::integers("law", joints.iter().map(|joint| joint.law as usize)),
+        Array::bytes("is_joint", joints.iter().map(|joint| u8::from(joint.is_joint))),
+        Array::vectors("normal", joints.iter().map(|joint| joint.normal)),
+    ];
+    let names = vec![Array::names("law_names", laws), Array::names("state_names", &["open", "slip", "lock"])];
+    let ends: Vec<Point> = joints.iter().flat_map(|joint| joint.ends).collect();
+    lines(time, names, &ends, Vec::new(), cell_data).write(path)
+}
+
+/// Writes bolts: one line for each free length of a bar.
+///
+/// Cell data: `force` (N per metre of depth, tension), `bolt` (index in the case), `state` (0 absent, 1 whole,
+/// 2 yielded, 3 broken). Field data: `TimeValue` (s), `bolt_names`, `state_names`.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn write_bolts_vtu(bolts: &[BoltLine], names: &[String], time: f64, path: &Path) -> io::Result<()> {
+    let code = |kind| match kind {
+        BoltKind::Absent => 0,
+        BoltKind::Whole => 1,
+        BoltKind::Yielded => 2,
+        BoltKind::Broken => 3,
+    };
+    let cell_data = vec![
+        Array::numbers("force", bolts.iter().map(|bolt| bolt.force)),
+        Array::integers("bolt", bolts.iter().map(|bolt| bolt.bolt as usize)),
+        Array::bytes("state", bolts.iter().map(move |bolt| code(bolt.kind))),
+    ];
+    let states = Array::names("state_names", &["absent", "whole", "yielded", "broken"]);
+    let ends: Vec<Point> = bolts.iter().flat_map(|bolt| bolt.ends).collect();
+    lines(time, vec![Array::names("bolt_names", names), states], &ends, Vec::new(), cell_data).write(path)
+}
+
+/// Writes supported points that hold: one vertex each.
+///
+/// Point data: `reaction` (N/m, three components) on the rock, `kind` (0 fixity, 1 spring and 2 dashpot of a quiet
+/// boundary or a free-field side), `fix` (index of the fixity in the case, or of the boundary: quiet ones first). Field
+/// data: `TimeValue` (s), `fix_names`, `kind_names`.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn write_supports_vtu(supports: &[SupportPoint], names: &[String], time: f64, path: &Path) -> io::Result<()> {
+    let code = |kind| match kind {
+        SupportKind::Fixity => 0,
+        SupportKind::Spring => 1,
+        SupportKind::Dashpot => 2,
+    };
     let grid = Grid {
-        time: snapshot.time,
-        points: Array::vectors("Points", joints.iter().map(|joint| &joint.position)),
+        time,
+        names: vec![Array::names("fix_names", names), Array::names("kind_names", &["fixity", "spring", "dashpot"])],
+        points: Array::vectors("Points", supports.iter().map(|support| support.position)),
         cell_type: VERTEX,
-        offsets: Array::integers("offsets", 1..joints.len() + 1),
-        used: joints.len(),
+        offsets: Array::integers("offsets", 1..supports.len() + 1),
+        used: supports.len(),
         point_data: vec![
-            of_joint("normal_stress", |joint| joint.normal_stress),
-            of_joint("shear_stress", |joint| joint.shear_stress),
-            of_joint("length", |joint| joint.length),
-            Array::vectors("normal", joints.iter().map(|joint| &joint.normal)),
-            Array::bytes("state", joints.iter().map(|joint| state_code(joint.state))),
-            Array::integers("law", joints.iter().map(|joint| joint.law as usize)),
+            Array::vectors("reaction", supports.iter().map(|support| support.reaction)),
+            Array::bytes("kind", supports.iter().map(move |support| code(support.kind))),
+            Array::integers("fix", supports.iter().map(|support| support.index as usize)),
         ],
         cell_data: Vec::new(),
     };
     grid.write(path)
+}
+
+/// Writes the wet edges of the boundary: one line each, rock on its left.
+///
+/// Point data: `water_pressure` (Pa) of the water of the case. Cell data: `block`. Field data: `TimeValue` (s).
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn write_water_vtu(edges: &[WetEdge], time: f64, path: &Path) -> io::Result<()> {
+    let ends: Vec<Point> = edges.iter().flat_map(|edge| edge.ends).collect();
+    let pressure: Vec<f64> = edges.iter().flat_map(|edge| edge.pressure).collect();
+    let pressure = Array::numbers("water_pressure", pressure.iter().copied());
+    let block = Array::integers("block", edges.iter().map(|edge| edge.block as usize));
+    lines(time, Vec::new(), &ends, vec![pressure], vec![block]).write(path)
+}
+
+/// A grid of lines, two points each.
+fn lines<'a>(
+    time: f64,
+    names: Vec<Array<'a>>,
+    ends: &'a [Point],
+    point_data: Vec<Array<'a>>,
+    cell_data: Vec<Array<'a>>,
+) -> Grid<'a> {
+    Grid {
+        time,
+        names,
+        points: Array::vectors("Points", ends.iter().copied()),
+        cell_type: LINE,
+        offsets: Array::integers("offsets", (1..ends.len() / 2 + 1).map(|cell| 2 * cell)),
+        used: ends.len(),
+        point_data,
+        cell_data,
+    }
 }
 
 fn state_code(state: ContactState) -> u8 {
@@ -97,12 +199,100 @@ fn state_code(state: ContactState) -> u8 {
     }
 }
 
+/// What a frame shows beside the elements.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Structures {
+    /// Joints.
+    pub joints: Vec<JointPiece>,
+    /// Bolts.
+    pub bolts: Vec<BoltLine>,
+    /// Supported points.
+    pub supports: Vec<SupportPoint>,
+    /// Wet edges of the boundary.
+    pub water: Vec<WetEdge>,
+    /// Names of the bolts of the case.
+    pub bolt_names: Vec<String>,
+    /// Names of the fixities of the case.
+    pub fix_names: Vec<String>,
+}
+
+impl Structures {
+    /// Those of a model now.
+    pub fn of(simulation: &Simulation, joints: &Joints) -> Self {
+        let case = simulation.case();
+        let named = |kind: &str, k: usize, name: &Option<String>| name.clone().unwrap_or(format!("{kind} {}", k + 1));
+        Self {
+            joints: joints.now(simulation),
+            bolts: structures::bolts(simulation),
+            supports: structures::supports(simulation),
+            water: structures::wet_edges(simulation),
+            bolt_names: case.bolts.iter().enumerate().map(|(k, bolt)| named("bolt", k, &bolt.name)).collect(),
+            fix_names: case.fixes.iter().enumerate().map(|(k, fix)| named("fix", k, &fix.name)).collect(),
+        }
+    }
+}
+
+/// A part of a frame, in a file of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The elements.
+    Elements,
+    /// The joints.
+    Joints,
+    /// The bolts.
+    Bolts,
+    /// The supports.
+    Supports,
+    /// The wet boundary.
+    Water,
+}
+
+/// All parts.
+pub const PARTS: [Part; 5] = [Part::Elements, Part::Joints, Part::Bolts, Part::Supports, Part::Water];
+
+impl Part {
+    /// The parts that frames of a model have.
+    pub fn of(simulation: &Simulation) -> Vec<Self> {
+        let model = simulation.model();
+        let all = [
+            (true, Self::Elements),
+            (true, Self::Joints),
+            (!model.bolts.is_empty(), Self::Bolts),
+            (!model.supports.is_empty(), Self::Supports),
+            (model.water.is_some(), Self::Water),
+        ];
+        all.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
+    }
+
+    /// Its name, with which its files begin.
+    pub fn name(self) -> &'static str {
+        ["elements", "joints", "bolts", "supports", "water"][self as usize]
+    }
+
+    /// Its file in a frame of this number, in the directory of the run.
+    fn file(self, number: usize) -> String {
+        format!("frames/{}_{number:04}.vtu", self.name())
+    }
+
+    fn write(self, snapshot: &Snapshot, beside: &Structures, path: &Path) -> io::Result<()> {
+        let time = snapshot.time;
+        match self {
+            Self::Elements => write_vtu(snapshot, path),
+            Self::Joints => write_joints_vtu(&beside.joints, &snapshot.joint_laws, time, path),
+            Self::Bolts => write_bolts_vtu(&beside.bolts, &beside.bolt_names, time, path),
+            Self::Supports => write_supports_vtu(&beside.supports, &beside.fix_names, time, path),
+            Self::Water => write_water_vtu(&beside.water, time, path),
+        }
+    }
+}
+
 /// Writes `run.pvd` and the frames that it lists into the directory of a run.
 ///
 /// The collection is replaced in one move after each frame, so a killed run leaves a valid one.
 #[derive(Debug)]
 pub struct PvdWriter {
     directory: PathBuf,
+    parts: Vec<Part>,
     frames: Vec<Frame>,
 }
 
@@ -114,12 +304,12 @@ struct Frame {
 }
 
 impl PvdWriter {
-    /// Starts the collection `directory/run.pvd` with no frame.
+    /// Starts the collection `directory/run.pvd` of frames with these parts, with no frame.
     ///
     /// # Errors
     /// Whatever the file system refuses, with the path in the message.
-    pub fn new(directory: &Path) -> io::Result<Self> {
-        let writer = Self { directory: directory.to_owned(), frames: Vec::new() };
+    pub fn new(directory: &Path, parts: Vec<Part>) -> io::Result<Self> {
+        let writer = Self { directory: directory.to_owned(), parts, frames: Vec::new() };
         writer.write_collection()?;
         Ok(writer)
     }
@@ -129,40 +319,40 @@ impl PvdWriter {
     ///
     /// # Errors
     /// `InvalidData` if `run.pvd` is not a collection that this type wrote; else what the file system refuses.
-    pub fn open_for_append(directory: &Path, keep_until_time: f64) -> io::Result<Self> {
+    pub fn open_for_append(directory: &Path, parts: Vec<Part>, keep_until_time: f64) -> io::Result<Self> {
         let path = directory.join("run.pvd");
         let text = match fs::read_to_string(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(directory),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(directory, parts),
             read => read.map_err(at_path(&path))?,
         };
         let mut frames = listed_frames(&text).map_err(at_path(&path))?;
         frames.retain(|frame| frame.time <= keep_until_time);
-        let writer = Self { directory: directory.to_owned(), frames };
+        let writer = Self { directory: directory.to_owned(), parts, frames };
         writer.write_collection()?;
         Ok(writer)
     }
 
-    /// Writes `frames/elements_NNNN.vtu` and `frames/joints_NNNN.vtu` and lists them at the time of the snapshot.
+    /// Writes a file for each part, such as `frames/joints_NNNN.vtu`, and lists them at the time of the snapshot.
     ///
     /// # Errors
-    /// As [`write_vtu`] and [`write_joints_vtu`]; the collection then stays as it was.
-    pub fn push(&mut self, snapshot: &Snapshot) -> io::Result<()> {
+    /// As [`write_vtu`] and its like; the collection then stays as it was.
+    pub fn push(&mut self, snapshot: &Snapshot, beside: &Structures) -> io::Result<()> {
         let number = self.frames.last().map_or(0, |last| last.number + 1);
-        let frame = Frame { time: snapshot.time, number };
-        write_vtu(snapshot, &self.directory.join(frame.elements()))?;
-        write_joints_vtu(snapshot, &self.directory.join(frame.joints()))?;
-        self.frames.push(frame);
+        for part in &self.parts {
+            part.write(snapshot, beside, &self.directory.join(part.file(number)))?;
+        }
+        self.frames.push(Frame { time: snapshot.time, number });
         self.write_collection()
     }
 
     fn write_collection(&self) -> io::Result<()> {
         let mut xml = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" ");
         xml.push_str("byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <Collection>\n");
-        for frame in &self.frames {
-            for (part, file) in [frame.elements(), frame.joints()].iter().enumerate() {
-                let time = frame.time;
-                let line = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"{part}\" file=\"{file}\"/>\n");
-                xml.push_str(&line);
+        for Frame { time, number } in &self.frames {
+            for part in &self.parts {
+                let (index, name, file) = (*part as usize, part.name(), part.file(*number));
+                let place = format!("group=\"\" part=\"{index}\" name=\"{name}\" file=\"{file}\"");
+                xml.push_str(&format!("    <DataSet timestep=\"{time:?}\" {place}/>\n"));
             }
         }
         xml.push_str("  </Collection>\n</VTKFile>\n");
@@ -171,14 +361,6 @@ impl PvdWriter {
 }
 
 impl Frame {
-    fn elements(self) -> String {
-        format!("frames/elements_{:04}.vtu", self.number)
-    }
-
-    fn joints(self) -> String {
-        format!("frames/joints_{:04}.vtu", self.number)
-    }
-
     fn from_entry(entry: roxmltree::Node) -> Option<Self> {
         let number = entry.attribute("file")?.strip_prefix("frames/elements_")?.strip_suffix(".vtu")?;
         Some(Self { time: entry.attribute("timestep")?.parse().ok()?, number: number.parse().ok()? })
@@ -197,6 +379,8 @@ fn listed_frames(text: &str) -> io::Result<Vec<Frame>> {
 /// An unstructured grid whose cells have their own points, stored in the order of the cells.
 struct Grid<'a> {
     time: f64,
+    /// What numbers stand for.
+    names: Vec<Array<'a>>,
     points: Array<'a>,
     cell_type: u8,
     /// End of each cell in the points.
@@ -228,8 +412,10 @@ impl Grid<'_> {
 
     fn xml(&self, file: &mut dyn Write) -> io::Result<()> {
         write!(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" ")?;
-        writeln!(file, "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>")?;
-        section(file, "FieldData", &[&Array::numbers("TimeValue", std::iter::once(self.time))])?;
+        writeln!(file, "byte_order=\"LittleEndian\" header_type=\"UInt64\" ")?;
+        writeln!(file, "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>")?;
+        let time = Array::numbers("TimeValue", std::iter::once(self.time));
+        section(file, "FieldData", &std::iter::once(&time).chain(&self.names).collect::<Vec<_>>())?;
         // An empty grid gets one cell without points, for meshio rejects a file without cells.
         let (points, is_empty) = (self.points.count, self.offsets.count == 0);
         let (cells, cell_type) = if is_empty { (1, POLY_VERTEX) } else { (self.offsets.count, self.cell_type) };
@@ -250,73 +436,4 @@ fn section(file: &mut dyn Write, name: &str, arrays: &[&Array]) -> io::Result<()
     writeln!(file, "<{name}>")?;
     arrays.iter().try_for_each(|array| array.xml(file))?;
     writeln!(file, "</{name}>")
-}
-
-/// Hands the values of an array over, as little-endian bytes.
-type Values<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
-
-/// A named array of VTK; its values are read when they are written, for a copy of all of them would be larger than the
-/// model.
-struct Array<'a> {
-    name: &'static str,
-    kind: &'static str,
-    components: usize,
-    /// Number of entries.
-    count: usize,
-    /// Size of an entry (bytes).
-    size: usize,
-    values: Values<'a>,
-}
-
-impl<'a> Array<'a> {
-    fn new<const N: usize>(
-        name: &'static str,
-        kind: &'static str,
-        values: impl ExactSizeIterator<Item = [u8; N]> + Clone + 'a,
-    ) -> Self {
-        let count = values.len();
-        let each = move |text: &mut dyn Write| values.clone().try_for_each(|value| text.write_all(&value));
-        Self { name, kind, components: 1, count, size: N, values: Box::new(each) }
-    }
-
-    fn numbers(name: &'static str, values: impl ExactSizeIterator<Item = f64> + Clone + 'a) -> Self {
-        Self::new(name, "Float64", values.map(f64::to_le_bytes))
-    }
-
-    /// Counts and indices.
-    fn integers(name: &'static str, values: impl ExactSizeIterator<Item = usize> + Clone + 'a) -> Self {
-        Self::new(name, "Int64", values.map(|value| (value as i64).to_le_bytes()))
-    }
-
-    fn ids(name: &'static str, values: &'a [u32]) -> Self {
-        Self::integers(name, values.iter().map(|&id| id as usize))
-    }
-
-    fn bytes(name: &'static str, values: impl ExactSizeIterator<Item = u8> + Clone + 'a) -> Self {
-        Self::new(name, "UInt8", values.map(|value| [value]))
-    }
-
-    /// Vectors of the plane; the third component is zero.
-    fn vectors(name: &'static str, values: impl ExactSizeIterator<Item = &'a Vector> + Clone + 'a) -> Self {
-        let bytes = |vector: &Vector| {
-            let mut bytes = [0; 24];
-            bytes[..8].copy_from_slice(&vector.x.to_le_bytes());
-            bytes[8..16].copy_from_slice(&vector.y.to_le_bytes());
-            bytes
-        };
-        Self { components: 3, ..Self::new(name, "Float64", values.map(bytes)) }
-    }
-
-    fn xml(&self, file: &mut dyn Write) -> io::Result<()> {
-        write!(file, "<DataArray type=\"{}\" Name=\"{}\"", self.kind, self.name)?;
-        if self.components > 1 {
-            write!(file, " NumberOfComponents=\"{}\"", self.components)?;
-        }
-        write!(file, " NumberOfTuples=\"{}\" format=\"binary\">", self.count)?;
-        let mut text = BufWriter::with_capacity(PIECE, EncoderWriter::new(&mut *file, &BASE64_STANDARD));
-        text.write_all(&((self.count * self.size) as u64).to_le_bytes())?;
-        (self.values)(&mut text)?;
-        text.into_inner()?.finish()?;
-        writeln!(file, "</DataArray>")
-    }
 }

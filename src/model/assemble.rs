@@ -42,6 +42,8 @@ pub struct Built {
     pub boundary_pieces: usize,
     /// Joint traces after the generation of sets: points and law.
     pub traces: Vec<(Vec<Point>, LawId)>,
+    /// First of these traces of each joint set, and one past the last.
+    pub set_start: Vec<usize>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -79,6 +81,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
         noding,
         boundary_pieces: outlines.pieces.len(),
         traces: joints.traces,
+        set_start: joints.set_start,
         warnings,
     })
 }

@@ -5,11 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Snapshot;
-use enmm::model::snapshot::{Boundary, JointPoint, Polygons};
-use enmm_picture::ModelAnnotations;
+use enmm::model::snapshot::{Boundary, Polygons};
+use enmm_picture::joints::JointPiece;
+use enmm_picture::structures::BoltKind;
+use enmm_picture::{BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Slope profile (m), counter-clockwise.
 pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56.0, 60.0], [32.0, 15.0], [0.0, 15.0]];
+/// The face of the slope (m).
+const PROFILE_FACE: [[f64; 2]; 2] = [[56.0, 60.0], [32.0, 15.0]];
 /// Directions (degrees) of the two joint sets.
 const DIPS: [f64; 2] = [38.0, 112.0];
 
@@ -17,6 +21,8 @@ const DIPS: [f64; 2] = [38.0, 112.0];
 pub struct Sample {
     pub reference: Snapshot,
     pub annotations: ModelAnnotations,
+    /// Position (m) of each star and the number of its physical covers.
+    pub stars: Vec<(Point, u32)>,
 }
 
 pub fn profile() -> Polygons {
@@ -60,29 +66,67 @@ pub fn sample(spacing: f64, mesh: f64) -> Sample {
         });
     }
     complete(&mut reference);
-    let stars = covers.iter().map(|(node, blocks)| (lattice(*node, mesh), blocks.len() as u32)).collect();
-    let annotations = ModelAnnotations {
-        title: "Rock slope with two joint sets".to_owned(),
-        stars,
-        fixed: (0..=50).map(|k| Point::new(f64::from(k) * 2.0, 0.0)).collect(),
-        monitors: [
-            ("crest", [57.0, 59.5]),
-            ("toe", [32.5, 15.5]),
-            ("bench", [44.0, 37.0]),
-            ("crest back", [60.0, 59.0]),
-        ]
-        .map(|(name, place)| (name.to_owned(), Point::from(place)))
-        .to_vec(),
-        counts: vec![
-            format!("{} blocks", reference.boundaries.len()),
-            format!("{} manifold elements", reference.elements.len()),
-            format!("{} stars", covers.len()),
-            format!("{} physical covers", covers.values().map(BTreeSet::len).sum::<usize>()),
-        ],
-        trace_segments,
-        bolts: Vec::new(),
+    let stars: Vec<(Point, u32)> =
+        covers.iter().map(|(node, blocks)| (lattice(*node, mesh), blocks.len() as u32)).collect();
+    let counts = vec![
+        format!("{} blocks", reference.boundaries.len()),
+        format!("{} manifold elements", reference.elements.len()),
+    ];
+    let annotations = ModelAnnotations { counts, trace_segments, ..annotations() };
+    Sample { reference, annotations, stars }
+}
+
+/// One of every mark.
+fn annotations() -> ModelAnnotations {
+    let places =
+        [("crest", [57.0, 59.5]), ("toe", [32.5, 15.5]), ("bench", [44.0, 37.0]), ("crest back", [60.0, 59.0])];
+    let row = |held, outward: [f64; 2], points: Vec<Point>| HeldRow { held, outward: Vector::from(outward), points };
+    let along = |from: [f64; 2], to: [f64; 2]| {
+        let [from, to] = [from, to].map(Point::from);
+        (0..=50).map(|k| from + (to - from) * (f64::from(k) / 50.0)).collect()
     };
-    Sample { reference, annotations }
+    let port = |name: &str, place| PortMark { name: name.to_owned(), place };
+    let (crest, edge) = (Point::new(57.0, 59.5), [Point::new(60.0, 60.0), Point::new(80.0, 60.0)]);
+    ModelAnnotations {
+        title: "Rock slope with two joint sets".to_owned(),
+        held: vec![
+            row(Held::Pinned, [0.0, -1.0], along([0.0, 0.0], [50.0, 0.0])),
+            row(Held::Quiet, [0.0, -1.0], along([50.0, 0.0], [100.0, 0.0])),
+            row(Held::Roller, [-1.0, 0.0], along([0.0, 0.0], [0.0, 15.0])),
+            row(Held::FreeField, [1.0, 0.0], along([100.0, 0.0], [100.0, 60.0])),
+        ],
+        held_boxes: vec![[85.0, 1.0, 95.0, 6.0]],
+        monitors: places.map(|(name, place)| (name.to_owned(), Point::from(place))).to_vec(),
+        ports: vec![
+            port("crest", PortPlace::Block(crest)),
+            port("top", PortPlace::Boundary(edge)),
+            port("plane", PortPlace::Joint([Point::new(40.0, 20.0), Point::new(60.0, 36.0)])),
+        ],
+        loads: vec![
+            LoadMark::Point { point: crest, force: Vector::new(3e5, -1e5), moment: 1e4, label: "push".to_owned() },
+            LoadMark::Traction { edge, traction: Vector::new(0.0, -1e4), label: "10 kPa".to_owned() },
+            LoadMark::Pressure { edge: PROFILE_FACE.map(Point::from), pressure: 1e4, label: "lake 10 kPa".to_owned() },
+            LoadMark::Joint { edge: [Point::new(70.0, 30.0), Point::new(80.0, 38.0)], label: "40 kPa".to_owned() },
+        ],
+        facts: vec!["gravity (0, −9.81) m/s²".to_owned()],
+        sets: vec![SetMark {
+            name: "set 1".to_owned(),
+            detail: "38°, every 3.4 m".to_owned(),
+            direction: Vector::new(0.8, 0.6),
+            place: Some(Point::new(60.0, 40.0)),
+        }],
+        bolts: [(BoltKind::Whole, 45.0), (BoltKind::Absent, 38.0)]
+            .map(|(kind, y)| BoltMark {
+                name: None,
+                ends: [Point::new(48.0, y), Point::new(62.0, y - 4.0)],
+                force: 2.1e5,
+                kind,
+            })
+            .to_vec(),
+        water: [[0.0, 17.0], [33.0, 17.0], [100.0, 40.0]].map(Point::from).to_vec(),
+        pond: true,
+        ..ModelAnnotations::default()
+    }
 }
 
 impl Sample {
@@ -104,22 +148,27 @@ impl Sample {
                 }
             }
         }
-        moved.joints = self.joints();
         moved
     }
 
-    fn joints(&self) -> Vec<JointPoint> {
+    /// A piece of joint for each piece of trace, in all states.
+    pub fn joints(&self) -> Vec<JointPiece> {
         let states = [ContactState::Open, ContactState::Slip, ContactState::Lock];
         let joint = |(k, (ends, law)): (usize, &([Point; 2], u32))| {
             let along = ends[1] - ends[0];
-            JointPoint {
-                position: (ends[0] + ends[1]) * 0.5,
-                normal: Vector::new(along.y, -along.x).normalize(),
-                length: along.norm(),
+            let normal = Vector::new(along.y, -along.x).normalize();
+            JointPiece {
+                ends: *ends,
+                normal,
+                blocks: [k as u32, k as u32 + 1],
+                law: *law,
+                opening: 1e-3 * k as f64,
+                slip: 2e-3 * k as f64,
+                force: normal * (-26e3 * (60.0 - ends[0].y) * along.norm()),
                 normal_stress: -26e3 * (60.0 - ends[0].y),
                 shear_stress: 8e3 * (60.0 - ends[0].y),
                 state: states[k % 3],
-                law: *law,
+                is_joint: k % 5 > 0,
             }
         };
         self.annotations.trace_segments.iter().enumerate().map(joint).collect()

@@ -16,7 +16,7 @@ const SCHEMA: &str = "docs/case.schema.json";
 const BENCHMARK: &str = "benchmark";
 const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
 /// Pictures of the main case that the README shows.
-const PICTURES: [&str; 3] = ["model.png", "deformed.png", "history.png"];
+const PICTURES: [&str; 4] = ["model.png", "deformed.png", "history.png", "stage2_joints.png"];
 
 /// Further cases with the command that draws their picture, its name, and the name under which the README shows it.
 const CASES: [[&str; 4]; 2] = [

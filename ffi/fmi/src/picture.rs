@@ -6,8 +6,7 @@ use std::io;
 use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm::model::snapshot::Boundary;
-use enmm_picture::model_annotations;
-use enmm_picture::{ModelAnnotations, model_picture};
+use enmm_picture::{model_annotations, model_picture};
 use resvg::{tiny_skia, usvg};
 
 /// Side of the icon (px).
@@ -21,8 +20,7 @@ const HELD: &str = "#8a9299";
 
 /// The slope as a PNG: blocks, joints by law, supports, monitors and ports.
 pub fn slope(simulation: &Simulation) -> io::Result<Vec<u8>> {
-    let annotations = ModelAnnotations { stars: Vec::new(), ..model_annotations(simulation) };
-    model_picture(&simulation.snapshot(), &annotations).png()
+    model_picture(&simulation.snapshot(), &model_annotations(simulation)).png()
 }
 
 /// The blocks alone, filled, on a clear square, as a PNG.

@@ -26,7 +26,10 @@ class Frame:
     point_data: dict[str, npt.NDArray[Any]]
     """`displacement` (m), `velocity` (m/s): shape (points, 2)."""
     cell_data: dict[str, npt.NDArray[Any]]
-    """A value for each element: `stress_xx`, ... (Pa, tension positive), `block`, `rock`."""
+    """A value for each element: `stress_xx`, `principal_min`, ... (Pa, tension positive), `block`, `rock`.
+
+    `stress` is the tensor: xx, yy, zz, xy, yz, xz, of which those out of the plane are zero.
+    """
 
     def __init__(self, time: float, path: Path) -> None:
         self.time = time
@@ -47,8 +50,10 @@ class Frame:
 
     def of_elements(self, name: str) -> npt.NDArray[Any]:
         """A value for each element: cell data, or the mean length of a vector of its points."""
-        if name in self.cell_data:
+        if name in self.cell_data and self.cell_data[name].ndim == 1:
             return self.cell_data[name]
+        if name in self.cell_data:
+            raise KeyError(f"{name!r}: the field is a tensor; choose one of its parts, such as stress_yy")
         if name not in self.point_data:
             there = ", ".join([*self.point_data, *self.cell_data])
             raise KeyError(f"{name!r}: the frame has no such field; there are: {there}")

@@ -48,6 +48,7 @@ impl Reader<'_> {
     }
 
     fn value(&mut self, value: &DeValue, schema: &Schema, key: &Key) -> Result<Value, CaseError> {
+        let schema = &schema.fitting(matches!(value, DeValue::Array(_)));
         match (schema.expected(), value) {
             (Expected::Table(fields), DeValue::Table(table)) => self.table(table, &fields, key),
             (Expected::Array { items, length }, DeValue::Array(array)) => self.array(array, (&items, length), key),

@@ -11,10 +11,10 @@ use crate::blocks::write_blocks;
 use crate::film::{Film, Opening};
 use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
-use crate::vtu::PvdWriter;
+use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm::model::case::{Invalid, StageKind};
+use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::settle;
 use enmm::state::bytes::BytesError;
@@ -22,6 +22,7 @@ use enmm::state::{Ledger, Seconds, State};
 use enmm::step::{StepError, StepReport};
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
+use enmm_picture::joints::Joints;
 use enmm_report::{Axis, FILM, Note, Quantity};
 
 use super::outlook::Outlook;
@@ -49,6 +50,9 @@ struct Progress {
     unbalanced: f64,
     /// Ledger at the last report.
     ledger: Ledger,
+    /// Displacements of the covers at the start of this stage (m); empty where the state has them or no picture wants
+    /// them.
+    started: Vec<Vector>,
 }
 
 impl Progress {
@@ -57,7 +61,8 @@ impl Progress {
     /// # Errors
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
-        let Self { done, unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger } = self;
+        let Self { done, unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger, started } =
+            self;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
@@ -66,6 +71,11 @@ impl Progress {
         fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
         fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
         fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
+        if !started.is_empty() {
+            let covers = state.displacement.len() as f64;
+            fit::between("the number of displacements in started", started.len() as f64, covers, covers)?;
+        }
+        started.iter().flatten().try_for_each(|part| fit::number("started", *part, fit::LENGTH))?;
         fit::check_ledger(ledger)
     }
 }
@@ -97,6 +107,7 @@ struct Driver<'a> {
     good: Saved,
     history: HistoryWriter,
     frames: Option<PvdWriter>,
+    joints: Joints,
     film: Film,
     clock: Instant,
     stage_clock: Instant,
@@ -149,9 +160,7 @@ impl<'a> Driver<'a> {
         if used && past != Some(Past::Here) {
             observer.warn(&format!("the results of an earlier run in {} are overwritten", directory.display()));
         }
-        if simulation.case().output.pictures {
-            results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
-        }
+        results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
         let resumed = saved.is_some();
         let good = saved.unwrap_or_else(|| Saved { state: simulation.state().clone(), progress: Progress::default() });
         if resumed {
@@ -163,6 +172,7 @@ impl<'a> Driver<'a> {
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
         let progress = good.progress.clone();
+        let joints = Joints::of(&simulation);
         let stage_clock = Instant::now();
         let mut driver = Self {
             loaded,
@@ -174,6 +184,7 @@ impl<'a> Driver<'a> {
             good,
             history,
             frames,
+            joints,
             film,
             clock,
             stage_clock,
@@ -191,6 +202,11 @@ impl<'a> Driver<'a> {
         self.progress.unsettled_before = self.simulation.state().counters.unsettled;
         self.progress.potential_start = None;
         self.progress.penetration_max = 0.0;
+        let (state, pictures) = (self.simulation.state(), &self.simulation.case().output.pictures);
+        self.progress.started.clear();
+        if pictures.include(PictureKind::Displacement) && state.stage_displacement.is_empty() {
+            self.progress.started.clone_from(&state.displacement);
+        }
         self.note_stage(None, "")
     }
 
@@ -310,6 +326,7 @@ impl<'a> Driver<'a> {
         self.keep_good();
         self.push_frame()?;
         self.film.frame(&self.simulation).map_err(RunError::Output)?;
+        self.draw_stage().map_err(RunError::Output)?;
         let dt_before = self.simulation.state().dt_last;
         let before = rows::monitors(&self.simulation);
         let sweeps_mean = self.sweeps_mean();
@@ -339,6 +356,12 @@ impl<'a> Driver<'a> {
             self.progress.done.push(record);
         }
         Ok(StageEnd::Over)
+    }
+
+    fn draw_stage(&self) -> io::Result<()> {
+        let of_state = &self.simulation.state().stage_displacement;
+        let started = if of_state.is_empty() { &self.progress.started } else { of_state };
+        results::draw_stage(&self.simulation, &self.joints, started, &self.options.directory)
     }
 
     fn warn_of_stage(&mut self, converged: bool) -> Result<(), RunError> {
@@ -400,7 +423,8 @@ impl<'a> Driver<'a> {
     fn push_frame(&mut self) -> Result<(), RunError> {
         let Some(frames) = &mut self.frames else { return Ok(()) };
         self.simulation.drop_buffers();
-        frames.push(&self.simulation.snapshot()).map_err(RunError::Output)
+        let beside = Structures::of(&self.simulation, &self.joints);
+        frames.push(&self.simulation.snapshot(), &beside).map_err(RunError::Output)
     }
 
     fn keep_good(&mut self) {
@@ -436,7 +460,7 @@ impl<'a> Driver<'a> {
         self.history.check_place().map_err(RunError::Output)?;
         let directory = &self.options.directory;
         write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
-        if self.simulation.case().output.pictures && status != RunStatus::Interrupted {
+        if status != RunStatus::Interrupted {
             results::draw_end(&self.simulation, directory).map_err(RunError::Output)?;
         }
         let mut stages = self.progress.done.clone();
@@ -489,11 +513,11 @@ fn writers(simulation: &Simulation, directory: &Path, resumed: bool) -> io::Resu
     if !resumed {
         results::clear(directory)?;
         let history = HistoryWriter::new(&path, &columns)?;
-        return Ok((history, frames.then(|| PvdWriter::new(directory)).transpose()?));
+        return Ok((history, frames.then(|| PvdWriter::new(directory, Part::of(simulation))).transpose()?));
     }
     let until = kept_until(simulation);
     let history = HistoryWriter::open_for_append(&path, &columns, until)?;
-    Ok((history, frames.then(|| PvdWriter::open_for_append(directory, until)).transpose()?))
+    Ok((history, frames.then(|| PvdWriter::open_for_append(directory, Part::of(simulation), until)).transpose()?))
 }
 
 /// Begins the film of a run, or continues that of a restored state. Its first notes are the warnings so far.

@@ -4,15 +4,31 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use enmm::geometry::Point;
+use enmm::geometry::{Point, Vector};
+use enmm::model::case::PictureKind;
 use enmm::model::snapshot::Polygons;
-use enmm::model::{Case, Simulation};
+use enmm::model::{Case, Simulation, Snapshot};
 use enmm_io::files::{at_path, sweep_temporaries};
-use enmm_picture::model_annotations;
-use enmm_picture::{displacement_picture, history_picture, model_picture};
+use enmm_picture::joints::Joints;
+use enmm_picture::structures::water_surface;
+use enmm_picture::{
+    Picture, StageEnd, bolt_marks, covers_picture, displacement_picture, history_picture, joint_stress_pictures,
+    joints_picture, model_annotations, model_picture, number_text, stage_displacement_picture, stars, stress_picture,
+    velocity_picture,
+};
 use enmm_report::FILM;
 
 use super::rows;
+use crate::vtu::PARTS;
+
+/// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
+const STAGE_PICTURES: [(PictureKind, &[&str]); 5] = [
+    (PictureKind::Displacement, &["displacement"]),
+    (PictureKind::Joints, &["joints"]),
+    (PictureKind::JointStress, &["normal_stress", "shear_stress"]),
+    (PictureKind::Stress, &["stress"]),
+    (PictureKind::Velocity, &["velocity"]),
+];
 
 /// What tells that a run has written into a directory.
 const TRACES: [&str; 2] = ["history.csv", "summary.json"];
@@ -25,11 +41,31 @@ pub fn enter(directory: &Path) -> io::Result<bool> {
     Ok(TRACES.iter().any(|name| directory.join(name).exists()))
 }
 
-/// Removes the frames of an earlier run in the directory.
+/// Removes the frames and the pictures of stages of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
+    stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
     let frames_directory = directory.join("frames");
     fs::create_dir_all(&frames_directory).map_err(at_path(&frames_directory))?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
+}
+
+/// Pictures of ends of stages in a directory, such as `stage1_joints.png`.
+fn stage_pictures(directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let is_one = |name: &str| {
+        let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png"));
+        rest.and_then(|rest| rest.split_once('_')).is_some_and(|(number, kind)| {
+            let kinds = STAGE_PICTURES.iter().flat_map(|(_, names)| names.iter());
+            number.parse::<u32>().is_ok() && kinds.into_iter().any(|name| *name == kind)
+        })
+    };
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory).map_err(at_path(directory))? {
+        let path = entry?.path();
+        if path.file_name().and_then(|name| name.to_str()).is_some_and(is_one) {
+            found.push(path);
+        }
+    }
+    Ok(found)
 }
 
 /// Files of frames in a directory.
@@ -39,7 +75,7 @@ fn frames(directory: &Path) -> io::Result<Vec<PathBuf>> {
     for entry in fs::read_dir(&frames).map_err(at_path(&frames))? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if name.ends_with(".vtu") && (name.starts_with("elements_") || name.starts_with("joints_")) {
+        if name.ends_with(".vtu") && PARTS.iter().any(|part| name.starts_with(&format!("{}_", part.name()))) {
             found.push(path);
         }
     }
@@ -75,6 +111,7 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
     if film.is_file() {
         copy(&film)?;
     }
+    stage_pictures(beside)?.iter().try_for_each(|picture| copy(picture))?;
     let collection = beside.join("run.pvd");
     if collection.is_file() && beside.join("frames").is_dir() {
         frames(beside)?.iter().try_for_each(|frame| copy(frame))?;
@@ -83,18 +120,95 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
     Ok(Past::Copied)
 }
 
-/// Draws the model before it moves.
+/// Draws the model before it moves: those pictures of it that the case asks for.
 pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
+    let pictures = &simulation.case().output.pictures;
+    if pictures.include(PictureKind::Model) {
+        draw_slope(simulation, directory)?;
+    }
+    if pictures.include(PictureKind::Covers) {
+        let annotations = model_annotations(simulation);
+        let picture = covers_picture(&simulation.snapshot(), &annotations, &stars(simulation));
+        picture.write_png(&directory.join("covers.png"))?;
+    }
+    Ok(())
+}
+
+fn draw_slope(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     model_picture(&simulation.snapshot(), &model_annotations(simulation)).write_png(&directory.join("model.png"))
+}
+
+/// Draws a model that is only looked at into a directory: `model.png`, and `covers.png` if the case asks for it.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()> {
+    fs::create_dir_all(directory).map_err(at_path(directory))?;
+    if !simulation.case().output.pictures.include(PictureKind::Model) {
+        draw_slope(simulation, directory)?;
+    }
+    draw_model(simulation, directory)
 }
 
 /// Draws the slope as it is now, and the histories.
 pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     let case = simulation.case();
+    if case.output.pictures.include(PictureKind::Deformed) {
+        let snapshot = simulation.snapshot();
+        displacement_picture(&snapshot, &case.title, &outline(case)).write_png(&directory.join("deformed.png"))?;
+    }
+    if case.output.pictures.include(PictureKind::History) {
+        let (series, stages) = rows::series(&directory.join("history.csv"), case)?;
+        history_picture(&case.title, &series, &stages).write_png(&directory.join("history.png"))?;
+    }
+    Ok(())
+}
+
+/// Draws the slope at the end of a stage: those pictures that the case asks for. `started` are the displacements of the
+/// covers (m) at the start of the stage.
+pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], directory: &Path) -> io::Result<()> {
+    let pictures = &simulation.case().output.pictures;
+    let [displacement, states, on_joints, stress, velocity] = STAGE_PICTURES.map(|(kind, _)| pictures.include(kind));
+    if ![displacement, states, on_joints, stress, velocity].contains(&true) {
+        return Ok(());
+    }
     let snapshot = simulation.snapshot();
-    displacement_picture(&snapshot, &case.title, &outline(case)).write_png(&directory.join("deformed.png"))?;
-    let series = rows::series(&directory.join("history.csv"))?;
-    history_picture(&case.title, &series).write_png(&directory.join("history.png"))
+    let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
+    let number = simulation.state().stage + 1;
+    let caption = format!("stage {number}, {}, t = {} s", simulation.stage().name, number_text(snapshot.time));
+    let stage =
+        StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
+    let write = |picture: Picture, name: &str| picture.write_png(&directory.join(format!("stage{number}_{name}.png")));
+    if displacement && !started.is_empty() {
+        write(stage_displacement_picture(&stage, &moved_since(simulation, &snapshot, started)), "displacement")?;
+    }
+    if states || on_joints {
+        let joints = joints.now(simulation);
+        if states {
+            write(joints_picture(&stage, &joints), "joints")?;
+        }
+        if on_joints {
+            let [normal, shear] = joint_stress_pictures(&stage, &joints);
+            write(normal, "normal_stress")?;
+            write(shear, "shear_stress")?;
+        }
+    }
+    if stress {
+        write(stress_picture(&stage), "stress")?;
+    }
+    if velocity {
+        write(velocity_picture(&stage), "velocity")?;
+    }
+    Ok(())
+}
+
+/// Displacement (m) of each point of the elements of a snapshot since the covers had the displacements `started` (m).
+fn moved_since(simulation: &Simulation, snapshot: &Snapshot, started: &[Vector]) -> Vec<Vector> {
+    let (model, removed) = (simulation.model(), &simulation.state().removed);
+    let covers = &model.covers;
+    let there = covers.elements().filter(|&e| !removed[covers.element_block[e]]);
+    let before = there.flat_map(|e| covers.polygon(e).iter().map(move |&p| model.sample(e, p, started)));
+    snapshot.displacement.iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
 /// Outer loops and holes of the case.

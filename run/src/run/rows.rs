@@ -9,7 +9,7 @@ use enmm::model::settle::REST_STEPS;
 use enmm::model::{Case, Simulation};
 use enmm::state::{ENERGIES, Quantity};
 use enmm::step::StepReport;
-use enmm_picture::Series;
+use enmm_picture::{Series, StageStart};
 
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
 /// number of steps doubles.
@@ -26,6 +26,11 @@ const REPORTED: [Quantity<StepReport>; 4] = [
     Quantity::count("locked", "Contacts below their shear limit", |report| f64::from(report.locked)),
     Quantity::count("slipping", "Contacts at their shear limit", |report| f64::from(report.slipping)),
 ];
+
+/// Quantity of the energies in the picture of the histories.
+const ENERGY: &str = "energy";
+/// Part of the largest energy below which an energy is left out of the picture.
+const SMALL: f64 = 0.01;
 
 /// Steps at which something is due.
 #[derive(Debug, Clone, Copy)]
@@ -158,33 +163,51 @@ pub fn row(
     row
 }
 
-/// The series that the picture of the histories shows, read back from `history.csv`.
+/// The series that the picture of the histories shows, and the stages, read back from `history.csv`: displacements of
+/// monitors, and the energies that are not small beside the largest.
 ///
 /// # Errors
 /// Whatever the file system refuses, or what is not a table of numbers.
-pub fn series(path: &Path) -> io::Result<Vec<Series>> {
+pub fn series(path: &Path, case: &Case) -> io::Result<(Vec<Series>, Vec<StageStart>)> {
     let mut reader = csv::Reader::from_path(path)?;
     let headers = reader.headers()?.clone();
     // Terms of the balance that stand behind the residual are left to readers of the table.
-    let pictured = ENERGIES.iter().map(|energy| energy.column).take_while(|column| *column != "energy_residual");
-    let pictured: Vec<&str> = pictured.collect();
-    let mut series: Vec<(usize, Series)> = headers
-        .iter()
-        .enumerate()
-        .filter_map(|(k, header)| {
-            let (name, unit) = header.strip_suffix(']').and_then(|h| h.rsplit_once(" [")).unwrap_or((header, ""));
-            let energy = unit == "J/m" && pictured.contains(&name);
-            let shown = k > 1 && (energy || name.ends_with("_ux") || name.ends_with("_uy"));
-            shown.then(|| (k, Series { name: name.to_owned(), unit: unit.to_owned(), points: Vec::new() }))
-        })
-        .collect();
+    let pictured: Vec<&str> =
+        ENERGIES.iter().map(|energy| energy.column).take_while(|column| *column != "energy_residual").collect();
+    let mut series: Vec<(usize, Series)> =
+        headers.iter().enumerate().filter_map(|(k, header)| Some((k, pictured_series(header, &pictured)?))).collect();
+    let mut stages: Vec<StageStart> = Vec::new();
+    let mut last = f64::NAN;
     for record in reader.records() {
         let record = record?;
         let number = |k: usize| record.get(k).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN);
+        let stage = number(1) as usize;
+        if stage > stages.len() {
+            let name = case.stages.get(stage - 1).map_or(String::new(), |stage| stage.name.clone());
+            // The row at the start of a later stage is that of the end of the stage before.
+            stages.push(StageStart { name, time: if stages.is_empty() { number(0) } else { last } });
+        }
+        last = number(0);
         for (k, series) in &mut series {
             series.points.push((number(0), number(*k)));
         }
     }
-    let moves = |series: &Series| series.unit == "m" || series.points.iter().any(|point| point.1 != 0.0);
-    Ok(series.into_iter().map(|(_, series)| series).filter(moves).collect())
+    let size = |series: &Series| series.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let energies = series.iter().filter(|(_, series)| series.quantity == ENERGY);
+    let least = SMALL * energies.map(|(_, series)| size(series)).fold(0.0, f64::max);
+    let matters = |series: &Series| series.quantity != ENERGY || (size(series) > 0.0 && size(series) >= least);
+    Ok((series.into_iter().map(|(_, series)| series).filter(matters).collect(), stages))
+}
+
+/// The empty series of a column; none if the picture leaves it out.
+fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
+    let (column, unit) = header.strip_suffix(']')?.rsplit_once(" [")?;
+    let of = |name: String, quantity: &str| {
+        Some(Series { name, quantity: quantity.to_owned(), unit: unit.to_owned(), points: Vec::new() })
+    };
+    match column.rsplit_once('_') {
+        Some((monitor, part @ ("ux" | "uy"))) if unit == "m" => of(format!("{monitor} {part}"), "displacement"),
+        _ if unit == "J/m" && energies.contains(&column) => of(column.replace('_', " "), ENERGY),
+        _ => None,
+    }
 }

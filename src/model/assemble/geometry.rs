@@ -22,6 +22,8 @@ pub(super) struct Joints {
     /// Joint traces with their laws: those of the case first, then the loops of islands, so that rock that touches
     /// stays apart.
     pub traces: Vec<(Vec<Point>, LawId)>,
+    /// First trace of each joint set, and one past the last.
+    pub set_start: Vec<usize>,
     pub default_law: LawId,
 }
 
@@ -38,7 +40,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_mesh()?;
     demand.check_sets()?;
     let default_law = case.default_joint_law().and_then(|name| law_of(case, name)).unwrap_or_default();
-    let mut traces = traces(case, low, high, default_law)?;
+    let (mut traces, set_start) = traces(case, low, high, default_law)?;
     demand.check_traces(&traces)?;
     let user_traces = traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
@@ -61,7 +63,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));
-    Ok(Plane { mesh, arrangement, joints: Joints { traces, default_law } })
+    Ok(Plane { mesh, arrangement, joints: Joints { traces, set_start, default_law } })
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {
@@ -109,18 +111,22 @@ impl Loops {
     }
 }
 
-/// Joint traces of the case, then those of its sets, with their laws.
-fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<Vec<(Vec<Point>, LawId)>, Invalid> {
+/// Joint traces with their laws.
+type Traces = Vec<(Vec<Point>, LawId)>;
+
+/// Joint traces of the case, then those of its sets, and where each set begins and the last ends.
+fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<(Traces, Vec<usize>), Invalid> {
     let law = |name: &Option<String>| name.as_ref().and_then(|name| law_of(case, name)).unwrap_or(default_law);
-    let mut traces: Vec<(Vec<Point>, LawId)> =
-        case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
+    let mut traces: Traces = case.joints.iter().map(|joint| (points(&joint.points), law(&joint.law))).collect();
     let box_points = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
+    let mut set_start = vec![traces.len()];
     for (k, set) in case.joint_sets.iter().enumerate() {
         let region = set.region.as_ref().map_or(box_points.to_vec(), |r| points(r));
         let made = generate(&parameters(set), &region).map_err(invalid(&format!("joint_set[{k}]")))?;
         traces.extend(made.into_iter().map(|t| (t.to_vec(), law(&set.law))));
+        set_start.push(traces.len());
     }
-    Ok(traces)
+    Ok((traces, set_start))
 }
 
 fn parameters(set: &JointSet) -> JointSetParameters {

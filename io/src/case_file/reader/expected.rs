@@ -78,6 +78,13 @@ impl<'a> Schema<'a> {
         }
     }
 
+    /// Returns the alternative for a list, or that for any other value; the schema itself where there are none.
+    pub fn fitting(self, is_list: bool) -> Self {
+        let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
+        let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
+        all.into_iter().find(|schema| (schema.kind() == "array") == is_list).unwrap_or(self)
+    }
+
     fn at(&self, node: &'a Value) -> Self {
         Self { root: self.root, node }
     }

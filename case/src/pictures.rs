@@ -1,0 +1,87 @@
+//! Which pictures a run draws.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A picture, or a kind of picture drawn at the end of every stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PictureKind {
+    /// `model.png`: blocks, joints, supports, loads, water and bolts before the run.
+    Model,
+    /// `deformed.png`: displacement at the end of the run.
+    Deformed,
+    /// `history.png`: monitors and energies over time.
+    History,
+    /// `stage1_displacement.png` and so on: displacement since the start of the stage.
+    Displacement,
+    /// `stage1_joints.png`: joints that are open, slip or lock, and forces of bolts.
+    Joints,
+    /// `stage1_normal_stress.png` and `stage1_shear_stress.png`: stress on joints, averaged over their faces.
+    JointStress,
+    /// `stage1_stress.png`: principal stresses.
+    Stress,
+    /// `stage1_velocity.png`: velocity.
+    Velocity,
+    /// `covers.png`: physical covers of the stars of the mesh.
+    Covers,
+}
+
+/// Which pictures to draw: `true` for the usual ones, `false` for none, or a list of kinds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Pictures {
+    /// The usual ones, or none.
+    Usual(bool),
+    /// These alone.
+    These(Vec<PictureKind>),
+}
+
+/// Pictures of a run that names none.
+const USUAL: [PictureKind; 6] = [
+    PictureKind::Model,
+    PictureKind::Deformed,
+    PictureKind::History,
+    PictureKind::Displacement,
+    PictureKind::Joints,
+    PictureKind::Stress,
+];
+
+impl Pictures {
+    /// Whether a kind is to be drawn.
+    pub fn include(&self, kind: PictureKind) -> bool {
+        match self {
+            Self::Usual(draw) => *draw && USUAL.contains(&kind),
+            Self::These(kinds) => kinds.contains(&kind),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Pictures {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> Visitor<'de> for Reader {
+            type Value = Pictures;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("true, false or a list of pictures such as [\"model\", \"displacement\"]")
+            }
+
+            fn visit_bool<E>(self, draw: bool) -> Result<Pictures, E> {
+                Ok(Pictures::Usual(draw))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Pictures, A::Error> {
+                let mut kinds = Vec::new();
+                while let Some(kind) = list.next_element()? {
+                    kinds.push(kind);
+                }
+                Ok(Pictures::These(kinds))
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}

@@ -1,0 +1,382 @@
+//! Joints at one instant: the pieces between two faces that lay on each other at the start, with what has become of
+//! them, and the pieces of boundary that blocks have come to touch since.
+
+use std::collections::BTreeMap;
+
+use enmm::contact::{Boundary, ContactState, EdgeId, NodeId, VertexEdge};
+use enmm::geometry::{Point, TraceId, Vector, segment};
+use enmm::model::Simulation;
+
+/// Cosine of the angle between a face and the normal of a contact on it from which the face lies flat on the other.
+const FLAT: f64 = -0.94;
+/// Overlap of two faces, relative to the shorter edge, below which they do not lie on each other.
+const SLIVER: f64 = 1e-6;
+
+/// A straight piece of joint now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointPiece {
+    /// Ends (m) on the face of the first block.
+    pub ends: [Point; 2],
+    /// Unit normal out of the first block.
+    pub normal: Vector,
+    /// Numbers of both blocks; equal where a joint ends inside a block.
+    pub blocks: [u32; 2],
+    /// Index of the joint law in the case.
+    pub law: u32,
+    /// Distance (m) of the second face from the first along the normal since the start; below zero when they overlap.
+    pub opening: f64,
+    /// Distance (m) of the two faces along the joint since the start.
+    pub slip: f64,
+    /// Force (N/m) on the first block; the sum over the pieces of a face is the force on the face.
+    pub force: Vector,
+    /// Normal stress (Pa, tension positive): the force on the face over the length of it that is closed.
+    pub normal_stress: f64,
+    /// Shear stress (Pa), as the normal stress; positive when it drives the first block forward with rock on its left.
+    pub shear_stress: f64,
+    /// Open, slip or lock.
+    pub state: ContactState,
+    /// Whether the two faces lay on each other at the start.
+    pub is_joint: bool,
+}
+
+/// A piece of joint at the start: two edges of the boundary, and the share of the way along each where it begins and
+/// ends. The second edge runs back.
+#[derive(Debug, Clone, Copy)]
+struct Facing {
+    edges: [EdgeId; 2],
+    spans: [[f64; 2]; 2],
+    face: usize,
+}
+
+/// The joints of a model as it was built: which edges of the boundary face each other.
+#[derive(Debug, Clone)]
+pub struct Joints {
+    /// Pieces, those of a face one after the other.
+    pieces: Vec<Facing>,
+    /// First of `of_edges` of each edge of the boundary, and their number at the end.
+    of_edge_start: Vec<u32>,
+    /// Pieces by edge of the boundary.
+    of_edges: Vec<u32>,
+    faces: usize,
+}
+
+/// Forces (N/m) on the first block of a face: their sum, and their parts across (tension positive) and along it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Load {
+    force: Vector,
+    normal: f64,
+    shear: f64,
+}
+
+/// Forces on all faces, and those between edges that did not face each other, by the node at or before the edge and the
+/// other block.
+struct Forces {
+    faces: Vec<Load>,
+    touched: BTreeMap<(NodeId, u32), Touch>,
+}
+
+impl Joints {
+    /// Finds the faces that lie on each other.
+    pub fn of(simulation: &Simulation) -> Self {
+        let boundary = &simulation.model().boundary;
+        let traces = &simulation.built().traces;
+        // Edges by trace and by the side of its polyline on which they lie.
+        let mut lines: BTreeMap<(TraceId, usize), [Vec<Stretch>; 2]> = BTreeMap::new();
+        for edge in boundary.edges() {
+            let Some((trace, points)) =
+                boundary.trace[edge].and_then(|trace| Some((trace, traces.get(trace.index())?)))
+            else {
+                continue;
+            };
+            let (side, stretch) = Stretch::of(&points.0, boundary, edge);
+            lines.entry((trace, side)).or_default()[usize::from(stretch.is_back)].push(stretch);
+        }
+        let mut joints = Self { pieces: Vec::new(), of_edge_start: Vec::new(), of_edges: Vec::new(), faces: 0 };
+        for [forth, back] in lines.values_mut() {
+            for line in [&mut *forth, &mut *back] {
+                line.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]).then(a.edge.cmp(&b.edge)));
+            }
+            joints.pair(boundary, forth, back);
+        }
+        joints.index(boundary.len());
+        joints
+    }
+
+    /// Lists the pieces of each edge.
+    fn index(&mut self, edges: usize) {
+        let mut on_edge: Vec<(u32, u32)> = Vec::with_capacity(2 * self.pieces.len());
+        for (k, piece) in self.pieces.iter().enumerate() {
+            on_edge.extend(piece.edges.map(|edge| (edge.number(), k as u32)));
+        }
+        on_edge.sort_unstable();
+        self.of_edge_start = vec![0; edges + 1];
+        on_edge.iter().for_each(|&(edge, _)| self.of_edge_start[edge as usize + 1] += 1);
+        (0..edges).for_each(|edge| self.of_edge_start[edge + 1] += self.of_edge_start[edge]);
+        self.of_edges = on_edge.into_iter().map(|(_, piece)| piece).collect();
+    }
+
+    /// The pieces of an edge.
+    fn on(&self, edge: EdgeId) -> &[u32] {
+        let [start, end] = [0, 1].map(|next| self.of_edge_start[edge.index() + next] as usize);
+        &self.of_edges[start..end]
+    }
+
+    /// Appends the pieces where two rows of edges along one line overlap.
+    fn pair(&mut self, boundary: &Boundary, forth: &[Stretch], back: &[Stretch]) {
+        let mut blocks = None;
+        let (mut i, mut j) = (0, 0);
+        while let (Some(a), Some(b)) = (forth.get(i), back.get(j)) {
+            let [from, to] = [a.ends[0].max(b.ends[0]), a.ends[1].min(b.ends[1])];
+            let shorter = (a.ends[1] - a.ends[0]).min(b.ends[1] - b.ends[0]);
+            if to - from > SLIVER * shorter {
+                let here = Some([boundary.block[a.edge], boundary.block[b.edge]]);
+                self.faces += usize::from(here != blocks);
+                blocks = here;
+                let spans = [[a.share(from), a.share(to)], [b.share(from), b.share(to)]];
+                self.pieces.push(Facing { edges: [a.edge, b.edge], spans, face: self.faces - 1 });
+            }
+            if a.ends[1] < b.ends[1] { i += 1 } else { j += 1 }
+        }
+    }
+
+    /// The joints now; those of excavated blocks are left out.
+    pub fn now(&self, simulation: &Simulation) -> Vec<JointPiece> {
+        let (model, removed) = (simulation.model(), &simulation.state().removed);
+        let boundary = &model.boundary;
+        let positions = simulation.positions();
+        let mut states = EdgeStates::new(boundary, &positions);
+        let mut forces = Forces { faces: vec![Load::default(); self.faces], touched: BTreeMap::new() };
+        simulation.each_contact(|contact| {
+            states.see(contact);
+            self.add(boundary, contact, &mut forces);
+        });
+        let (states, Forces { faces: loads, touched }) = (states.found, forces);
+        let state = |piece: &Facing| strongest(piece.edges.map(|edge| states[edge].unwrap_or_default()));
+        let length = |piece: &Facing| {
+            let [a, b] = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
+            (b - a).norm()
+        };
+        let mut closed = vec![[0.0; 2]; self.faces];
+        for piece in &self.pieces {
+            closed[piece.face][usize::from(state(piece) == ContactState::Open)] += length(piece);
+        }
+        let there = |edge: EdgeId| !removed[boundary.block[edge]];
+        let mut found: Vec<JointPiece> = Vec::with_capacity(self.pieces.len());
+        for piece in self.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)) {
+            let mut seen = seen(simulation, &positions, piece);
+            seen.state = state(piece);
+            // A face that bears without a closed piece bears on all of it.
+            let [closed, open] = closed[piece.face];
+            let (over, bears) = if closed > 0.0 { (closed, seen.state != ContactState::Open) } else { (open, true) };
+            if bears && over > 0.0 {
+                let load = loads[piece.face];
+                seen.force = load.force * (length(piece) / over);
+                (seen.normal_stress, seen.shear_stress) = (load.normal / over, load.shear / over);
+            }
+            found.push(seen);
+        }
+        found.extend(touched.into_iter().map(|(key, load)| touch(simulation, &positions, key, load)));
+        found
+    }
+
+    /// Adds the forces of a contact to its face, or else to those between edges that did not face each other.
+    fn add(&self, boundary: &Boundary, contact: &VertexEdge, forces: &mut Forces) {
+        let history = &contact.history;
+        if history.state == ContactState::Open {
+            return;
+        }
+        let force = contact.normal * history.normal_force + contact.tangent() * history.shear_force;
+        let add = |load: &mut Load, sign: f64| {
+            load.force += force * sign;
+            load.normal -= history.normal_force;
+            load.shear += history.shear_force;
+        };
+        match self.face_between(boundary, history.edge, history.node) {
+            Some((face, is_first)) => add(&mut forces.faces[face], if is_first { -1.0 } else { 1.0 }),
+            None => {
+                let other = boundary.block[boundary.node_point[history.node]];
+                let key = (boundary.node_before[history.edge], other.number());
+                let touch = forces.touched.entry(key).or_default();
+                add(&mut touch.load, -1.0);
+                touch.law = contact.law.number();
+                touch.state = strongest([touch.state, history.state]);
+            }
+        }
+    }
+
+    /// The face of a contact between a node and an edge, and whether the edge is on the first block of the face.
+    fn face_between(&self, boundary: &Boundary, edge: EdgeId, node: NodeId) -> Option<(usize, bool)> {
+        let other = boundary.block[boundary.node_point[node]];
+        let facing = |edge: EdgeId, block| {
+            self.on(edge).iter().find_map(|&piece| {
+                let Facing { edges, face, .. } = self.pieces[piece as usize];
+                let is_first = edges[0] == edge;
+                (boundary.block[edges[usize::from(is_first)]] == block).then_some((face, is_first))
+            })
+        };
+        let beside = || {
+            let edges = boundary.edges_of_node(node).into_iter();
+            edges.filter_map(|own| facing(own, boundary.block[edge])).map(|(face, is_first)| (face, !is_first)).next()
+        };
+        facing(edge, other).or_else(beside)
+    }
+}
+
+/// An edge along a straight line: from and to, as distances (m) along it.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    edge: EdgeId,
+    ends: [f64; 2],
+    is_back: bool,
+}
+
+impl Stretch {
+    /// The side of a polyline on which an edge lies, and the edge along it.
+    fn of(points: &[Point], boundary: &Boundary, edge: EdgeId) -> (usize, Self) {
+        let [a, b] = [boundary.reference[edge], boundary.reference[boundary.after(edge)]];
+        let middle = (a + b) * 0.5;
+        let distance = |k: usize| segment::distance(middle, points[k], points[k + 1]);
+        let sides = 0..points.len().saturating_sub(1);
+        let side = sides.min_by(|&i, &j| distance(i).total_cmp(&distance(j))).unwrap_or_default();
+        let [from, to] = [points[side], points[(side + 1).min(points.len() - 1)]];
+        let along = (to - from) / (to - from).norm();
+        let [s, t] = [a, b].map(|p| (p - from).dot(&along));
+        (side, Self { edge, ends: [s.min(t), s.max(t)], is_back: t < s })
+    }
+
+    /// Share of the way along the edge at a distance (m) along the line.
+    fn share(&self, distance: f64) -> f64 {
+        let share = (distance - self.ends[0]) / (self.ends[1] - self.ends[0]);
+        if self.is_back { 1.0 - share } else { share }
+    }
+}
+
+/// Contacts on a stretch between two nodes of a block that did not face the other block at the start.
+#[derive(Debug, Clone, Copy, Default)]
+struct Touch {
+    load: Load,
+    law: u32,
+    state: ContactState,
+}
+
+/// Slip before lock before open.
+fn strongest([a, b]: [ContactState; 2]) -> ContactState {
+    let rank = |state| [ContactState::Open, ContactState::Lock, ContactState::Slip].iter().position(|s| *s == state);
+    if rank(a) >= rank(b) { a } else { b }
+}
+
+/// Both ends of a part of an edge now (m).
+fn ends(boundary: &Boundary, positions: &[Point], edge: EdgeId, span: [f64; 2]) -> [Point; 2] {
+    let [a, b] = [positions[edge], positions[boundary.after(edge)]];
+    span.map(|share| a + (b - a) * share)
+}
+
+/// Unit normal to the right of the way from one point to another.
+fn outward([a, b]: [Point; 2]) -> Vector {
+    let along = (b - a) / (b - a).norm().max(f64::MIN_POSITIVE);
+    Vector::new(along.y, -along.x)
+}
+
+/// Where a piece of joint is and how far it is open; without forces.
+fn seen(simulation: &Simulation, positions: &[Point], piece: &Facing) -> JointPiece {
+    let (model, switch) = (simulation.model(), &simulation.state().law_switch);
+    let boundary = &model.boundary;
+    let [own, other] = [0, 1].map(|k| ends(boundary, positions, piece.edges[k], piece.spans[k]));
+    let normal = outward(own);
+    let apart = (other[0] + other[1] - own[0] - own[1]) * 0.5;
+    let law = boundary.trace[piece.edges[0]].map_or(model.default_law, |trace| model.trace_law[trace]);
+    JointPiece {
+        ends: own,
+        normal,
+        blocks: piece.edges.map(|edge| boundary.block[edge].number()),
+        law: switch[law].number(),
+        opening: apart.dot(&normal),
+        slip: apart.perp(&normal).abs(),
+        force: Vector::zeros(),
+        normal_stress: 0.0,
+        shear_stress: 0.0,
+        state: ContactState::Open,
+        is_joint: true,
+    }
+}
+
+/// The stretch between two nodes that another block touches.
+fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u32), touch: Touch) -> JointPiece {
+    let boundary = &simulation.model().boundary;
+    let [from, to] = [node, boundary.node_next[node]].map(|node| boundary.node_point[node]);
+    let ends = [positions[from], positions[to]];
+    let length = (ends[1] - ends[0]).norm().max(f64::MIN_POSITIVE);
+    JointPiece {
+        ends,
+        normal: outward(ends),
+        blocks: [boundary.block[from].number(), other],
+        law: touch.law,
+        opening: 0.0,
+        slip: 0.0,
+        force: touch.load.force,
+        normal_stress: touch.load.normal / length,
+        shear_stress: touch.load.shear / length,
+        state: touch.state,
+        is_joint: false,
+    }
+}
+
+/// State of each edge of the boundary; none where neither a joint nor a contact is. A contact stands for the stretch
+/// between two nodes in which it lies, and for the stretch beside its own node that lies flat on the other block.
+pub fn edge_states(simulation: &Simulation) -> Vec<Option<ContactState>> {
+    let positions = simulation.positions();
+    let mut states = EdgeStates::new(&simulation.model().boundary, &positions);
+    simulation.each_contact(|contact| states.see(contact));
+    states.found
+}
+
+/// States of edges, as contacts give them one by one.
+struct EdgeStates<'a> {
+    boundary: &'a Boundary,
+    positions: &'a [Point],
+    found: Vec<Option<ContactState>>,
+}
+
+impl<'a> EdgeStates<'a> {
+    fn new(boundary: &'a Boundary, positions: &'a [Point]) -> Self {
+        let found = boundary.trace.iter().map(|trace| trace.map(|_| ContactState::Open)).collect();
+        Self { boundary, positions, found }
+    }
+
+    fn see(&mut self, contact: &VertexEdge) {
+        let (boundary, state) = (self.boundary, contact.history.state);
+        if state == ContactState::Open {
+            return;
+        }
+        let node = contact.history.node;
+        self.mark(boundary.node_before[contact.history.edge], state);
+        if self.lies_flat(boundary.node_point[node], contact) {
+            self.mark(node, state);
+        }
+        if self.lies_flat(boundary.node_edge_before[node], contact) {
+            self.mark(boundary.node_previous[node], state);
+        }
+    }
+
+    /// Whether an edge lies flat on that of a contact.
+    fn lies_flat(&self, edge: EdgeId, contact: &VertexEdge) -> bool {
+        let along = self.positions[self.boundary.after(edge)] - self.positions[edge];
+        Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
+    }
+
+    /// Marks the edges from a node to the next one.
+    fn mark(&mut self, node: NodeId, state: ContactState) {
+        let boundary = self.boundary;
+        let mut edge = boundary.node_point[node];
+        let end = boundary.node_point[boundary.node_next[node]];
+        loop {
+            if self.found[edge] != Some(ContactState::Slip) {
+                self.found[edge] = Some(state);
+            }
+            edge = boundary.after(edge);
+            if edge == end {
+                break;
+            }
+        }
+    }
+}
