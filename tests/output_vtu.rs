@@ -33,7 +33,9 @@ fn beside(slope: &Sample) -> Structures {
 }
 
 fn small() -> Sample {
-    sample(12.0, 6.0)
+    let slope = sample(12.0, 6.0);
+    assert!(!slope.stars.is_empty());
+    slope
 }
 
 fn array<'a>(document: &'a Document, name: &str) -> Node<'a, 'a> {

@@ -56,9 +56,7 @@ impl Screen {
         };
         let fall =
             unbalanced.map_or_else(String::new, |[now, target]| format!("unbalanced {now:.1e} → {target:.0e}  "));
-        format!(
-            "{stage} ({stage_number}/{stage_count})  simulated {time:.4} s, {rate:.3} s per second of work  {fall}{left}"
-        )
+        format!("{stage} ({stage_number}/{stage_count})  simulated {time:.4} s ({rate:.3} s per second)  {fall}{left}")
     }
 }
 

@@ -28,8 +28,8 @@ pub fn until_over<H, E>(
 }
 
 impl Simulation {
-    /// Whether the report of the next step says if a static stage is at rest. Reports for outputs do not: how often they
-    /// are written changes no result.
+    /// Whether the report of the next step says if a static stage is at rest. Reports for outputs do not: how often
+    /// they are written changes no result.
     pub fn rest_due(&self) -> bool {
         self.stage().kind == StageKind::Static && self.state().stage_step.is_multiple_of(REST_STEPS)
     }

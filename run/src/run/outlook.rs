@@ -1,5 +1,5 @@
-//! How much simulated time a run still needs. A static stage ends when its unbalanced ratio has fallen to the target, and
-//! the fall is exponential once the ramp is over: the ratio so far tells when that will be.
+//! How much simulated time a run still needs. A static stage ends when its unbalanced ratio has fallen to the target,
+//! and the fall is exponential once the ramp is over: a line through its logarithm shows when that will be.
 
 use enmm::model::Simulation;
 use enmm::model::case::StageKind;
