@@ -21,9 +21,9 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, domain, fix, \
-         fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, \
-         output, port, quiet, rock, solver, stage, title, water; rename or remove it",
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, cut, \
+         domain, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, law_region, \
+         load, mesh, monitor, output, port, quiet, rock, section, solver, stage, title, water; rename or remove it",
     );
 }
 
@@ -130,8 +130,7 @@ fn missing_section_says_what_to_add() {
         ),
         (
             "stage",
-            "1: stage: is missing (Stages in order); add `[[stage]]` with `name = \"name\", kind = \"static\", \
-             duration = 1.0`",
+            "1: stage: is missing (Stages in order); add `[[stage]]` with `name = \"name\", kind = \"static\"`",
         ),
         ("domain", "1: domain: is missing (Rock outline and joint traces from files); add `[domain]`"),
     ] {
@@ -246,7 +245,8 @@ fn time_or_place_out_of_range_says_value_and_limit() {
         (
             "duration = 5.0",
             "duration = 0",
-            "stage[1].duration: is 0 s, must be greater than 0 and at most 1e9; give the simulated time of the stage",
+            "stage[1].duration: is missing or 0 s, must be greater than 0 and at most 1e9; add `duration = 5.0`, the \
+             simulated time of the stage",
         ),
         (
             "ramp = 1.0",

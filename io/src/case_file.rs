@@ -33,10 +33,14 @@ impl LoadedCase {
     /// The first value that cannot be used.
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
-        Self::checked(case, source, Vec::new())
+        // Old names were told of where the case was read.
+        Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: Vec::new(), ..loaded })
     }
 
-    fn checked(case: Case, source: CaseSource, warnings: Vec<String>) -> Result<Self, CaseError> {
+    fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
+        let told = case.expand().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
+        warnings.extend(told.notes);
+        source.origins = told.origins;
         let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
         case.validate().map_err(located)?;
         let hash = case.fingerprint().map_err(located)?;
@@ -64,6 +68,8 @@ pub struct CaseSource {
     geometry: BTreeMap<String, String>,
     /// File and lines of the rows of records, by the keys of their tables.
     records: BTreeMap<String, (String, Vec<usize>)>,
+    /// Keys that the user wrote, by those that came of them.
+    origins: BTreeMap<String, String>,
 }
 
 impl CaseSource {
@@ -80,6 +86,8 @@ impl CaseSource {
     /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
     /// beginning of the key that is known; a value from the geometry file is located there.
     pub fn locate(&self, key: &str, message: &str) -> CaseError {
+        let written = beginnings(key).find_map(|part| Some((self.origins.get(part)?, &key[part.len()..])));
+        let key = &written.map_or_else(|| key.to_owned(), |(origin, rest)| format!("{origin}{rest}"));
         if let Some((table, (file, lines))) = self.records.iter().find(|(table, _)| key.starts_with(table.as_str())) {
             let row = key[table.len()..].trim_start_matches('[').split(']').next().and_then(|row| row.parse().ok());
             let line = row.and_then(|row: usize| lines.get(row)).copied().unwrap_or(1);

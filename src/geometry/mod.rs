@@ -13,6 +13,7 @@ pub mod loops;
 mod noder;
 pub mod polygon;
 pub mod segment;
+pub mod trace;
 
 pub use arrangement::{
     Arrangement, Edge, Face, FaceId, HalfEdgeId, Label, MeshEdgeId, NodingReport, Segment, TraceId, TraceLength,
