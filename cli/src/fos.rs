@@ -8,6 +8,7 @@ use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::{FosError, FosOptions};
+use enmm_stability::left_out_stages;
 use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
@@ -71,6 +72,9 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     };
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
+    }
+    if let Some(warning) = left_out_stages(&loaded.case).filter(|_| !arguments.json) {
+        tell_line(&format!("warning: {warning}"));
     }
     let mut hear = |trial: &Trial, progress: Progress| {
         if !arguments.json {
