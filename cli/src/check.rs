@@ -1,6 +1,5 @@
 //! `enmm check`: builds a model and reports on it.
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use enmm::model::Simulation;
@@ -8,13 +7,14 @@ use enmm_io::CaseError;
 use enmm_run::Observer;
 use enmm_run::check::Check;
 
+use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::{BAD_INPUT, fail, print_line};
 
 /// Builds the model of a case and prints what it is.
-pub fn check(path: &Path, json: bool) -> ExitCode {
+pub fn check(case: &CaseArguments, json: bool) -> ExitCode {
     let mut screen = Screen::new(json);
-    let looked = look(path, &mut screen);
+    let looked = look(case, &mut screen);
     screen.close();
     match looked {
         Ok(found) if json => print_line(&json_line(&found)),
@@ -29,8 +29,8 @@ pub fn check(path: &Path, json: bool) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn look(path: &Path, screen: &mut Screen) -> Result<Check, CaseError> {
-    let loaded = enmm_io::load_case(path)?;
+fn look(case: &CaseArguments, screen: &mut Screen) -> Result<Check, CaseError> {
+    let loaded = case.load()?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;

@@ -13,14 +13,15 @@ use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
 
+use crate::case::CaseArguments;
 use crate::run::{INTERRUPT, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Case file (TOML); the static stages that it begins with bring the slope to rest.
-    case: PathBuf,
+    #[command(flatten)]
+    case: CaseArguments,
     /// Directory for the results; default: the name of the case file, here.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -55,7 +56,7 @@ const HEAD: &str = "trial           F  verdict   by            time (s)  displac
 /// Finds the factor of safety of a case.
 pub fn fos(arguments: &Arguments) -> ExitCode {
     let options = FosOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case)),
+        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
         low: arguments.low,
         high: arguments.high,
         tolerance: arguments.tolerance,
@@ -66,7 +67,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(message) = options.check() {
         return refuse(arguments, &message, BAD_INPUT);
     }
-    let loaded = match enmm_io::load_case(&arguments.case) {
+    let loaded = match arguments.case.load() {
         Ok(loaded) => loaded,
         Err(error) => return refuse(arguments, &error, BAD_INPUT),
     };

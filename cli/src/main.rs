@@ -3,6 +3,7 @@
 
 mod bench;
 mod bound;
+mod case;
 mod check;
 mod fmu;
 mod fos;
@@ -12,7 +13,6 @@ mod run;
 mod verify;
 mod view;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -40,8 +40,8 @@ enum Command {
     Run(run::Arguments),
     /// Builds the model of a case and reports its counts, areas, masses and warnings.
     Check {
-        /// Case file (TOML).
-        case: PathBuf,
+        #[command(flatten)]
+        case: case::CaseArguments,
         /// Print one JSON object.
         #[arg(long)]
         json: bool,
