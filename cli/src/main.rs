@@ -7,6 +7,7 @@ mod case;
 mod check;
 mod fmu;
 mod fos;
+mod new;
 mod output;
 mod progress;
 mod run;
@@ -46,6 +47,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Writes a commented case to begin with.
+    New(new::Arguments),
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
     /// Solves problems with known answers and prints computed beside exact values.
@@ -73,6 +76,7 @@ fn execute(command: Command) -> ExitCode {
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, json } => check::check(&case, json),
+        Command::New(arguments) => new::new(&arguments),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
