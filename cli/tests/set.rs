@@ -65,7 +65,7 @@ fn a_setting_that_cannot_be_used_is_named() {
         ("joint_law.plane.friction_deg=95", "joint_law.plane.friction_deg: is 95 degrees, must be at least 0 and less"),
         ("joint_law.plane.friction_deg=30,5", "is the string \"30,5\", must be a number; write `friction_deg = 30.5`"),
         ("joint_law.plane.friction_deg=", "joint_law.plane.friction_deg: is the string \"\", must be a number"),
-        ("joint_set[0].seed=7", "joint_set[0]: the case has 0 of `joint_set`, counted from 0"),
+        ("joint_set[0].seed=7", "joint_set: the case has none; add `[[joint_set]]` with `spacing = 1.0`"),
         ("stage[2].duration=1", "stage[2]: the case has 2 of `stage`, counted from 0"),
         ("stage.duration=1", "stage: is a list; write `stage[0].duration` for its first, counted from 0"),
         ("mesh.size.x=1", "mesh.size: is a number, which has no parts"),

@@ -1,5 +1,6 @@
 //! Readers of geometry: outline, loops and joint traces from JSON, GeoJSON, DXF, WKT and CSV files. They check
-//! structure and types; numbers, counts of points and references are checked in the merged case like those of the case file.
+//! structure and types; numbers, counts of points and references are checked in the merged case like those of the
+//! case file.
 
 mod csv;
 mod dxf;
