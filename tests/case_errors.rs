@@ -21,9 +21,9 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, domain, fix, \
-         fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, load, mesh, monitor, \
-         output, port, quiet, rock, solver, stage, title, water; rename or remove it",
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, cut, \
+         domain, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, law_region, \
+         load, mesh, monitor, output, port, quiet, rock, section, solver, stage, title, water; rename or remove it",
     );
 }
 
@@ -57,7 +57,7 @@ fn wrong_type_says_expected_and_found() {
     assert_refused(
         "title = \"Two",
         "title = 3 # \"Two",
-        "1: title: is the integer 3, must be a string; write `title = \"name\"`",
+        "1: title: is the integer 3, must be a string; write `title = \"3\"`",
     );
     assert_refused(
         "[5.0, 0.0],",
@@ -65,6 +65,39 @@ fn wrong_type_says_expected_and_found() {
         "LINE: joint[1].points[0][1]: is the string \"a\", must be a number; write `1.0`",
     );
     assert_refused("[5.0, 0.0],", "[5.0],", "LINE: joint[1].points[0]: has 1 values, must have 2; write `[1.0, 1.0]`");
+}
+
+/// The remedy has the user's own value where it leaves no doubt.
+#[test]
+fn wrong_type_is_quoted_back_in_the_right_one() {
+    let friction = "friction_deg = 35.0";
+    for (to, shown, value) in
+        [("\"35\"", "35", "35"), ("\"35,5\"", "35,5", "35.5"), ("\" 3.5e1 \"", " 3.5e1 ", "3.5e1")]
+    {
+        assert_refused(
+            friction,
+            &format!("friction_deg = {to}"),
+            &format!(
+                "LINE: joint_law.clean.friction_deg: is the string \"{shown}\", must be a number; write \
+                 `friction_deg = {value}`"
+            ),
+        );
+    }
+    assert_refused(
+        "seed = 7",
+        "seed = 7.0",
+        "LINE: joint_set[0].seed: is the number 7.0, must be a whole number; write `seed = 7`",
+    );
+}
+
+#[test]
+fn slips_of_the_hand_are_found_where_they_are() {
+    assert_refused("friction_deg = 35.0", "friction_deg = 35,0", "LINE: the number 35,0 has a comma; write 35.0");
+    assert_refused(
+        "outline = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0], [0.0, 5.0]]",
+        "outline = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0], [0.0, 5.0]",
+        "LINE: `[` is not closed before line 5; add `]`",
+    );
 }
 
 #[test]
@@ -128,11 +161,7 @@ fn missing_section_says_what_to_add() {
             "rock",
             "1: rock: is missing (Rocks by name); add `[rock.NAME]` with `density = 1.0, young = 1.0, poisson = 1.0`",
         ),
-        (
-            "stage",
-            "1: stage: is missing (Stages in order); add `[[stage]]` with `name = \"name\", kind = \"static\", \
-             duration = 1.0`",
-        ),
+        ("stage", "1: stage: is missing (Stages in order); add `[[stage]]` with `name = \"name\", kind = \"static\"`"),
         ("domain", "1: domain: is missing (Rock outline and joint traces from files); add `[domain]`"),
     ] {
         let mut table: toml::Table = CASE.parse().unwrap();
@@ -246,7 +275,8 @@ fn time_or_place_out_of_range_says_value_and_limit() {
         (
             "duration = 5.0",
             "duration = 0",
-            "stage[1].duration: is 0 s, must be greater than 0 and at most 1e9; give the simulated time of the stage",
+            "stage[1].duration: is missing or 0 s, must be greater than 0 and at most 1e9; add `duration = 5.0`, the \
+             simulated time of the stage",
         ),
         (
             "ramp = 1.0",

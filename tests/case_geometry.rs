@@ -119,7 +119,8 @@ fn geometry_file_that_cannot_be_read_is_located_in_the_case() {
     let error = with_geometry("g.shp", "").unwrap_err();
     assert_eq!(
         error,
-        "case.toml:3: domain.geometry_file: \"g.shp\": the extension is none of .json, .geojson, .dxf; convert the file"
+        "case.toml:3: domain.geometry_file: \"g.shp\": the extension is none of .json, .geojson, .dxf, .wkt, \
+         .csv; convert the file"
     );
 }
 

@@ -301,12 +301,16 @@ mod joint_sets {
     const SET: JointSetParameters = JointSetParameters {
         dip: 0.3,
         dip_sd: 0.05,
+        turn: Turn::Normal,
         spacing: 0.5,
         spacing_sd: 0.2,
+        spacing_spread: Spread::Normal,
         trace_length: Some(3.0),
         trace_length_sd: 1.0,
+        length_spread: Spread::Normal,
         gap: 0.4,
         seed: 11,
+        origin: None,
     };
 
     fn points(list: &[[f64; 2]]) -> Vec<Point> {

@@ -58,7 +58,7 @@ pub fn slope_case(blocks: usize, elements_a_block: usize) -> String {
         let deviation = SCATTER * spacing;
         let _ = write!(
             text,
-            "[[joint_set]]\ndip_deg = {dip}\nspacing = {spacing:.6}\nspacing_sd = {deviation:.6}\nseed = {seed}\n\
+            "[[joint_set]]\nangle_deg = {dip}\nspacing = {spacing:.6}\nspacing_sd = {deviation:.6}\nseed = {seed}\n\
             region = [{toe}, {top}, {rim}]\n"
         );
     }

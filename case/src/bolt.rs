@@ -50,6 +50,56 @@ pub struct Bolt {
     pub active: bool,
 }
 
+/// A row of equal bolts whose heads lie on the face. Bolts of a pattern `rock` are named `rock_1`, `rock_2`, …; a stage
+/// installs all of them by `rock`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoltPattern {
+    /// Name, for stages that install it.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Head line (m), near the face: each bolt, prolonged both ways from its point on this line, enters the rock at its
+    /// head, the nearest such point of outline or holes.
+    pub line: [[f64; 2]; 2],
+    /// Number of bolts in the section, 1 to 10000, the first and last at the ends of the line, a single one in its
+    /// middle; this or `distance`.
+    #[serde(default)]
+    pub count: Option<u32>,
+    /// Distance between bolts in the section, along the line from its first point (m); this or `count`.
+    #[serde(default)]
+    pub distance: Option<f64>,
+    /// Length of a bolt from its head (m).
+    pub length: f64,
+    /// Direction from the head into the rock, counter-clockwise from the x axis (degrees), at least -360 and at most
+    /// 360: -15 dips to the right by 15°.
+    pub angle_deg: f64,
+    /// Ends or grouted.
+    #[serde(default)]
+    pub anchorage: Anchorage,
+    /// Young's modulus of the bar (Pa).
+    pub young: f64,
+    /// Cross-section of one bar (m²).
+    pub area: f64,
+    /// Distance between bars out of the plane (m).
+    #[serde(default = "one")]
+    pub spacing: f64,
+    /// Force (N) at which one bar yields; default: never.
+    #[serde(default)]
+    pub yield_force: Option<f64>,
+    /// Elongation of the free length, relative to it, at which the bar breaks; default: never.
+    #[serde(default)]
+    pub rupture_strain: Option<f64>,
+    /// Force (N) of one bar when it is installed.
+    #[serde(default)]
+    pub pretension: f64,
+    /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
+    #[serde(default)]
+    pub free_length: Option<f64>,
+    /// Whether the bolts are there from the start; else a stage installs them by name.
+    #[serde(default = "yes")]
+    pub active: bool,
+}
+
 fn one() -> f64 {
     1.0
 }

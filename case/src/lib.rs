@@ -2,8 +2,11 @@
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `assemble`.
 
 mod bolt;
+mod expand;
 mod fingerprint;
 mod ground;
+mod in_situ;
+mod joint_set;
 pub mod key;
 pub mod limits;
 mod pictures;
@@ -15,8 +18,11 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use bolt::{Anchorage, Bolt};
+pub use bolt::{Anchorage, Bolt, BoltPattern};
+pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
+pub use in_situ::InSitu;
+pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
 pub use pictures::{PictureKind, Pictures};
 pub use validate::Invalid;
 
@@ -41,12 +47,21 @@ pub struct Case {
     /// Generated joint sets.
     #[serde(default, rename = "joint_set")]
     pub joint_sets: Vec<JointSet>,
+    /// Construction joints, along which later stages part the rock.
+    #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
+    pub cuts: Vec<Cut>,
+    /// Where the section lies, for joint sets by dip direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<Section>,
     /// Rocks by name.
     #[serde(rename = "rock")]
     pub rocks: BTreeMap<String, Rock>,
     /// Joint laws by name.
     #[serde(default, rename = "joint_law")]
     pub joint_laws: BTreeMap<String, JointLaw>,
+    /// Regions whose joints have another law, in order.
+    #[serde(default, rename = "law_region", skip_serializing_if = "Vec::is_empty")]
+    pub law_regions: Vec<LawRegion>,
     /// Acceleration of gravity.
     #[serde(default)]
     pub gravity: Gravity,
@@ -68,6 +83,9 @@ pub struct Case {
     /// Rock bolts.
     #[serde(default, rename = "bolt")]
     pub bolts: Vec<Bolt>,
+    /// Rows of equal rock bolts with their heads on the face.
+    #[serde(default, rename = "bolt_pattern", skip_serializing_if = "Vec::is_empty")]
+    pub bolt_patterns: Vec<BoltPattern>,
     /// Velocities at the start.
     #[serde(default, rename = "initial_velocity")]
     pub initial_velocities: Vec<InitialVelocity>,
@@ -125,7 +143,7 @@ pub struct Domain {
     /// Loops of rock inside holes or beside the outline (m).
     #[serde(default)]
     pub islands: Vec<PointList>,
-    /// JSON (`outline`, `joints`), GeoJSON lines or DXF lines, relative to the case file.
+    /// JSON (`outline`, `joints`), GeoJSON, DXF, WKT or CSV, relative to the case file.
     #[serde(default)]
     pub geometry_file: Option<PathBuf>,
     /// Law of traces that name none.
@@ -156,40 +174,6 @@ pub struct Mesh {
 pub struct JointTrace {
     /// At least two points (m).
     pub points: PointList,
-    /// Joint law by name; default `domain.joint_law`.
-    #[serde(default)]
-    pub law: Option<String>,
-}
-
-/// Straight parallel joints generated from statistics; the same seed gives the same joints.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointSet {
-    /// Direction of the traces, counter-clockwise from the x axis (degrees).
-    pub dip_deg: f64,
-    /// Standard deviation of the direction (degrees).
-    #[serde(default)]
-    pub dip_sd_deg: f64,
-    /// Mean distance between neighbouring lines, normal to them (m).
-    pub spacing: f64,
-    /// Standard deviation of the spacing (m).
-    #[serde(default)]
-    pub spacing_sd: f64,
-    /// Length of a trace (m); default: through the whole region.
-    #[serde(default)]
-    pub trace_length: Option<f64>,
-    /// Standard deviation of the trace length (m).
-    #[serde(default)]
-    pub trace_length_sd: f64,
-    /// Rock bridge between traces on one line (m).
-    #[serde(default)]
-    pub gap: f64,
-    /// Seed of the generator.
-    #[serde(default)]
-    pub seed: u64,
-    /// Polygon (m) to which the traces are clipped; default: the bounding box of the outline.
-    #[serde(default)]
-    pub region: Option<PointList>,
     /// Joint law by name; default `domain.joint_law`.
     #[serde(default)]
     pub law: Option<String>,
@@ -451,32 +435,6 @@ pub struct InitialVelocity {
     pub angular_velocity: f64,
 }
 
-/// Stress before the first stage (Pa, tension positive): value + gradient·(y − y_reference).
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InSitu {
-    /// Horizontal normal stress (Pa).
-    pub sxx: f64,
-    /// Vertical normal stress (Pa).
-    pub syy: f64,
-    /// Shear stress (Pa).
-    #[serde(default)]
-    pub sxy: f64,
-    /// Change of the three with height (Pa/m).
-    #[serde(default)]
-    pub gradient: [f64; 3],
-    /// Height (m) at which the values hold.
-    #[serde(default)]
-    pub y_reference: f64,
-    /// Normal stress out of the plane (Pa) at that height, for rock that yields in plane strain; default: Poisson's
-    /// ratio times (sxx + syy), whatever the height.
-    #[serde(default)]
-    pub szz: Option<f64>,
-    /// Change of `szz` with height (Pa/m).
-    #[serde(default)]
-    pub szz_gradient: f64,
-}
-
 /// Water with a level or a sloping surface: hydrostatic pressure on the faces that it reaches, at their current places.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -558,8 +516,13 @@ pub struct Stage {
     pub name: String,
     /// Static or dynamic.
     pub kind: StageKind,
-    /// Simulated time (s); for a static stage the most that it may take.
+    /// Simulated time (s); for a static stage the most that it may take. Must be there, above 0, at most 1e9; a static
+    /// stage may give `duration_max` instead.
+    #[serde(default)]
     pub duration: f64,
+    /// Static: the most simulated time (s) that the stage may take; it ends as soon as the rock is at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_max: Option<f64>,
     /// Static: unbalanced ratio at which the stage ends.
     #[serde(default)]
     pub convergence: Option<f64>,
@@ -583,7 +546,7 @@ pub struct Stage {
     /// Joints of one law that take another.
     #[serde(default, rename = "switch_law")]
     pub law_switches: Vec<LawSwitch>,
-    /// Bolts by name that are installed.
+    /// Bolts and bolt patterns by name that are installed.
     #[serde(default)]
     pub install: Vec<String>,
     /// Fixities by name that begin to hold.
@@ -605,6 +568,7 @@ impl Stage {
             name,
             kind,
             duration,
+            duration_max: None,
             convergence: None,
             ramp: None,
             damping: None,

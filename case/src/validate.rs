@@ -1,9 +1,10 @@
 //! Checks of everything that can be known from the case alone: signs, ranges, alternatives, references. What needs the
 //! planar arrangement (self-intersections, blocks that do not exist) is checked by the builder.
 
-mod bolts;
-mod checks;
+pub(crate) mod bolts;
+pub(crate) mod checks;
 mod ground;
+mod joint_sets;
 mod joints;
 mod loads;
 mod ports;
@@ -34,6 +35,7 @@ impl Case {
     /// # Errors
     /// The first value that cannot be used, in the order of the fields of [`Case`].
     pub fn validate(&self) -> Result<(), Invalid> {
+        self.must_be_expanded()?;
         let root = Key::root();
         domain(&root.field("domain"), &self.domain)?;
         mesh(&root.field("mesh"), &self.mesh)?;
@@ -42,6 +44,7 @@ impl Case {
         for (name, law) in &self.joint_laws {
             joint_law(&root.field("joint_law").field(name), law)?;
         }
+        joint_sets::validate_law_regions(&root.field("law_region"), self)?;
         gravity(&root.field("gravity"), &self.gravity)?;
         loads::validate_fixes(&root.field("fix"), &self.fixes)?;
         loads::validate_loads(&root.field("load"), &self.loads)?;
@@ -88,7 +91,8 @@ impl Case {
         }
         for (i, set) in self.joint_sets.iter().enumerate() {
             let key = root.field("joint_set").index(i);
-            joint_set(&key, set)?;
+            joint_sets::validate_set(&key, set)?;
+            joint_sets::validate_end(&key, self, i)?;
             self.validate_law_of_joint(&laws, &key, set.law.as_deref())?;
         }
         if self.domain.islands.is_empty() {
@@ -187,25 +191,6 @@ fn mesh(key: &Key, mesh: &Mesh) -> Check {
     point(&key.field("origin"), &mesh.origin)
 }
 
-fn joint_set(key: &Key, set: &super::JointSet) -> Check {
-    let length = Range::above(0.0).to(COORDINATE_MAX);
-    let spread = Range::from(0.0).to(COORDINATE_MAX);
-    number(key, "dip_deg", set.dip_deg, Range::within(360.0), "degrees", "counter-clockwise from the x axis")?;
-    number(key, "dip_sd_deg", set.dip_sd_deg, Range::from(0.0).to(90.0), "degrees", "0 for parallel joints")?;
-    number(key, "spacing", set.spacing, length, "m", "the mean distance between joints")?;
-    number(key, "spacing_sd", set.spacing_sd, spread, "m", "0 for equal distances")?;
-    optional(key, "trace_length", set.trace_length, length, "m", "leave it out for joints through the whole region")?;
-    number(key, "trace_length_sd", set.trace_length_sd, spread, "m", "0 for equal lengths")?;
-    number(key, "gap", set.gap, spread, "m", "0 for no rock bridges")?;
-    for (name, value) in [("trace_length_sd", set.trace_length_sd), ("gap", set.gap)] {
-        if set.trace_length.is_none() && value > 0.0 {
-            let message = format!("is {value} m, but joints without `trace_length` do not end; add `trace_length`");
-            return fail(&key.field(name), message);
-        }
-    }
-    set.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
-}
-
 fn rock(key: &Key, rock: &Rock) -> Check {
     number(key, "density", rock.density, Range::from(1e-3).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
     number(key, "young", rock.young, Range::from(1.0).to(1e15), "Pa", "rock has 1e8 to 1e11")?;
@@ -281,8 +266,8 @@ fn initial_velocity(key: &Key, start: &InitialVelocity) -> Check {
 
 fn in_situ(key: &Key, stress: &InSitu) -> Check {
     let hint = "tension is positive, compression negative";
-    for (name, value) in [("sxx", stress.sxx), ("syy", stress.syy), ("sxy", stress.sxy)] {
-        number(key, name, value, Range::within(1e12), "Pa", hint)?;
+    for (name, value) in [("sxx", stress.sxx), ("syy", stress.syy), ("sxy", Some(stress.sxy))] {
+        optional(key, name, value, Range::within(1e12), "Pa", hint)?;
     }
     for (i, &value) in stress.gradient.iter().enumerate() {
         number(
@@ -297,7 +282,7 @@ fn in_situ(key: &Key, stress: &InSitu) -> Check {
     optional(key, "szz", stress.szz, Range::within(1e12), "Pa", hint)?;
     let slope = "density times gravity is usual";
     number(key, "szz_gradient", stress.szz_gradient, Range::within(1e9), "Pa/m", slope)?;
-    number(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
+    optional(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
 }
 
 fn fmu_notes(key: &Key, notes: &FmuNotes) -> Check {

@@ -7,14 +7,15 @@ use clap::Args;
 use enmm_run::{BoundFailure, bound_record, write_bound_page};
 use enmm_stability::limit_analysis::{Bound, Collapse};
 
+use crate::case::CaseArguments;
 use crate::run::directory_of;
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Arguments of `enmm bound`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Case file (TOML); the model is looked at in the last of the static stages that it begins with.
-    case: PathBuf,
+    #[command(flatten)]
+    case: CaseArguments,
     /// Directory for report.html; default: the name of the case file, here.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -27,11 +28,11 @@ pub struct Arguments {
 pub fn bound(arguments: &Arguments) -> ExitCode {
     let Arguments { case, output, json } = arguments;
     let json = *json;
-    let found = enmm_io::load_case(case).map_err(BoundFailure::from);
+    let found = case.load().map_err(BoundFailure::from);
     match found.and_then(|loaded| enmm_run::bound(&loaded).map(|bound| (loaded, bound))) {
         Ok((loaded, bound)) => {
             print_line(&if json { bound_record(&bound).to_string() } else { text(&bound) });
-            let directory = output.clone().unwrap_or_else(|| directory_of(case));
+            let directory = output.clone().unwrap_or_else(|| directory_of(&case.path));
             if let Err(error) = write_bound_page(&directory, &loaded, &bound) {
                 return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
             }

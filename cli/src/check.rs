@@ -8,13 +8,14 @@ use enmm_io::CaseError;
 use enmm_run::Observer;
 use enmm_run::check::Check;
 
+use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, fail, print_line};
 
 /// Builds the model of a case, prints what it is, and draws it into a directory if there is one.
-pub fn check(path: &Path, directory: Option<&Path>, json: bool) -> ExitCode {
+pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> ExitCode {
     let mut screen = Screen::new(json);
-    let looked = look(path, &mut screen);
+    let looked = look(case, &mut screen);
     screen.close();
     let refuse = |error: &dyn std::fmt::Display, status| {
         if json {
@@ -38,8 +39,8 @@ pub fn check(path: &Path, directory: Option<&Path>, json: bool) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn look(path: &Path, screen: &mut Screen) -> Result<(Simulation, Check), CaseError> {
-    let loaded = enmm_io::load_case(path)?;
+fn look(case: &CaseArguments, screen: &mut Screen) -> Result<(Simulation, Check), CaseError> {
+    let loaded = case.load()?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;

@@ -7,13 +7,14 @@ use clap::{Args, ValueEnum};
 use enmm_fmi::pack::{PackError, Packed, pack};
 use enmm_fmi::{library, table};
 
+use crate::case::CaseArguments;
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
 /// Arguments of `enmm fmu`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Case file (TOML).
-    case: PathBuf,
+    #[command(flatten)]
+    case: CaseArguments,
     /// File to write; default: the name of the case file with `.fmu`, here.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -36,7 +37,7 @@ pub fn fmu(arguments: &Arguments) -> ExitCode {
         Version::Two => table::Version::Two,
         Version::Three => table::Version::Three,
     };
-    let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.case));
+    let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.case.path));
     let packed = match packed(&arguments.case, version, &output) {
         Ok(packed) => packed,
         Err((message, status)) => return fail(&message, status),
@@ -56,8 +57,9 @@ fn default_output(case: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn packed(case: &Path, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
-    let loaded = enmm_io::load_case(case).map_err(|error| (error.to_string(), BAD_INPUT))?;
+fn packed(arguments: &CaseArguments, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
+    let case = arguments.path.as_path();
+    let loaded = arguments.load().map_err(|error| (error.to_string(), BAD_INPUT))?;
     if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
         return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
     }

@@ -8,10 +8,12 @@ use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::{FosError, FosOptions};
+use enmm_stability::left_out_stages;
 use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
 
+use crate::case::CaseArguments;
 use crate::progress::Search;
 use crate::run::{INTERRUPT, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
@@ -19,8 +21,8 @@ use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line}
 /// Arguments of `enmm fos`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Case file (TOML); the static stages that it begins with bring the slope to rest.
-    case: PathBuf,
+    #[command(flatten)]
+    case: CaseArguments,
     /// Directory for the results; default: the name of the case file, here.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -55,7 +57,7 @@ const HEAD: &str = "trial           F  verdict   by            time (s)  displac
 /// Finds the factor of safety of a case.
 pub fn fos(arguments: &Arguments) -> ExitCode {
     let options = FosOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case)),
+        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
         low: arguments.low,
         high: arguments.high,
         tolerance: arguments.tolerance,
@@ -66,12 +68,15 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(message) = options.check() {
         return refuse(arguments, &message, BAD_INPUT);
     }
-    let loaded = match enmm_io::load_case(&arguments.case) {
+    let loaded = match arguments.case.load() {
         Ok(loaded) => loaded,
         Err(error) => return refuse(arguments, &error, BAD_INPUT),
     };
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
+    }
+    if let Some(warning) = left_out_stages(&loaded.case).filter(|_| !arguments.json) {
+        tell_line(&format!("warning: {warning}"));
     }
     let search = Search::new(arguments.json);
     let mut hear = |trial: &Trial, progress: Progress| {

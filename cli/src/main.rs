@@ -3,9 +3,11 @@
 
 mod bench;
 mod bound;
+mod case;
 mod check;
 mod fmu;
 mod fos;
+mod new;
 mod output;
 mod progress;
 mod run;
@@ -40,8 +42,8 @@ enum Command {
     Run(run::Arguments),
     /// Builds the model of a case and reports its counts, areas, masses and warnings.
     Check {
-        /// Case file (TOML).
-        case: PathBuf,
+        #[command(flatten)]
+        case: case::CaseArguments,
         /// Directory to draw the model into, as model.png.
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -49,6 +51,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Writes a commented case to begin with.
+    New(new::Arguments),
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
     /// Solves problems with known answers and prints computed beside exact values.
@@ -76,6 +80,7 @@ fn execute(command: Command) -> ExitCode {
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),
+        Command::New(arguments) => new::new(&arguments),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),

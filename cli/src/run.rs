@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
+use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
 
@@ -16,8 +17,8 @@ pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
 /// Arguments of `enmm run`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Case file (TOML).
-    case: PathBuf,
+    #[command(flatten)]
+    case: CaseArguments,
     /// Directory for the results; default: the name of the case file, here.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -34,7 +35,7 @@ pub struct Arguments {
 
 /// Runs a case.
 pub fn run(arguments: &Arguments) -> ExitCode {
-    let loaded = match enmm_io::load_case(&arguments.case) {
+    let loaded = match arguments.case.load() {
         Ok(loaded) => loaded,
         Err(error) => return fail(&error, BAD_INPUT),
     };
@@ -42,7 +43,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         return fail(&format!("cannot listen for interrupts ({error})"), FAILED);
     }
     let options = RunOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case)),
+        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
         resume: arguments.resume.clone(),
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),

@@ -27,6 +27,14 @@ pub enum CaseError {
         /// What is wrong and the remedy.
         message: String,
     },
+    /// A value that the command line sets cannot be used.
+    #[error("--set {setting}: {message}")]
+    Setting {
+        /// Key and value as the user wrote them.
+        setting: String,
+        /// What is wrong, the value, the limit and the remedy.
+        message: String,
+    },
     /// A value cannot be used.
     #[error("{file}:{line}: {key}: {message}")]
     Value {

@@ -24,6 +24,8 @@ pub struct LoadedCase {
     pub hash: String,
     /// What the user should know though it is no error.
     pub warnings: Vec<String>,
+    /// Values that took the place of those of the case file, as `key=value`.
+    pub settings: Vec<String>,
 }
 
 impl LoadedCase {
@@ -33,14 +35,19 @@ impl LoadedCase {
     /// The first value that cannot be used.
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
-        Self::checked(case, source, Vec::new())
+        // Old names were told of where the case was read.
+        Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: Vec::new(), ..loaded })
     }
 
-    fn checked(case: Case, source: CaseSource, warnings: Vec<String>) -> Result<Self, CaseError> {
+    fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
+        let told = case.expand().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
+        warnings.extend(told.notes);
+        source.origins = told.origins;
         let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
         case.validate().map_err(located)?;
         let hash = case.fingerprint().map_err(located)?;
-        Ok(Self { case, source, hash, warnings })
+        let settings = source.settings.values().cloned().collect();
+        Ok(Self { case, source, hash, warnings, settings })
     }
 
     /// Builds the model of the case for a host that drives it.
@@ -64,6 +71,10 @@ pub struct CaseSource {
     geometry: BTreeMap<String, String>,
     /// File and lines of the rows of records, by the keys of their tables.
     records: BTreeMap<String, (String, Vec<usize>)>,
+    /// Keys that the user wrote, by those that came of them.
+    origins: BTreeMap<String, String>,
+    /// Settings by their keys.
+    settings: BTreeMap<String, String>,
 }
 
 impl CaseSource {
@@ -72,7 +83,8 @@ impl CaseSource {
         &self.file
     }
 
-    /// Returns the text of the case file; empty when the case was not read from one.
+    /// Returns the text of the case file, with settings as comments at its end; empty when the case was not read from
+    /// one.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -80,10 +92,17 @@ impl CaseSource {
     /// Returns an error at the place where the value of `key` is written: its own line, else that of the longest
     /// beginning of the key that is known; a value from the geometry file is located there.
     pub fn locate(&self, key: &str, message: &str) -> CaseError {
+        let written = beginnings(key).find_map(|part| Some((self.origins.get(part)?, &key[part.len()..])));
+        let key = &written.map_or_else(|| key.to_owned(), |(origin, rest)| format!("{origin}{rest}"));
         if let Some((table, (file, lines))) = self.records.iter().find(|(table, _)| key.starts_with(table.as_str())) {
             let row = key[table.len()..].trim_start_matches('[').split(']').next().and_then(|row| row.parse().ok());
             let line = row.and_then(|row: usize| lines.get(row)).copied().unwrap_or(1);
             return CaseError::at(file, line, key, message);
+        }
+        let below = self.settings.iter().find(|(set, _)| beginnings(set).any(|part| part == key));
+        let above = || beginnings(key).find_map(|part| self.settings.get(part));
+        if let Some(setting) = below.map(|(_, setting)| setting).or_else(above) {
+            return CaseError::Setting { setting: setting.clone(), message: format!("{key}: {message}") };
         }
         let of_geometry = beginnings(key).find_map(|part| Some((self.geometry.get(part)?, &key[part.len()..])));
         let (file, lines, key) = match of_geometry {
@@ -106,9 +125,18 @@ impl CaseSource {
 /// # Errors
 /// The first thing that cannot be used, with file, line and key.
 pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
+    load_case_with(path, &[] as &[&str])
+}
+
+/// Reads a case file with other values: each of `settings` is `key=value`, such as `joint_law.plane.friction_deg=30` or
+/// `joint_set[0].seed=7`.
+///
+/// # Errors
+/// See [`load_case`]; what is wrong with a setting names it.
+pub fn load_case_with(path: &Path, settings: &[impl AsRef<str>]) -> Result<LoadedCase, CaseError> {
     let file = path.display().to_string();
     let text = read_text(path).map_err(|message| CaseError::Unreadable { file: file.clone(), message })?;
-    parse_case(&text, &file, path.parent().unwrap_or(Path::new("")))
+    parse_case_with(&text, &file, path.parent().unwrap_or(Path::new("")), settings)
 }
 
 /// Reads a case from text; `file_name` stands in messages, and `base_dir` is where relative paths start.
@@ -116,9 +144,20 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
 /// # Errors
 /// See [`load_case`].
 pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<LoadedCase, CaseError> {
-    let (mut case, lines) = reader::read(text, file_name)?;
+    parse_case_with(text, file_name, base_dir, &[] as &[&str])
+}
+
+fn parse_case_with(
+    text: &str,
+    file_name: &str,
+    base_dir: &Path,
+    settings: &[impl AsRef<str>],
+) -> Result<LoadedCase, CaseError> {
+    let (mut case, lines, settings) = reader::read(text, file_name, settings)?;
     let file = file_name.to_string();
-    let mut source = CaseSource { file, text: text.to_owned(), lines, ..CaseSource::default() };
+    let notes = settings.values().map(|setting| format!("\n# --set {}", setting.replace('\n', " ")));
+    let text = notes.fold(text.to_owned(), |text, note| text + &note);
+    let mut source = CaseSource { file, text, lines, settings, ..CaseSource::default() };
     let warnings = merge_geometry_file(&mut case, &mut source, base_dir)?;
     merge_record_files(&mut case, &mut source, base_dir)?;
     LoadedCase::checked(case, source, warnings)

@@ -1,10 +1,13 @@
-//! Readers of geometry: outline, loops and joint traces from JSON, GeoJSON and DXF files. They judge structure and
-//! types; numbers, counts of points and references are checked in the merged case like those of the case file.
+//! Readers of geometry: outline, loops and joint traces from JSON, GeoJSON, DXF, WKT and CSV files. They check
+//! structure and types; numbers, counts of points and references are checked in the merged case like those of the
+//! case file.
 
+mod csv;
 mod dxf;
 mod geojson;
 mod json;
 mod json_text;
+mod wkt;
 
 use std::path::Path;
 
@@ -51,6 +54,10 @@ pub enum Format {
     GeoJson,
     /// `.dxf`.
     Dxf,
+    /// `.wkt`: well-known text.
+    Wkt,
+    /// `.csv`: traces by rows.
+    Csv,
 }
 
 impl Format {
@@ -64,7 +71,9 @@ impl Format {
             Some("json") => Ok(Self::Json),
             Some("geojson") => Ok(Self::GeoJson),
             Some("dxf") => Ok(Self::Dxf),
-            _ => Err("the extension is none of .json, .geojson, .dxf; convert the file".to_string()),
+            Some("wkt") => Ok(Self::Wkt),
+            Some("csv") => Ok(Self::Csv),
+            _ => Err("the extension is none of .json, .geojson, .dxf, .wkt, .csv; convert the file".to_string()),
         }
     }
 }
@@ -74,8 +83,11 @@ impl Format {
 /// # Errors
 /// The first thing in the file that cannot be used, with its line.
 pub fn parse(format: Format, file: &str, text: &str, case: &Case) -> Result<Geometry, CaseError> {
-    if format == Format::Dxf {
-        return dxf::parse(file, text, case);
+    match format {
+        Format::Dxf => return dxf::parse(file, text, case),
+        Format::Wkt => return wkt::parse(file, text),
+        Format::Csv => return csv::parse(file, text),
+        Format::Json | Format::GeoJson => {}
     }
     let document = json_text::Document::parse(file, text)?;
     if format == Format::GeoJson || geojson::is_geojson(&document.value) {

@@ -13,5 +13,5 @@ mod record_file;
 mod schema;
 
 pub use case_error::CaseError;
-pub use case_file::{CaseSource, LoadedCase, load_case, parse_case};
+pub use case_file::{CaseSource, LoadedCase, load_case, load_case_with, parse_case};
 pub use schema::schema;

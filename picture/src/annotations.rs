@@ -215,15 +215,19 @@ fn sets(simulation: &Simulation) -> Vec<SetMark> {
     }
     let mark = |(k, (set, middles)): (usize, (&enmm::model::case::JointSet, Vec<Point>))| {
         let centre = middles.iter().sum::<Vector>() / middles.len().max(1) as f64;
-        let (sin, cos) = set.dip_deg.to_radians().sin_cos();
+        let (sin, cos) = set.angle().sin_cos();
         let direction = Vector::new(cos, sin);
         let reach = middles.iter().map(|p| (p - centre).dot(&direction)).fold(0.0, f64::max);
         let wanted = centre + direction * (0.6 * reach);
         let distance = |p: &&Point| (**p - wanted).norm();
         let scatter = if set.dip_sd_deg > 0.0 { format!(" ± {}", number_text(set.dip_sd_deg)) } else { String::new() };
         SetMark {
-            name: format!("set {}", k + 1),
-            detail: format!("{}{scatter}°, every {} m", number_text(set.dip_deg), number_text(set.spacing)),
+            name: set.name.clone().unwrap_or_else(|| format!("set {}", k + 1)),
+            detail: format!(
+                "{}{scatter}°, every {} m",
+                number_text(set.angle().to_degrees()),
+                number_text(set.spacing)
+            ),
             direction,
             place: middles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied(),
         }

@@ -179,6 +179,9 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "wall_seconds": wall,
         "mechanisms": mechanisms,
     });
+    if !loaded.settings.is_empty() {
+        record["settings"] = json!(loaded.settings);
+    }
     if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
         record.extend(main);
     }

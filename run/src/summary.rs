@@ -37,6 +37,9 @@ pub struct Summary {
     pub case_file: String,
     /// Hash of the case.
     pub case_hash: String,
+    /// Values that took the place of those of the case file, as `key=value`.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub settings: Vec<String>,
     /// How the run ended.
     pub status: RunStatus,
     /// Numerical failure, if any.
@@ -306,6 +309,7 @@ impl WallSeconds {
 pub(super) struct RunRecord<'a> {
     pub case_file: &'a str,
     pub case_hash: &'a str,
+    pub settings: &'a [String],
     pub status: RunStatus,
     pub failure: Option<&'a StepError>,
     pub stages: Vec<StageRecord>,
@@ -324,6 +328,7 @@ impl Summary {
             version: engine_version().to_owned(),
             case_file: record.case_file.to_owned(),
             case_hash: record.case_hash.to_owned(),
+            settings: record.settings.to_vec(),
             status: record.status,
             failure: record.failure.map(FailureRecord::from),
             model: ModelCounts::of(simulation),

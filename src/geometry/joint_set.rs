@@ -3,8 +3,9 @@
 //! Knows angles, lengths and a seed. The same parameters and region give the same traces, bit for bit, on one platform.
 
 use super::loops::validate_loop;
-use super::polygon::{bounds, contains, sides};
-use super::{GeometryError, Point, Vector, cross};
+use super::polygon::{bounds, contains};
+use super::trace::crossings;
+use super::{GeometryError, Point, Vector};
 
 /// Upper limit on the traces of one set, so that a slip in the spacing cannot fill the memory.
 const TRACES_MAX: usize = 1_000_000;
@@ -15,32 +16,77 @@ const DIP_DEVIATIONS_MAX: f64 = 3.0;
 /// Pieces shorter than this part of the size of the region are dropped.
 const PIECE_RATIO_MIN: f64 = 1e-9;
 
+/// Greatest turn of a trace whose pole follows Fisher's distribution (rad).
+const FISHER_TURN_MAX: f64 = std::f64::consts::FRAC_PI_3;
+/// Ratio of the greatest lognormal or exponential length that is looked for outside the region to the mean.
+const REACH_RATIO: f64 = 10.0;
+
+/// How spacings and lengths scatter about their mean.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Spread {
+    /// Normal, cut off at 0.1 and 1.9 of the mean.
+    #[default]
+    Normal,
+    /// Lognormal by its own mean and standard deviation.
+    Lognormal,
+    /// Exponential by its mean; the standard deviation is the mean.
+    Exponential,
+    /// Uniform up to √3 standard deviations to both sides.
+    Uniform,
+}
+
+/// How directions scatter about their mean.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub enum Turn {
+    /// Normal by `dip_sd`, cut off at three of them.
+    #[default]
+    Normal,
+    /// Uniform by `dip_sd`, up to √3 of them to both sides.
+    Uniform,
+    /// Traces of joints whose poles in space follow Fisher's distribution, at most π/3 from the mean.
+    Fisher {
+        /// Concentration, at least 5.
+        concentration: f64,
+        /// Angle of the mean pole out of the plane of the traces (rad).
+        out_of_plane: f64,
+    },
+}
+
 /// Statistics of a joint set.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct JointSetParameters {
     /// Mean direction of the traces, counter-clockwise from the x axis (rad).
     pub dip: f64,
     /// Standard deviation of the direction of each trace (rad), cut off at three of them; at most π/6.
     pub dip_sd: f64,
+    /// How directions scatter.
+    pub turn: Turn,
     /// Mean distance between neighbouring lines, normal to them (m).
     pub spacing: f64,
     /// Standard deviation of the spacing (m), cut off at 0.1 and 1.9 of the mean; at most the mean.
     pub spacing_sd: f64,
+    /// How spacings scatter.
+    pub spacing_spread: Spread,
     /// Mean length of a trace (m); none for traces through the whole region.
     pub trace_length: Option<f64>,
     /// Standard deviation of the trace length (m), cut off at 0.1 and 1.9 of the mean; at most the mean.
     pub trace_length_sd: f64,
+    /// How trace lengths scatter.
+    pub length_spread: Spread,
     /// Rock bridge between traces on one line (m).
     pub gap: f64,
     /// Seed of the generator.
     pub seed: u64,
+    /// A position (m) through which one of the lines passes; none for chance.
+    pub origin: Option<Point>,
 }
 
 /// Generates the traces of a joint set inside a polygon (m), line by line from one side of the region to the other.
 ///
-/// Lines follow each other at spacings drawn from a normal distribution cut off at 0.1 and 1.9 of its mean, the first
-/// one at a random part of a spacing. A line of finite traces starts at a random phase; each trace turns about its own
-/// middle by the scatter of the direction. What lies outside the region, which need not be convex, is cut away.
+/// Lines follow each other at spacings drawn from their distribution, the first one at a random part of a spacing; with
+/// an origin they follow each other from there to both sides. A line of finite traces starts at a random phase; each
+/// trace turns about its own middle by the scatter of the direction. What lies outside the region, which need not be
+/// convex, is cut away.
 ///
 /// # Errors
 /// A parameter out of its range, a region that is no loop, or more than a million traces.
@@ -49,8 +95,7 @@ pub struct JointSetParameters {
 /// ```
 /// use enmm::geometry::{Point, joint_set::{JointSetParameters, generate}};
 /// let set = JointSetParameters {
-///     dip: 0.0, dip_sd: 0.0, spacing: 1.0, spacing_sd: 0.0, trace_length: None, trace_length_sd: 0.0,
-///     gap: 0.0, seed: 7,
+///     spacing: 1.0, seed: 7, ..JointSetParameters::default()
 /// };
 /// let region = [[0.0, 0.0], [4.0, 0.0], [4.0, 10.0], [0.0, 10.0]].map(|p| Point::new(p[0], p[1]));
 /// let traces = generate(&set, &region).unwrap();
@@ -73,9 +118,13 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
     let mut traces = Vec::new();
     let mut tried = 0;
     // A turned trace reaches across its line, so that lines just outside the region matter too.
-    let half = 0.5 * set.trace_length.map_or(end - start, |length| length * (1.0 + SCATTER_RATIO_MAX));
-    let margin = half * (DIP_DEVIATIONS_MAX * set.dip_sd).sin();
-    let mut line = bottom - margin + set.spacing * random.uniform();
+    let half = 0.5 * set.trace_length.map_or(end - start, |length| length * set.reach());
+    let margin = half * set.turn_max().sin();
+    let mut waiting = match set.origin {
+        None => vec![bottom - margin + set.spacing * random.uniform()],
+        Some(origin) => lines_below(set, origin.dot(&normal), [bottom - margin, top + margin], &mut random)?,
+    };
+    let mut line = waiting.pop().unwrap_or(top);
     while line < top + margin {
         let mut position = first_start(set, start, &mut random);
         while position < end {
@@ -83,17 +132,64 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
             if tried > TRACES_MAX {
                 return Err(GeometryError::TooManyTraces { spacing: set.spacing, limit: TRACES_MAX });
             }
-            let length = set.trace_length.map_or(end - start, |mean| random.near(mean, set.trace_length_sd));
+            let length = set
+                .trace_length
+                .map_or(end - start, |mean| random.spread(set.length_spread, mean, set.trace_length_sd));
             let middle = normal * line + along * (position + 0.5 * length);
-            let turn = random.direction(set.dip_sd);
+            let turn = random.turn(set);
             let stretch = if set.trace_length.is_none() { 1.0 / turn.x } else { 1.0 };
             let half = (along * turn.x + normal * turn.y) * (0.5 * length * stretch);
             clip_to(&region, middle - half, middle + half, piece_min, &mut traces);
             position += length + set.gap;
         }
-        line += random.near(set.spacing, set.spacing_sd);
+        line = match waiting.pop() {
+            Some(line) => line,
+            None => line + random.spread(set.spacing_spread, set.spacing, set.spacing_sd),
+        };
     }
     Ok(traces)
+}
+
+impl JointSetParameters {
+    /// Greatest length of a trace over the mean that is looked for outside the region.
+    fn reach(&self) -> f64 {
+        match self.length_spread {
+            Spread::Normal | Spread::Uniform => 1.0 + SCATTER_RATIO_MAX,
+            Spread::Lognormal | Spread::Exponential => REACH_RATIO,
+        }
+    }
+
+    /// Greatest turn of a trace (rad).
+    fn turn_max(&self) -> f64 {
+        match self.turn {
+            Turn::Normal => DIP_DEVIATIONS_MAX * self.dip_sd,
+            Turn::Uniform => 3f64.sqrt() * self.dip_sd,
+            Turn::Fisher { .. } => FISHER_TURN_MAX,
+        }
+    }
+}
+
+/// Lines above `low` that go down from `origin` at drawn spacings, and the one through `origin` first.
+fn lines_below(
+    set: &JointSetParameters,
+    origin: f64,
+    [low, high]: [f64; 2],
+    random: &mut Random,
+) -> Result<Vec<f64>, GeometryError> {
+    if !(low..=high).contains(&origin) {
+        let rule = "such that a line through it meets the region";
+        return Err(GeometryError::JointSet { parameter: "origin", value: origin, rule });
+    }
+    let mut lines = vec![origin];
+    let mut line = origin;
+    while lines.len() <= TRACES_MAX {
+        line -= random.spread(set.spacing_spread, set.spacing, set.spacing_sd);
+        if line <= low {
+            return Ok(lines);
+        }
+        lines.push(line);
+    }
+    Err(GeometryError::TooManyTraces { spacing: set.spacing, limit: TRACES_MAX })
 }
 
 /// Where the first trace of a line starts: at the rim when traces run through, else up to a trace and a gap before it.
@@ -104,16 +200,7 @@ fn first_start(set: &JointSetParameters, start: f64, random: &mut Random) -> f64
 /// Appends the parts of a trace inside a polygon, from its start to its end.
 fn clip_to(region: &[Point], a: Point, b: Point, piece_min: f64, traces: &mut Vec<[Point; 2]>) {
     let along = b - a;
-    let mut cuts = vec![0.0, 1.0];
-    for (c, d) in sides(region) {
-        let (side_c, side_d) = (cross(along, c - a), cross(along, d - a));
-        if (side_c <= 0.0) != (side_d <= 0.0) {
-            let crossing = c + (d - c) * (side_c / (side_c - side_d));
-            cuts.push((crossing - a).dot(&along) / along.norm_squared());
-        }
-    }
-    cuts.retain(|cut| (0.0..=1.0).contains(cut));
-    cuts.sort_unstable_by(f64::total_cmp);
+    let cuts = crossings(region, a, b);
     let piece_min = piece_min / along.norm();
     let mut open: Option<(f64, f64)> = None;
     for pair in cuts.windows(2) {
@@ -139,15 +226,29 @@ fn push_piece(a: Point, along: Vector, from: f64, to: f64, piece_min: f64, trace
 /// Refuses parameters out of range.
 fn check(set: &JointSetParameters) -> Result<(), GeometryError> {
     let scatter = |mean: f64, sd: f64| (0.0..=mean).contains(&sd);
+    // A lognormal distribution may scatter more than its mean.
+    let spread = |kind: Spread, mean: f64, sd: f64| scatter(mean, sd) || kind == Spread::Lognormal && sd.is_finite();
     let positive = |value: f64| value > 0.0 && value.is_finite();
     let length = set.trace_length.unwrap_or(f64::MAX);
+    let concentration = if let Turn::Fisher { concentration, .. } = set.turn { concentration } else { f64::MAX };
     let rules = [
         ("dip", set.dip, set.dip.is_finite(), "finite"),
         ("dip_sd", set.dip_sd, scatter(std::f64::consts::FRAC_PI_6, set.dip_sd), "between 0 and π/6"),
         ("spacing", set.spacing, positive(set.spacing), "positive"),
-        ("spacing_sd", set.spacing_sd, scatter(set.spacing, set.spacing_sd), "between 0 and the spacing"),
+        (
+            "spacing_sd",
+            set.spacing_sd,
+            spread(set.spacing_spread, set.spacing, set.spacing_sd),
+            "between 0 and the spacing",
+        ),
         ("trace_length", length, positive(length), "positive, or left out"),
-        ("trace_length_sd", set.trace_length_sd, scatter(length, set.trace_length_sd), "between 0 and the length"),
+        (
+            "trace_length_sd",
+            set.trace_length_sd,
+            spread(set.length_spread, length, set.trace_length_sd),
+            "between 0 and the length",
+        ),
+        ("concentration", concentration, concentration >= 5.0 && concentration.is_finite(), "at least 5"),
         ("gap", set.gap, set.gap >= 0.0 && set.gap.is_finite(), "0 or positive"),
     ];
     match rules.into_iter().find(|(_, _, holds, _)| !holds) {
@@ -191,6 +292,50 @@ impl Random {
             let off = sd * self.normal();
             if off.abs() <= SCATTER_RATIO_MAX * mean {
                 return mean + off;
+            }
+        }
+    }
+
+    /// Draws from a distribution of positive numbers.
+    fn spread(&mut self, kind: Spread, mean: f64, sd: f64) -> f64 {
+        match kind {
+            Spread::Normal => self.near(mean, sd),
+            Spread::Exponential => -mean * (1.0 - self.uniform()).ln(),
+            Spread::Uniform => mean + 3f64.sqrt() * sd * (2.0 * self.uniform() - 1.0),
+            Spread::Lognormal => {
+                let variance = (sd / mean).powi(2).ln_1p();
+                mean * (variance.sqrt() * self.normal() - 0.5 * variance).exp()
+            }
+        }
+    }
+
+    /// Draws cosine and sine of the turn of a trace.
+    fn turn(&mut self, set: &JointSetParameters) -> Vector {
+        match set.turn {
+            Turn::Normal => self.direction(set.dip_sd),
+            Turn::Uniform => {
+                let angle = 3f64.sqrt() * set.dip_sd * (2.0 * self.uniform() - 1.0);
+                Vector::new(angle.cos(), angle.sin())
+            }
+            Turn::Fisher { concentration, out_of_plane } => self.fisher(concentration, out_of_plane),
+        }
+    }
+
+    /// Draws the turn of the trace of a joint whose pole follows Fisher's distribution about a mean pole that lies
+    /// `out_of_plane` out of the plane of the traces. The angle θ off the mean has, by its inverse distribution
+    /// function, cos θ = 1 + ln(u + (1 − u)·exp(−2κ))/κ (Fisher, Lewis and Embleton 1987, section 3.6.2).
+    fn fisher(&mut self, concentration: f64, out_of_plane: f64) -> Vector {
+        let (out, within) = out_of_plane.sin_cos();
+        loop {
+            let u = 1.0 - self.uniform();
+            let cos = 1.0 + (u + (1.0 - u) * (-2.0 * concentration).exp()).ln() / concentration;
+            let sin = (1.0 - cos * cos).max(0.0).sqrt();
+            let (around_sin, around_cos) = (std::f64::consts::TAU * self.uniform()).sin_cos();
+            // The pole in the plane of the traces: along the mean trace and normal to it; joints have no sign.
+            let (along, normal) = (sin * around_cos, cos * within - sin * around_sin * out);
+            let turn = (-along / normal).atan();
+            if turn.abs() <= FISHER_TURN_MAX {
+                return Vector::new(turn.cos(), turn.sin());
             }
         }
     }

@@ -14,6 +14,7 @@ mod noder;
 mod planar_map;
 pub mod polygon;
 pub mod segment;
+pub mod trace;
 
 pub use arrangement::{arrange, arrange_within};
 pub use error::GeometryError;

@@ -313,9 +313,9 @@ const POINT_RATIO: f64 = 1000.0;
 
 pub(super) fn in_situ(case: &Case) -> Option<StressField> {
     let field = |s: &case::InSitu| StressField {
-        value: [s.sxx, s.syy, s.sxy],
+        value: [s.sxx.unwrap_or_default(), s.syy.unwrap_or_default(), s.sxy],
         gradient: s.gradient,
-        y_reference: s.y_reference,
+        y_reference: s.y_reference.unwrap_or_default(),
     };
     case.in_situ.as_ref().map(field)
 }

@@ -12,7 +12,7 @@ use crate::Trouble;
 pub fn slope_text(spacing: f64, seconds: f64) -> String {
     let set = |dip: f64, seed: u32, ratio: f64| {
         format!(
-            "[[joint_set]]\ndip_deg = {dip:?}\ndip_sd_deg = 1.0\nspacing = {:e}\nspacing_sd = {:e}\nseed = {seed}\n\
+            "[[joint_set]]\nangle_deg = {dip:?}\nangle_sd_deg = 1.0\nspacing = {:e}\nspacing_sd = {:e}\nseed = {seed}\n\
              region = [[58, 18], [122, 122], [200, 122]]\n",
             spacing * ratio,
             0.16 * spacing

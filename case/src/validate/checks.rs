@@ -94,11 +94,16 @@ impl fmt::Display for Plain {
 }
 
 /// Returns the error at `key`.
+pub fn invalid(key: &Key, message: impl Into<String>) -> Invalid {
+    Invalid { key: key.to_string(), message: message.into() }
+}
+
+/// Fails at `key`.
 ///
 /// # Errors
 /// Always.
 pub fn fail(key: &Key, message: impl Into<String>) -> Check {
-    Err(Invalid { key: key.to_string(), message: message.into() })
+    Err(invalid(key, message))
 }
 
 /// Checks the number `name` of the table `key` (or the element `key` itself, if `name` is empty).

@@ -28,6 +28,14 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
 }
 
 fn validate_motion(key: &Key, stage: &Stage) -> Check {
+    if stage.duration == 0.0 {
+        let other = if stage.kind == StageKind::Static { " or `duration_max = 5.0`" } else { "" };
+        let message = format!(
+            "is missing or 0 s, must be greater than 0 and at most 1e9; add `duration = 5.0`{other}, the simulated \
+             time of the stage"
+        );
+        return fail(&key.field("duration"), message);
+    }
     number(key, "duration", stage.duration, Range::above(0.0).to(1e9), "s", "give the simulated time of the stage")?;
     let (kind, other, refused) = match stage.kind {
         StageKind::Static => ("static", "dynamic", [("damping", stage.damping), ("", None)]),

@@ -1,34 +1,47 @@
 //! TOML to [`Case`]: walks the parsed text beside the schema of the case, so that every unknown key, missing key and
 //! wrong type is an error with its line and a remedy.
 
+mod broken;
 mod expected;
+mod setting;
+
+use std::collections::BTreeMap;
 
 use serde_json::{Map, Number, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use self::expected::{Expected, Fields, Schema, example, literal};
+use self::expected::{Expected, Fields, Schema, assigned, example, literal};
 use crate::case_error::CaseError;
 use crate::lines::{LineMap, LineStarts};
 use enmm::model::Case;
 use enmm::model::case::key::{Key, list, nearest};
 
-/// Reads a case and the lines of its keys.
+/// A case with the lines of its keys, and the settings by their keys.
+type Read = (Case, LineMap, BTreeMap<String, String>);
+
+/// Reads a case and puts the values of `settings` into it.
 ///
 /// # Errors
-/// The text is not TOML, or the first unknown key, missing key, wrong type or number that is not finite.
-pub fn read(text: &str, file: &str) -> Result<(Case, LineMap), CaseError> {
+/// The text is not TOML, or the first unknown key, missing key, wrong type or number that is not finite, in the text or
+/// in a setting.
+pub fn read(text: &str, file: &str, settings: &[impl AsRef<str>]) -> Result<Read, CaseError> {
     let starts = LineStarts::new(text);
     let syntax = |line, message: String| CaseError::at(file, line, "", message);
     let document = DeTable::parse(text).map_err(|error| {
+        if let Some((line, message)) = broken::cause(text) {
+            return syntax(line, message);
+        }
         let line = error.span().map_or(1, |span| starts.line(span.start));
         syntax(line, format!("not TOML: {}; correct the line", one_line(error.message())))
     })?;
     let schema = crate::schema();
     let mut reader = Reader { file, starts, lines: LineMap::default() };
-    let value = reader.table(document.get_ref(), &Schema::new(&schema).fields(), &Key::root())?;
+    let schema = Schema::new(&schema);
+    let mut value = reader.table(document.get_ref(), &schema.fields(), &Key::root())?;
+    let settings = setting::put_all(&mut value, schema, settings)?;
     let case = serde_json::from_value(value).map_err(|error| syntax(1, one_line(&error.to_string())))?;
-    Ok((case, reader.lines))
+    Ok((case, reader.lines, settings))
 }
 
 fn one_line(message: &str) -> String {
@@ -64,7 +77,9 @@ impl Reader<'_> {
             (Expected::Boolean, DeValue::Boolean(value)) => Ok(Value::from(*value)),
             (Expected::Choice(names), DeValue::String(text)) => self.choice(text, &names, key),
             (expected, found) => {
-                self.fail(key, format!("is {}, must be {expected}; write {}", shown(found), example(key, schema)))
+                let remedy =
+                    meant(&expected, found).map_or_else(|| example(key, schema), |value| assigned(key, &value));
+                self.fail(key, format!("is {}, must be {expected}; write {remedy}", shown(found)))
             }
         }
     }
@@ -129,6 +144,30 @@ impl Reader<'_> {
         let near = nearest(text, names.iter().copied()).unwrap_or_default();
         let known = list(names.iter().copied());
         self.fail(key, format!("is {text:?}, did you mean {near:?}? It must be one of {known}"))
+    }
+}
+
+/// The value that the user meant, where a value of another type leaves no doubt.
+fn meant(expected: &Expected, found: &DeValue) -> Option<String> {
+    match (expected, found) {
+        (Expected::Number | Expected::Integer(_), DeValue::String(text)) => {
+            let text = text.trim();
+            let points = if text.contains('.') { text.to_owned() } else { text.replace(',', ".") };
+            let value: f64 = points.parse().ok().filter(|value: &f64| value.is_finite())?;
+            let whole = points.parse::<u64>().is_ok();
+            (matches!(expected, Expected::Number) && value.is_finite() || whole).then_some(points)
+        }
+        (Expected::Integer(_), DeValue::Float(text)) => {
+            let value: f64 = text.as_str().parse().ok()?;
+            (value >= 0.0 && value.fract() == 0.0 && value < 9e15).then(|| format!("{value}"))
+        }
+        (Expected::Text, DeValue::Integer(text)) => Some(format!("\"{text}\"")),
+        (Expected::Text, DeValue::Float(text)) => Some(format!("\"{text}\"")),
+        (Expected::Boolean, DeValue::String(text)) => {
+            let text = text.trim().to_ascii_lowercase();
+            matches!(text.as_str(), "true" | "false").then_some(text)
+        }
+        _ => None,
     }
 }
 

@@ -474,6 +474,7 @@ impl<'a> Driver<'a> {
         let record = RunRecord {
             case_file: self.loaded.source.file(),
             case_hash: &self.loaded.hash,
+            settings: &self.loaded.settings,
             status,
             failure,
             stages,

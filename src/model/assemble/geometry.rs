@@ -2,10 +2,10 @@
 
 use crate::contact::LawId;
 use crate::cover::RegularMesh;
-use crate::geometry::joint_set::{JointSetParameters, generate};
+use crate::geometry::joint_set::{JointSetParameters, Spread, Turn, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
-use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
-use crate::model::case::{Case, Invalid, JointSet};
+use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon, trace};
+use crate::model::case::{AngleDistribution, CUT_LAW, Case, Distribution, Invalid, JointSet, LawRegion};
 
 use super::memory::Demand;
 use super::{BuildStage, law_of, points};
@@ -122,22 +122,77 @@ fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<(T
     let mut set_start = vec![traces.len()];
     for (k, set) in case.joint_sets.iter().enumerate() {
         let region = set.region.as_ref().map_or(box_points.to_vec(), |r| points(r));
-        let made = generate(&parameters(set), &region).map_err(invalid(&format!("joint_set[{k}]")))?;
+        let mut made = generate(&parameters(set), &region).map_err(invalid(&format!("joint_set[{k}]")))?;
+        if let Some(end) = &set.ends_on {
+            let range = case.joint_sets[..k].iter().position(|set| set.name.as_ref() == Some(end));
+            let others: Vec<&[Point]> = match range {
+                Some(other) => traces[set_start[other]..set_start[other + 1]].iter().map(|t| t.0.as_slice()).collect(),
+                None => traces.iter().filter(|t| Some(t.1) == law_of(case, end)).map(|t| t.0.as_slice()).collect(),
+            };
+            made.iter_mut().for_each(|t| *t = trace::end_on(*t, others.iter().copied()));
+        }
         traces.extend(made.into_iter().map(|t| (t.to_vec(), law(&set.law))));
         set_start.push(traces.len());
+    }
+    for change in &case.law_regions {
+        change_laws(case, change, &mut traces);
     }
     Ok((traces, set_start))
 }
 
+/// Gives joints in a region their other law; a joint that leaves the region is divided at its border, and all but its
+/// first piece come after all others.
+fn change_laws(case: &Case, change: &LawRegion, traces: &mut Traces) {
+    let (region, Some(to)) = (points(&change.region), law_of(case, &change.to)) else { return };
+    let from = change.from.as_ref().and_then(|name| law_of(case, name));
+    let cut = law_of(case, CUT_LAW);
+    let changes = |law: LawId| from.map_or(Some(law) != cut, |from| law == from);
+    let mut more = Vec::new();
+    for (line, law) in traces.iter_mut().filter(|(_, law)| changes(*law)) {
+        let pieces = trace::divide(line, &region);
+        if pieces.iter().all(|(_, inside)| !inside) {
+            continue;
+        }
+        let of = |inside| if inside { to } else { *law };
+        let mut pieces =
+            pieces.into_iter().map(|(points, inside)| (points, of(inside))).collect::<Vec<_>>().into_iter();
+        if let Some(first) = pieces.next() {
+            (*line, *law) = first;
+        }
+        more.extend(pieces);
+    }
+    traces.extend(more);
+}
+
 fn parameters(set: &JointSet) -> JointSetParameters {
     JointSetParameters {
-        dip: set.dip_deg.to_radians(),
+        dip: set.angle(),
         dip_sd: set.dip_sd_deg.to_radians(),
+        turn: match set.angle_distribution {
+            AngleDistribution::Normal => Turn::Normal,
+            AngleDistribution::Uniform => Turn::Uniform,
+            AngleDistribution::Fisher => Turn::Fisher {
+                concentration: set.fisher_k.unwrap_or_default(),
+                out_of_plane: set.out_of_section_deg.to_radians(),
+            },
+        },
         spacing: set.spacing,
         spacing_sd: set.spacing_sd,
+        spacing_spread: spread(set.spacing_distribution),
         trace_length: set.trace_length,
         trace_length_sd: set.trace_length_sd,
+        length_spread: spread(set.trace_length_distribution),
         gap: set.gap,
         seed: set.seed,
+        origin: set.origin.map(Point::from),
+    }
+}
+
+fn spread(distribution: Distribution) -> Spread {
+    match distribution {
+        Distribution::Normal => Spread::Normal,
+        Distribution::Lognormal => Spread::Lognormal,
+        Distribution::Exponential => Spread::Exponential,
+        Distribution::Uniform => Spread::Uniform,
     }
 }

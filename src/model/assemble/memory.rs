@@ -204,7 +204,7 @@ impl Demand<'_> {
         let (low, high) = (low.sup(&self.low), high.inf(&self.high));
         let share = if whole > 0.0 { extent(low, high) / whole } else { 0.0 };
         let area = if set.region.is_some() { polygon::area(&ring).abs() } else { whole };
-        let dip = set.dip_deg.to_radians();
+        let dip = set.angle();
         let across = |axis: Vector| {
             let positions = || ring.iter().map(move |p| p.dot(&axis));
             positions().fold(f64::NEG_INFINITY, f64::max) - positions().fold(f64::INFINITY, f64::min)

@@ -46,9 +46,11 @@ pub(super) fn pre_stresses_out(case: &Case, covers: &Covers, element_rock: &[u16
         return Vec::new();
     };
     let rocks: Vec<&Rock> = case.rocks.values().collect();
+    let sum = field.sxx.unwrap_or_default() + field.syy.unwrap_or_default();
+    let reference = field.y_reference.unwrap_or_default();
     let of_element = |e: ElementId| {
-        let (rock, height) = (rocks[element_rock[e] as usize], covers.element_centroid[e].y - field.y_reference);
-        let in_plane = field.sxx + field.syy + (field.gradient[0] + field.gradient[1]) * height;
+        let (rock, height) = (rocks[element_rock[e] as usize], covers.element_centroid[e].y - reference);
+        let in_plane = sum + (field.gradient[0] + field.gradient[1]) * height;
         match rock.plane {
             Plane::Stress => 0.0,
             Plane::Strain => field.szz.map_or(rock.poisson * in_plane, |szz| szz + field.szz_gradient * height),

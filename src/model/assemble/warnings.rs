@@ -53,7 +53,8 @@ pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Poi
 }
 
 fn name_of_trace(trace: usize, case: &Case, points: &[Point]) -> String {
-    let name = if trace < case.joints.len() { format!("joint[{trace}]") } else { "one of a joint set".to_owned() };
+    let others = if case.law_regions.is_empty() { "one of a joint set" } else { "one of a joint set or a law region" };
+    let name = if trace < case.joints.len() { format!("joint[{trace}]") } else { others.to_owned() };
     let position = |p: Option<&Point>| p.map_or_else(String::new, |p| format!("({:.6}, {:.6})", p.x, p.y));
     format!("{name} from {} to {} m", position(points.first()), position(points.last()))
 }

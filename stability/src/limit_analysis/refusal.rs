@@ -4,6 +4,8 @@ use enmm::model::Simulation;
 use enmm::model::case::key::Key;
 use enmm::model::case::{Case, Invalid, JointLawKind, StageKind};
 
+use crate::left_out_stages;
+
 /// The model in its last static stage before any motion, and what was left out.
 ///
 /// # Errors
@@ -17,11 +19,7 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
                        a stage of kind \"static\"";
         return Err(refused(Key::root().field("stage").index(0).field("kind"), message));
     }
-    let left_out: Vec<&str> = case.stages[count..].iter().map(|stage| stage.name.as_str()).collect();
-    let mut warnings = Vec::new();
-    if !left_out.is_empty() {
-        warnings.push(format!("stages from the first dynamic one on are left out: {}", left_out.join(", ")));
-    }
+    let mut warnings = Vec::from_iter(left_out_stages(&case));
     case.stages.truncate(count);
     refuse_yielding(&case)?;
     refuse_motion(&case)?;

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::slip::{largest_slip, settling_slip};
 use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
+use crate::left_out_stages;
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Invalid, Stage, StageKind};
 use enmm::model::settle::REST_STEPS;
@@ -118,10 +119,7 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
                 .into(),
         });
     }
-    let left_out: Vec<&str> = case.stages[count..].iter().map(|stage| stage.name.as_str()).collect();
-    if !left_out.is_empty() {
-        warnings.push(format!("stages from the first dynamic one on are left out: {}", left_out.join(", ")));
-    }
+    warnings.extend(left_out_stages(&case));
     case.stages.truncate(count);
     if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
         warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());

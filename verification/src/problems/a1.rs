@@ -69,8 +69,8 @@ fn area() -> f64 {
 /// A joint set of finite traces, which end inside blocks.
 fn joint_set(random: &mut Random, traces: f64, seed: u64) -> String {
     format!(
-        "[[joint_set]]\ndip_deg = {:?}\ndip_sd_deg = 8.0\nspacing = {:?}\nspacing_sd = 0.2\ntrace_length = {traces:?}\n\
-         trace_length_sd = {:?}\ngap = 0.4\nseed = {seed}\n",
+        "[[joint_set]]\nangle_deg = {:?}\nangle_sd_deg = 8.0\nspacing = {:?}\nspacing_sd = 0.2\n\
+         trace_length = {traces:?}\ntrace_length_sd = {:?}\ngap = 0.4\nseed = {seed}\n",
         random.between(-80.0, 80.0),
         random.between(0.7, 2.0),
         0.25 * traces,

@@ -46,8 +46,8 @@ fn case(setup: &Setup) -> String {
         "title = \"Collision\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]\n\
          islands = [[[-2.0, 0.4], [-0.2, 1.1], [-1.6, 2.3]], [[4.3, 1.2], [5.4, 0.8], [5.9, 2.2], [4.6, 2.4]]]\n\
          [mesh]\n\
-         size = {:?}\nangle_deg = 13.0\n[[joint_set]]\ndip_deg = 10.0\nspacing = {:?}\nseed = {seed}\n[[joint_set]]\n\
-         dip_deg = 85.0\ndip_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n\
+         size = {:?}\nangle_deg = 13.0\n[[joint_set]]\nangle_deg = 10.0\nspacing = {:?}\nseed = {seed}\n[[joint_set]]\n\
+         angle_deg = 85.0\nangle_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n\
          [gravity]\n\
          y = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n[[initial_velocity]]\nblock = \
          [-1.2, 1.2]\n\

@@ -5,6 +5,7 @@ use engine::cosimulation::{EventKind, PortKind, Totals};
 use engine::cover::BlockId;
 use engine::geometry::{Point, polygon};
 use engine::model::BlockState;
+use engine::model::case::key::list;
 use engine::state::Ledger;
 
 use super::failure::{Failure, Outcome};
@@ -149,8 +150,8 @@ impl Model {
         let ports = self.inner.ports();
         let found = ports.iter().position(|port| port.name == name);
         found.map(|k| k as u32).ok_or_else(|| {
-            let names: Vec<_> = ports.iter().map(|port| port.name.as_str()).collect();
-            let message = format!("no port is named {name:?}; the case names: {}", names.join(", "));
+            let names = list(ports.iter().map(|port| port.name.as_str()));
+            let message = format!("no port is named {name:?}; ports of the case: {names}");
             Failure::new(enmm_status::ENMM_NOT_FOUND, message)
         })
     }

@@ -12,7 +12,8 @@ use crate::random::Random;
 use crate::trace::Trace;
 
 /// Where good cases are.
-const FOLDERS: [&str; 4] = ["examples/cases", "ffi/capi/tests/cases", "ffi/fmi/tests/cases", "python_tests"];
+const FOLDERS: [&str; 5] =
+    ["examples/cases", "cli/templates", "ffi/capi/tests/cases", "ffi/fmi/tests/cases", "python_tests"];
 /// Cells of the mesh over the bounding box above which an input is left out.
 const CELLS_MAX: f64 = 2e4;
 /// Lines of generated joints above which an input is left out.

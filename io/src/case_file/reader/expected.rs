@@ -169,9 +169,14 @@ pub fn example(key: &Key, schema: &Schema) -> String {
         let needed = needed.collect::<Vec<_>>().join(", ");
         return if needed.is_empty() { format!("`{header}`") } else { format!("`{header}` with `{needed}`") };
     }
-    match header.rsplit('.').next() {
-        Some(name) if !key.as_str().ends_with(']') => format!("`{name} = {}`", literal(schema)),
-        _ => format!("`{}`", literal(schema)),
+    assigned(key, &literal(schema))
+}
+
+/// Returns the line of TOML that gives `key` a value; of an element of a list the value alone.
+pub fn assigned(key: &Key, value: &str) -> String {
+    match without_indices(key.as_str()).rsplit('.').next() {
+        Some(name) if !key.as_str().ends_with(']') => format!("`{name} = {value}`"),
+        _ => format!("`{value}`"),
     }
 }
 

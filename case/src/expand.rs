@@ -1,0 +1,81 @@
+//! What a case may say in the words of the field becomes the plain data that the engine builds: dips become angles,
+//! bolt patterns bolts, construction joints joints with a law, K0 a stress. This is the only place that does so.
+
+mod bolts;
+mod cuts;
+mod in_situ;
+mod joint_sets;
+
+pub use cuts::LAW as CUT_LAW;
+
+use std::collections::BTreeMap;
+
+use super::key::Key;
+use super::validate::Invalid;
+use super::validate::checks::{Check, fail};
+use super::{Case, InSitu, JointSet, StageKind};
+
+/// What an expansion has to tell.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Expanded {
+    /// Old names that the case uses.
+    pub notes: Vec<String>,
+    /// Keys that the user wrote, by those that came of them: `bolt_pattern[0]` by `bolt[3]`.
+    pub origins: BTreeMap<String, String>,
+}
+
+impl Case {
+    /// Turns what is written for short into plain data; what is plain already stays as it is, to the bit.
+    ///
+    /// # Errors
+    /// The first value from which nothing can be made, or keys that contradict each other.
+    pub fn expand(&mut self) -> Result<Expanded, Invalid> {
+        let mut told = Expanded::default();
+        self.expand_durations(&Key::root().field("stage"), &mut told)?;
+        joint_sets::expand(self, &mut told)?;
+        cuts::expand(self, &mut told)?;
+        in_situ::expand(self)?;
+        bolts::expand(self, &mut told)?;
+        Ok(told)
+    }
+
+    /// `duration_max` becomes the duration of a static stage.
+    fn expand_durations(&mut self, key: &Key, told: &mut Expanded) -> Check {
+        for (k, stage) in self.stages.iter_mut().enumerate() {
+            let Some(most) = stage.duration_max else { continue };
+            let (old, key) = (key.index(k).field("duration"), key.index(k).field("duration_max"));
+            if stage.kind == StageKind::Dynamic {
+                let message = format!("is {most} s, but a dynamic stage takes its whole `duration`; rename it");
+                return fail(&key, message);
+            }
+            if stage.duration != 0.0 {
+                let message = format!("is {most} s, and `duration` is {} s; keep one of them", stage.duration);
+                return fail(&key, message);
+            }
+            told.origins.insert(old.to_string(), key.to_string());
+            (stage.duration, stage.duration_max) = (most, None);
+        }
+        Ok(())
+    }
+
+    /// Refuses what is written for short and has not been expanded.
+    pub(crate) fn must_be_expanded(&self) -> Check {
+        let unfinished = |set: &JointSet| {
+            let plain = set.angle_deg.is_some() && set.dip_deg.is_none() && set.dips.is_none();
+            !plain || set.dip_direction_deg.is_some() || set.persistence.is_some() || set.angle_sd_deg.is_some()
+        };
+        let stress = |s: &InSitu| s.k0.is_some() || s.sxx.is_none() || s.syy.is_none() || s.y_reference.is_none();
+        let short = [
+            ("stage", self.stages.iter().any(|stage| stage.duration_max.is_some())),
+            ("joint_set", self.joint_sets.iter().any(unfinished)),
+            ("section", self.section.is_some()),
+            ("cut", !self.cuts.is_empty()),
+            ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
+            ("bolt_pattern", !self.bolt_patterns.is_empty()),
+        ];
+        short.iter().find(|(_, is)| *is).map_or(Ok(()), |(name, _)| {
+            let message = "is not expanded; load the case through `enmm_io`, or call `Case::expand`";
+            fail(&Key::root().field(name), message)
+        })
+    }
+}

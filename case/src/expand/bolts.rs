@@ -1,0 +1,139 @@
+//! Bolt patterns become bolts with their heads on the face.
+
+use super::Expanded;
+use crate::key::Key;
+use crate::validate::bolts::validate_bolts;
+use crate::validate::checks::{COORDINATE_MAX, Check, Range, fail, invalid, number, optional, segment, unique, whole};
+use crate::{Bolt, BoltPattern, Case, Invalid};
+
+/// Most bolts of a pattern.
+const BOLTS_MAX: u64 = 10_000;
+
+/// Expands all bolt patterns, and their names in the stages that install them.
+///
+/// # Errors
+/// The first pattern that cannot be laid out.
+pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
+    let patterns = std::mem::take(&mut case.bolt_patterns);
+    let key = Key::root().field("bolt_pattern");
+    unique(&key, "bolt pattern", patterns.iter().map(|pattern| pattern.name.as_deref()))?;
+    for (k, pattern) in patterns.iter().enumerate() {
+        let key = key.index(k);
+        check(&key, pattern)?;
+        if let Some(name) = &pattern.name
+            && case.bolts.iter().any(|bolt| bolt.name.as_ref() == Some(name))
+        {
+            return fail(&key.field("name"), format!("{name:?} is the name of a bolt too; rename one"));
+        }
+        let first = case.bolts.len();
+        for (number, station) in stations(&key, pattern)?.into_iter().enumerate() {
+            let bolt = bolt(&key, case, pattern, number, station)?;
+            told.origins.insert(format!("bolt[{}]", case.bolts.len()), key.to_string());
+            case.bolts.push(bolt);
+        }
+        if let Some(name) = &pattern.name {
+            let names: Vec<String> = case.bolts[first..].iter().filter_map(|bolt| bolt.name.clone()).collect();
+            for stage in &mut case.stages {
+                if let Some(place) = stage.install.iter().position(|installed| installed == name) {
+                    stage.install.splice(place..=place, names.iter().cloned());
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check(key: &Key, pattern: &BoltPattern) -> Check {
+    segment(&key.field("line"), &pattern.line)?;
+    let length = Range::above(0.0).to(COORDINATE_MAX);
+    number(key, "length", pattern.length, length, "m", "from the head to the far end")?;
+    number(key, "angle_deg", pattern.angle_deg, Range::within(360.0), "degrees", "from the head into the rock")?;
+    optional(key, "distance", pattern.distance, length, "m", "between bolts along the line")?;
+    if let Some(count) = pattern.count {
+        whole(key, "count", u64::from(count), (1, BOLTS_MAX), "the bolts in the section")?;
+    }
+    // The bar alone, wherever it lies.
+    let bar = Bolt { points: pattern.line, ..bar(pattern) };
+    validate_bolts(&Key::root(), &[bar]).map_err(|mut invalid| {
+        invalid.key = invalid.key.replacen("[0]", key.as_str(), 1);
+        invalid
+    })
+}
+
+/// Points on the head line, one for each bolt.
+fn stations(key: &Key, pattern: &BoltPattern) -> Result<Vec<[f64; 2]>, Invalid> {
+    let [a, b] = pattern.line;
+    let shares: Vec<f64> = match (pattern.count, pattern.distance) {
+        (Some(1), None) => vec![0.5],
+        (Some(count), None) => (0..count).map(|k| f64::from(k) / f64::from(count - 1)).collect(),
+        (None, Some(distance)) => {
+            let step = distance / (b[0] - a[0]).hypot(b[1] - a[1]);
+            let count = (1.0 / step * (1.0 + 1e-12)).floor() + 1.0;
+            whole(key, "distance", count as u64, (1, BOLTS_MAX), "that many bolts would follow; raise it")?;
+            (0..count as u32).map(|k| f64::from(k) * step).collect()
+        }
+        (count, _) => {
+            let given = if count.is_some() { "both" } else { "neither" };
+            let message = format!("has {given} of `count` and `distance`, must have exactly 1; keep or add one");
+            return Err(invalid(key, message));
+        }
+    };
+    Ok(shares.iter().map(|share| [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share)).collect())
+}
+
+fn bar(pattern: &BoltPattern) -> Bolt {
+    Bolt {
+        name: pattern.name.clone(),
+        points: pattern.line,
+        anchorage: pattern.anchorage,
+        young: pattern.young,
+        area: pattern.area,
+        spacing: pattern.spacing,
+        yield_force: pattern.yield_force,
+        rupture_strain: pattern.rupture_strain,
+        pretension: pattern.pretension,
+        free_length: pattern.free_length,
+        active: pattern.active,
+    }
+}
+
+/// The bolt through a point of the head line: its head is the nearest point at which the rock begins along its
+/// direction.
+fn bolt(key: &Key, case: &Case, pattern: &BoltPattern, number: usize, station: [f64; 2]) -> Result<Bolt, Invalid> {
+    let (sin, cos) = pattern.angle_deg.to_radians().sin_cos();
+    let entries = entries(case, station, [cos, sin]);
+    let nearest = entries.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let Some(along) = nearest else {
+        let message = format!(
+            "bolt {} through ({}, {}) m at {}° meets no face of the rock; move the line or turn `angle_deg`",
+            number + 1,
+            station[0],
+            station[1],
+            pattern.angle_deg
+        );
+        return Err(invalid(&key.field("line"), message));
+    };
+    let at = |along: f64| [station[0] + along * cos, station[1] + along * sin];
+    let name = pattern.name.as_ref().map(|name| format!("{name}_{}", number + 1));
+    Ok(Bolt { name, points: [at(along), at(along + pattern.length)], ..bar(pattern) })
+}
+
+/// Distances (m) from `start` along a direction at which rock begins. Outline, holes and islands do not cross, so that
+/// every other meeting leaves the rock.
+fn entries(case: &Case, start: [f64; 2], direction: [f64; 2]) -> Vec<f64> {
+    let domain = &case.domain;
+    let mut meetings = Vec::new();
+    for ring in std::iter::once(&domain.outline).chain(&domain.holes).chain(&domain.islands) {
+        let off = |p: [f64; 2]| direction[0] * (p[1] - start[1]) - direction[1] * (p[0] - start[0]);
+        let along = |p: [f64; 2]| direction[0] * (p[0] - start[0]) + direction[1] * (p[1] - start[1]);
+        for (i, &a) in ring.iter().enumerate() {
+            let b = ring[(i + 1) % ring.len()];
+            let (left, right) = (off(a), off(b));
+            if (left <= 0.0) != (right <= 0.0) {
+                meetings.push(along(a) + (along(b) - along(a)) * (left / (left - right)));
+            }
+        }
+    }
+    meetings.sort_by(f64::total_cmp);
+    meetings.into_iter().step_by(2).collect()
+}
