@@ -88,6 +88,8 @@ fn the_section_cuts_joints_at_their_apparent_dip() {
         assert!((set.spacing * (1.0 - out * out).sqrt() - 3.0).abs() < 1e-12, "{set:?}");
         assert!((set.spacing_sd / set.spacing - 0.5 / 3.0).abs() < 1e-12, "{set:?}");
     }
+    let unused = loaded(&text("[section]\nazimuth_deg = 90\n", STAGE)).warnings;
+    assert_eq!(unused, ["section: has no effect, since no joint set has `dip_direction_deg`"]);
     let refused = error(&section(88.0, 180.0, 90.0));
     assert!(refused.contains("joint_set[0]: the joints lie within 2.0° of the section"), "{refused}");
 }
@@ -160,6 +162,10 @@ fn joints_in_a_region_take_its_law() {
     };
     assert!((length("weathered") - 5.0).abs() < 1e-9 && (length("joint") - 17.0).abs() < 1e-9);
     assert!((length("strong") - 40.0).abs() < 1e-9, "{}", length("strong"));
+    let idle = "law_region[0]: no joint in it takes the law \"weathered\"; correct or remove it";
+    assert!(!changed.built().warnings.iter().any(|warning| warning == idle), "{:?}", changed.built().warnings);
+    let away = simulation(&text(&keys.replace("[9, 10], [4, 10]]", "[9, 1], [4, 1]]"), STAGE));
+    assert!(away.built().warnings.iter().any(|warning| warning == idle), "{:?}", away.built().warnings);
     let wrong = error(&text(&keys.replace("to = \"weathered\"", "to = \"wethered\""), STAGE));
     assert!(wrong.contains("law_region[0].to: no joint law is named \"wethered\", did you mean"), "{wrong}");
 }

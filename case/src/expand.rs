@@ -15,7 +15,7 @@ use super::validate::Invalid;
 use super::validate::checks::{Check, fail};
 use super::{Case, InSitu, JointSet, StageKind};
 
-/// What an expansion has to tell.
+/// Notes of an expansion, and where its results come from.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Expanded {
     /// Old names that the case uses.

@@ -4,9 +4,11 @@
 use crate::contact::LawId;
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
-use crate::model::case::{Case, Integrator, Invalid, Solver};
+use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
 
+use super::geometry::points;
+use super::law_of;
 use super::locator::Locator;
 
 /// Young's modulus of soft soil and of the hardest rock (Pa).
@@ -49,7 +51,22 @@ pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Poi
             noding.overlapping_traces.len()
         ));
     }
+    warnings.extend(idle_regions(case, traces));
     warnings
+}
+
+/// Regions of which no joint has the law.
+fn idle_regions(case: &Case, traces: &[(Vec<Point>, LawId)]) -> Vec<String> {
+    let is_idle = |change: &LawRegion| {
+        let (region, to) = (points(&change.region), law_of(case, &change.to));
+        let inside = |pair: &[Point]| polygon::contains(&region, (pair[0] + pair[1]) * 0.5);
+        !traces.iter().any(|(line, law)| Some(*law) == to && line.windows(2).any(inside))
+    };
+    let idle = case.law_regions.iter().enumerate().filter(|(_, change)| is_idle(change));
+    idle.map(|(k, change)| {
+        format!("law_region[{k}]: no joint in it takes the law {:?}; correct or remove it", change.to)
+    })
+    .collect()
 }
 
 fn name_of_trace(trace: usize, case: &Case, points: &[Point]) -> String {
