@@ -37,8 +37,8 @@ const SMALL: f64 = 0.01;
 enum Due {
     /// Every so many steps.
     Every(u64),
-    /// At multiples of [`REST_STEPS`], so many times at least while the number of steps doubles, because nothing but the
-    /// run shows how long a static stage lasts.
+    /// At multiples of [`REST_STEPS`], so many times at least while the number of steps doubles: the run alone shows
+    /// how long a static stage lasts.
     Doubling(u64),
 }
 
