@@ -7,9 +7,9 @@ use crate::model::case::key::Key;
 use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
 
-use super::geometry::points;
 use super::law_of;
 use super::locator::Locator;
+use super::points;
 
 /// Young's modulus of soft soil and of the hardest rock (Pa).
 const YOUNG: [f64; 2] = [1e5, 5e11];
