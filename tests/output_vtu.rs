@@ -137,6 +137,7 @@ fn invariants_are_those_of_mohr_s_circle() {
     let path = directory("vtu_mohr").join("elements.vtu");
     let mut snapshot = small().reference;
     snapshot.stress.fill([2.0, -4.0, 4.0]);
+    snapshot.stress_zz.fill(-1.0);
     write_vtu(&snapshot, &path).unwrap();
     let text = fs::read_to_string(path).unwrap();
     let document = Document::parse(&text).unwrap();
@@ -150,13 +151,14 @@ fn stress_is_a_tensor_with_its_principal_values() {
     let path = directory("vtu_tensor").join("elements.vtu");
     let mut snapshot = small().reference;
     snapshot.stress.fill([2.0, -4.0, 4.0]);
+    snapshot.stress_zz.fill(-1.0);
     write_vtu(&snapshot, &path).unwrap();
     let text = fs::read_to_string(path).unwrap();
     let document = Document::parse(&text).unwrap();
     assert_eq!(components(&document, "stress"), ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]);
     let tensors = numbers(&document, "stress");
     assert_eq!(tensors.len(), 6 * snapshot.stress.len());
-    assert!(tensors.chunks(6).all(|tensor| tensor == [2.0, -4.0, 0.0, 4.0, 0.0, 0.0]));
+    assert!(tensors.chunks(6).all(|tensor| tensor == [2.0, -4.0, -1.0, 4.0, 0.0, 0.0]));
     assert!(numbers(&document, "principal_max").iter().all(|&value| value == 4.0));
     assert!(numbers(&document, "principal_min").iter().all(|&value| value == -6.0));
     assert_eq!(components(&document, "rock_names"), snapshot.rocks);

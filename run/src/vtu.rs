@@ -28,7 +28,7 @@ const POLYGON: u8 = 7;
 /// Writes the elements of a snapshot: one polygon each, with its own points at their current position.
 ///
 /// Point data: `displacement` (m), `velocity` (m/s), three components each. Cell data: `stress` (Pa, tension positive;
-/// XX, YY, ZZ, XY, YZ, XZ, of which those out of the plane are written as zero), its parts `stress_xx`, `stress_yy`,
+/// XX, YY, ZZ, XY, YZ, XZ, of which YZ and XZ are zero), its parts `stress_xx`, `stress_yy`,
 /// `stress_xy`, the principal stresses in the plane `principal_max` and `principal_min` (so that the greatest
 /// compression is `principal_min`), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (all Pa),
 /// `block`, `rock`, and `plastic_strain` = √(⅔ εp:εp) where rock can yield. Field data: `TimeValue` (s), `rock_names`.
@@ -53,7 +53,7 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
             Array::vectors("velocity", snapshot.velocity.iter().copied()),
         ],
         cell_data: vec![
-            Array::tensors("stress", &snapshot.stress),
+            Array::tensors("stress", &snapshot.stress, &snapshot.stress_zz),
             of_stress("stress_xx", |[xx, _, _]| xx),
             of_stress("stress_yy", |[_, yy, _]| yy),
             of_stress("stress_xy", |[_, _, xy]| xy),

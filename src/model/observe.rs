@@ -12,6 +12,7 @@ use crate::state::{Model, Quantity, State};
 use crate::step;
 
 use super::Simulation;
+use super::case::Plane;
 use super::snapshot::{Boundary, JointPoint, Polygons, Snapshot};
 
 /// A block as hosts see it; velocities are those of half a step ago.
@@ -108,7 +109,9 @@ impl Simulation {
                 snapshot.velocity.push(model.sample(e, p, &state.velocity));
             }
             snapshot.elements.start.push(snapshot.elements.points.len() as u32);
-            snapshot.stress.push(model.stress(state, e));
+            let stress = model.stress(state, e);
+            snapshot.stress.push(stress);
+            snapshot.stress_zz.push(self.stress_out_of_plane(e, stress));
             if !state.plastic.is_empty() {
                 snapshot.plastic_strain.push(equivalent_strain(&model.plastic_strain(state, e)));
             }
@@ -119,6 +122,22 @@ impl Simulation {
         snapshot.boundaries = self.boundaries(&positions);
         self.each_contact(|contact| snapshot.joints.push(joint_point(model, &positions, contact)));
         snapshot
+    }
+
+    /// Stress (Pa) out of the plane of an element with a stress xx, yy, xy: ν(xx + yy) − E·εp_zz in plane strain, and
+    /// what an in-situ stress has beyond that.
+    fn stress_out_of_plane(&self, element: ElementId, [xx, yy, _]: [f64; 3]) -> f64 {
+        let model = self.model();
+        let rock = self.case().rocks.values().nth(usize::from(model.element_rock[element]));
+        let Some(rock) = rock.filter(|rock| rock.plane == Plane::Strain) else { return 0.0 };
+        let plastic = self.state().plastic.get(element.index()).map_or(0.0, |strain| strain[3]);
+        let beyond = if model.pre_stress_out.is_empty() {
+            0.0
+        } else {
+            let [xx, yy, _, zz] = model.pre_stress_and_out(element);
+            zz - rock.poisson * (xx + yy)
+        };
+        rock.poisson * (xx + yy) - rock.young * plastic + beyond
     }
 
     /// Loops of all blocks that are there, at the current `positions` of the boundary points.

@@ -66,6 +66,8 @@ pub struct Snapshot {
     pub velocity: Vec<Vector>,
     /// Cauchy stress xx, yy, xy (Pa, tension positive) of each element.
     pub stress: Vec<[f64; 3]>,
+    /// Stress out of the plane (Pa, tension positive) of each element: 0 in plane stress.
+    pub stress_zz: Vec<f64>,
     /// Plastic strain √(⅔ εp:εp) of each element; empty when no rock yields.
     pub plastic_strain: Vec<f64>,
     /// Block of each element.

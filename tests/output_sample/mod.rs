@@ -197,6 +197,7 @@ fn complete(snapshot: &mut Snapshot) {
             [0.4 * weight, weight, 0.1 * weight]
         })
         .collect();
+    snapshot.stress_zz = snapshot.stress.iter().map(|[xx, yy, _]| 0.25 * (xx + yy)).collect();
 }
 
 /// Parts of the profile between the joints of both sets.

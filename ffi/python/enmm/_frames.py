@@ -28,7 +28,7 @@ class Frame:
     cell_data: dict[str, npt.NDArray[Any]]
     """A value for each element: `stress_xx`, `principal_min`, ... (Pa, tension positive), `block`, `rock`.
 
-    `stress` is the tensor: xx, yy, zz, xy, yz, xz, of which those out of the plane are zero.
+    `stress` is the tensor: xx, yy, zz, xy, yz, xz, of which yz and xz are zero.
     """
 
     def __init__(self, time: float, path: Path) -> None:

@@ -72,16 +72,20 @@ impl<'a> Array<'a> {
     }
 
     /// Stresses of the plane (xx, yy, xy) as symmetric tensors: XX, YY, ZZ, XY, YZ, XZ.
-    pub fn tensors(name: &'static str, values: &'a [[f64; 3]]) -> Self {
-        let bytes = |&[xx, yy, xy]: &[f64; 3]| {
+    pub fn tensors(name: &'static str, values: &'a [[f64; 3]], out_of_plane: &'a [f64]) -> Self {
+        let bytes = |(&[xx, yy, xy], &zz): (&[f64; 3], &f64)| {
             let mut bytes = [0; 48];
-            for (k, part) in [xx, yy, 0.0, xy, 0.0, 0.0].into_iter().enumerate() {
+            for (k, part) in [xx, yy, zz, xy, 0.0, 0.0].into_iter().enumerate() {
                 bytes[8 * k..8 * (k + 1)].copy_from_slice(&part.to_le_bytes());
             }
             bytes
         };
         let names = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"].map(str::to_owned).to_vec();
-        Self { components: 6, component_names: names, ..Self::new(name, "Float64", values.iter().map(bytes)) }
+        Self {
+            components: 6,
+            component_names: names,
+            ..Self::new(name, "Float64", values.iter().zip(out_of_plane).map(bytes))
+        }
     }
 
     /// What numbers stand for: one entry with a component of each name, whose value is the number of the name.
