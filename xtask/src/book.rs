@@ -7,8 +7,8 @@ use crate::repository::{self, Repository};
 
 /// The version of mdBook that builds the site.
 const MDBOOK: &str = "0.5.4";
-/// Folders that pages link to, beside the documents.
-const LINKED: [&str; 3] = ["examples/cases", "docs/keys", "docs/pictures"];
+/// Folders outside the documents that pages link to.
+const LINKED: [&str; 5] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include"];
 /// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
 const PICTURES: [[&str; 4]; 8] = [
     ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
