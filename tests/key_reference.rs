@@ -213,7 +213,7 @@ fn range(schema: &Schema, property: &Json, refusals: &[String]) -> String {
     let limits = refusals.iter().filter_map(|message| message.split_once("must be ")?.1.split([';', ':']).next());
     let limits: Vec<&str> = limits.map(|limit| limit.trim_start_matches("a finite number, ")).collect();
     match limits.iter().find(|limit| limit.contains("and")).or(limits.first()) {
-        Some(limit) => (*limit).to_owned(),
+        Some(limit) => limit.replace(&u64::MAX.to_string(), "2⁶⁴ − 1"),
         None if is("string") => "text".to_owned(),
         None => "–".to_owned(),
     }

@@ -91,6 +91,7 @@ fn wedge_as_its_comment_says(all: &str, name: &str, text: &str, exact: f64) -> f
 fn the_road_cut_has_the_factors_of_hoek_and_bray() {
     let all = text("road_cut");
     let bolts = 3.0 * 250e3 / 2.0;
+    tell("road_cut.formula", hoek_and_bray(3.0, bolts));
     tell("road_cut.fos", wedge_as_its_comment_says(&all, "water and bolts", &all, hoek_and_bray(3.0, bolts)));
     let [_, (dry, exact)] = without_bolts(&all);
     wedge_as_its_comment_says(&all, "dry, no bolts", &dry, exact);
@@ -105,6 +106,7 @@ fn long_the_road_cut_without_bolts_has_the_factor_of_hoek_and_bray() {
     let limit = limit(&wet);
     assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
     tell("road_cut.bound_without_bolts", limit);
+    tell("road_cut.formula_without_bolts", exact);
     if std::env::var_os("ENMM_LONG").is_some() {
         wedge_as_its_comment_says(&all, "water, no bolts", &wet, exact);
     }
@@ -181,6 +183,7 @@ fn the_finished_pit_has_the_factor_of_its_wedge() {
     assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
     assert!(text.contains(&format!("{exact:.4}. enmm fos: {found:.4}")), "{exact} {found}");
     tell("pit.fos", found);
+    tell("pit.formula", exact);
 }
 
 /// The first line of every example leads editors to the schema.
