@@ -17,6 +17,8 @@ const THEORY: &str = "docs/theory.md";
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
 /// What stands in guides for a path of the reader's choice.
 const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "verification/src/problems/xx.rs"];
+/// Table of contents of the site.
+const SUMMARY: &str = "docs/SUMMARY.md";
 const GLOSSARY: &str = "docs/glossary.md";
 /// Rooms whose public types the glossary explains.
 const EXPLAINED: [&str; 3] = ["contact", "step", "mechanics"];
@@ -107,6 +109,13 @@ fn links_between_documents_resolve() {
         path.is_empty() || files.iter().any(|file| file.path == path || file.path.starts_with(&folder))
     };
     hold(files.iter().filter(|file| file.is(".md")).flat_map(|file| link_problems(file, &exists)).collect());
+}
+
+#[test]
+fn every_page_is_in_the_summary_of_the_site() {
+    let files = repository();
+    let summary = files.iter().find(|file| file.path == SUMMARY).expect(SUMMARY);
+    hold(summary_problems(summary, &files));
 }
 
 #[test]
@@ -257,6 +266,14 @@ fn link_problems(file: &File, exists: &dyn Fn(&str) -> bool) -> Vec<String> {
     };
     let links = links(&file.text).into_iter().filter(|(_, target)| dead(target));
     links.map(|(line, target)| format!("{}:{line}: link to {target} leads nowhere", file.path)).collect()
+}
+
+/// Pages of the site that its table of contents does not list.
+fn summary_problems(summary: &File, files: &[File]) -> Vec<String> {
+    let listed: BTreeSet<String> = links(&summary.text).iter().map(|(_, to)| join(&summary.path, to)).collect();
+    let pages = files.iter().filter(|file| file.within(&["docs/book/"]) && file.is(".md"));
+    let missing = pages.filter(|page| !listed.contains(&page.path));
+    missing.map(|page| format!("{}: is not in {}", page.path, summary.path)).collect()
 }
 
 /// A path may be given from the root or by its end; a `*` stands for anything at its end.
@@ -712,6 +729,15 @@ fn links_rule_is_seen_failing() {
     assert_eq!(dead("README.md", "![a](docs/absent.png)"), 1);
     assert_eq!(dead("docs/a.md", "[a](theory.md) [b](../README.md) [c](README.md)"), 1);
     assert_eq!(dead("README.md", "```\n[a](absent.md)\n```"), 0);
+}
+
+#[test]
+fn summary_rule_is_seen_failing() {
+    let files =
+        ["docs/book/a.md", "docs/book/b.md", "docs/book/pictures/a.png", "docs/c.md"].map(|path| file(path, ""));
+    let missing = |text| summary_problems(&file(SUMMARY, text), &files).len();
+    assert_eq!(missing("- [A](book/a.md)\n- [B](book/b.md)"), 0);
+    assert_eq!(missing("- [A](book/a.md)\n- [C](c.md)"), 1);
 }
 
 #[test]

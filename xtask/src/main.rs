@@ -3,6 +3,7 @@
 
 mod ab;
 mod bits;
+mod book;
 mod counts;
 mod faults;
 mod figures;
@@ -37,6 +38,8 @@ usage: cargo xtask TASK
   ratio            runs explicit and implicit steps of a continuum and writes docs/implicit_ratio.md
   overhead         tells what a step costs through the C ABI and the FMUs above the engine's own
   schema           writes docs/case.schema.json
+  reference        writes docs/book/reference.md, the reference of all keys of a case
+  book             builds the site of the documents by mdBook, which it installs in the target folder
   header           writes include/enmm.h
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
@@ -51,7 +54,8 @@ usage: cargo xtask TASK
                    of a result that differs; without OLD NEW compares this build with the golden table
                    tests/golden/bits.csv; --quick takes the share that test takes
   bits --renew     writes the golden table
-  pictures         runs the main case and the couplings and writes their pictures into docs/pictures";
+  pictures         runs the main case, the tutorials and the couplings and writes their pictures into docs/pictures
+                   and docs/book/pictures";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -80,6 +84,8 @@ fn main() -> ExitCode {
         }
         ["bits", ref words @ ..] => bits::run(&repository, words).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&repository).map(|()| ExitCode::SUCCESS),
+        ["reference"] => book::write_reference(&repository).map(|()| ExitCode::SUCCESS),
+        ["book"] => book::build(&repository).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&repository).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.to_owned()),
     });

@@ -5,6 +5,7 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use crate::bits;
+use crate::book;
 use crate::counts::{self, Counts};
 use crate::faults;
 use crate::figures;
@@ -191,6 +192,7 @@ pub fn write_pictures(repository: &Repository) -> Result<(), String> {
         println!("wrote docs/pictures/{name}");
     }
     write_cases(repository, &pictures)?;
+    book::write_pictures(repository)?;
     write_couplings(repository, &pictures)
 }
 

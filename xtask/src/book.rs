@@ -1,0 +1,90 @@
+//! The site of the documents, and what of it the program writes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::repository::{self, Repository};
+
+/// The version of mdBook that builds the site.
+const MDBOOK: &str = "0.5.4";
+/// Folders outside the documents that pages link to.
+const LINKED: [&str; 5] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include"];
+/// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
+const PICTURES: [[&str; 4]; 8] = [
+    ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
+    ["fos", "road_cut", "fos.png", "road_cut_fos.png"],
+    ["fos", "road_cut", "failure.png", "road_cut_failure.png"],
+    ["run", "toppling", "stage1_joints.png", "toppling_joints.png"],
+    ["run", "toppling", "deformed.png", "toppling_deformed.png"],
+    ["run", "pit", "deformed.png", "pit_deformed.png"],
+    ["run", "pit", "stage4_joints.png", "pit_joints.png"],
+    ["fos", "pit", "failure.png", "pit_failure.png"],
+];
+
+/// Builds the site into `book/docs` in the target folder, with the files that its pages link to beside it.
+///
+/// # Errors
+/// When mdBook cannot be installed, or does not build the site.
+pub fn build(repository: &Repository) -> Result<(), String> {
+    let site = repository.target.join("book");
+    repository::remove(&site)?;
+    repository::run(repository.command(mdbook(repository)?).args(["build", "--dest-dir"]).arg(site.join("docs")))?;
+    for folder in LINKED {
+        for (name, bytes) in repository::files_of(&repository.root.join(folder))? {
+            write(&site.join(folder).join(name), &bytes)?;
+        }
+    }
+    println!("wrote {}", site.join("docs/index.html").display());
+    Ok(())
+}
+
+/// The program mdBook in the target folder, installed there by cargo when it is missing.
+fn mdbook(repository: &Repository) -> Result<PathBuf, String> {
+    let tools = repository.target.join("book-tools");
+    let program = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
+    let version = repository::capture(repository.command(&program).arg("--version")).unwrap_or_default();
+    if String::from_utf8_lossy(&version).trim() != format!("mdbook v{MDBOOK}") {
+        let mut install = repository.cargo(&["install", "mdbook", "--locked", "--no-default-features"]);
+        install.args(["--features", "search", "--version", &format!("={MDBOOK}"), "--root"]).arg(&tools);
+        repository::run(install.env("CARGO_TARGET_DIR", &tools))?;
+    }
+    Ok(program)
+}
+
+/// Writes the reference of the keys from schema, validation and cases.
+///
+/// # Errors
+/// When a key has no example, or the page cannot be written.
+pub fn write_reference(repository: &Repository) -> Result<(), String> {
+    let mut test = repository.cargo(&["test", "--release", "--test", "key_reference"]);
+    repository::run(test.env("ENMM_WRITE_REFERENCE", "1"))
+}
+
+/// Runs the cases of the tutorials and copies their pictures to where the pages show them.
+///
+/// # Errors
+/// When a case does not run or a picture is missing.
+pub fn write_pictures(repository: &Repository) -> Result<(), String> {
+    let results = repository.target.join("picture-results");
+    let folder = |command: &str, case: &str| results.join(format!("{command}_{case}"));
+    let mut done: Vec<PathBuf> = Vec::new();
+    for [command, case, picture, shown] in PICTURES {
+        let from = folder(command, case);
+        if !done.contains(&from) {
+            let mut run = repository.command(repository.enmm());
+            repository::run(run.arg(command).arg(format!("examples/cases/{case}.toml")).arg("-o").arg(&from))?;
+            done.push(from.clone());
+        }
+        let bytes = fs::read(from.join(picture)).map_err(|error| format!("{}: {error}", from.display()))?;
+        write(&repository.root.join("docs/book/pictures").join(shown), &bytes)?;
+        println!("wrote docs/book/pictures/{shown}");
+    }
+    Ok(())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let parent = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(parent)
+        .and_then(|()| fs::write(path, bytes))
+        .map_err(|error| format!("{}: {error}", path.display()))
+}
