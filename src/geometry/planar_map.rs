@@ -72,7 +72,7 @@ impl Label {
     }
 }
 
-/// A straight piece given to [`arrange`].
+/// A straight piece given to [`super::arrange`].
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Segment {
     /// Start (m).

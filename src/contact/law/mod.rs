@@ -119,7 +119,7 @@ impl Limits {
 }
 
 impl JointLaw {
-    /// Limits of a contact of tributary length `length` (m), peak while `intact`.
+    /// Limits of a contact whose faces lie along each other over a `length` (m), peak while `intact`.
     #[inline(always)]
     pub fn limits(&self, length: f64, intact: bool) -> Limits {
         if let Some(roughness) = self.roughness {

@@ -53,7 +53,7 @@ impl NarrowPhase<'_> {
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
         let arms = blocks.map(|b| p - self.motion[b].centre);
-        let Tributary { length, penalty, share } = self.tributary(node, candidate);
+        let Tributary { length, bonded, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
@@ -75,7 +75,7 @@ impl NarrowPhase<'_> {
             normal,
             answers: Default::default(),
             expected: [0.0; 2],
-            limits: self.laws[law].limits(length, history.intact).times(self.strength),
+            limits: self.laws[law].limits(bonded, history.intact).times(self.strength),
             closure_max,
             gap,
             history,

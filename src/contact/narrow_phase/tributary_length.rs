@@ -13,6 +13,10 @@ const LENGTH_FLOOR: f64 = 1e-9;
 pub(super) struct Tributary {
     /// Tributary length (m).
     pub length: f64,
+    /// Length of joint (m) that bears cohesion and tension: faces that lie along each other, without those that meet at
+    /// an angle. Where a joint ends on another one, the corners beside it have faces on both, and each face counts on
+    /// its own joint alone.
+    pub bonded: f64,
     /// Length for the default stiffness (m).
     pub penalty: f64,
     /// Share of its strength that the contact has.
@@ -40,10 +44,11 @@ impl NarrowPhase<'_> {
         let share = at_ends.max(ramp(flush));
         let distance = &self.frames.nodes[node].distance;
         let span = 0.5 * (distance[0] + distance[1]);
-        let length = (0.5 * (flush + at_ends * oblique)).max(LENGTH_FLOOR * span);
+        let least = LENGTH_FLOOR * span;
+        let (length, bonded) = ((0.5 * (flush + at_ends * oblique)).max(least), (0.5 * flush).max(least));
         let penalty = length.max(self.rule.stiffness_floor * span * share);
         let at_corner = self.share_at_corner(node, candidate);
-        Tributary { length: length * at_corner, penalty: penalty * at_corner, share }
+        Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share }
     }
 
     /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the
