@@ -79,13 +79,13 @@ fn an_interrupt_exits_with_130_and_keeps_the_trials() {
     use std::process::Command;
     use std::time::Duration;
 
-    use support::SoftSpring;
+    use support::Outcome;
 
     let place = Place::with(&incline(0.65, "").replace("size = 0.9", "size = 0.12"));
     let child = place.start(&["fos", "case.toml", "-o", "out"]);
     std::thread::sleep(Duration::from_millis(500));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs").success());
-    let answer = SoftSpring::of(child.wait_with_output().expect("an end"));
+    let answer = Outcome::of(child.wait_with_output().expect("an end"));
     assert_eq!(answer.status, Some(130), "{answer:?}");
     if place.path("out/fos.json").exists() {
         assert_eq!(json(&place.path("out/fos.json"))["status"], "interrupted");

@@ -7,7 +7,7 @@ use std::fs;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use support::{Place, SoftSpring, case, json};
+use support::{Place, Outcome, case, json};
 
 #[test]
 fn every_promised_file_is_there_and_whole() {
@@ -89,7 +89,7 @@ fn stop(place: &Place, signal: &str, status: Option<i32>) {
     }
     let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
     assert!(killed.success());
-    let answer = SoftSpring::of(child.wait_with_output().expect("an end"));
+    let answer = Outcome::of(child.wait_with_output().expect("an end"));
     assert_eq!(answer.status, status, "{answer:?}");
 }
 
@@ -158,7 +158,7 @@ fn a_run_whose_folder_vanishes_says_so() {
     fs::rename(place.path("parts"), place.path("away")).expect("moved");
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
     assert!(killed.success());
-    let answer = SoftSpring::of(child.wait_with_output().expect("an end"));
+    let answer = Outcome::of(child.wait_with_output().expect("an end"));
     assert_eq!(answer.status, Some(3), "{answer:?}");
     assert!(answer.stderr.contains("cannot write results (parts/history.csv"), "{answer:?}");
 }

@@ -35,8 +35,8 @@ impl Place {
         command
     }
 
-    pub fn enmm(&self, arguments: &[&str]) -> SoftSpring {
-        SoftSpring::of(self.command(arguments).output().expect("the program runs"))
+    pub fn enmm(&self, arguments: &[&str]) -> Outcome {
+        Outcome::of(self.command(arguments).output().expect("the program runs"))
     }
 
     pub fn start(&self, arguments: &[&str]) -> Child {
@@ -47,13 +47,13 @@ impl Place {
 
 /// What the program answered.
 #[derive(Debug)]
-pub struct SoftSpring {
+pub struct Outcome {
     pub status: Option<i32>,
     pub stdout: String,
     pub stderr: String,
 }
 
-impl SoftSpring {
+impl Outcome {
     pub fn of(output: Output) -> Self {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
         Self { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }

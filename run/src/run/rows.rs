@@ -38,7 +38,7 @@ enum Due {
     /// Every so many steps.
     Every(u64),
     /// At multiples of [`REST_STEPS`], so many times at least while the number of steps doubles: the run alone shows
-    /// how long a static stage lasts.
+    /// how long a static stage lasts. With many times, at each of the first steps too.
     Doubling(u64),
 }
 
@@ -58,6 +58,7 @@ impl Due {
     fn at(self, step: u64) -> bool {
         match self {
             Self::Every(steps) => step.is_multiple_of(steps),
+            Self::Doubling(times) if step < REST_STEPS => step == 0 || times > REST_STEPS,
             Self::Doubling(times) => {
                 let doublings = (step / (REST_STEPS * 2 * times)).checked_ilog2().map_or(0, |power| power + 1);
                 step.is_multiple_of(REST_STEPS << doublings)
