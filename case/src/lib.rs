@@ -631,11 +631,11 @@ pub struct Monitor {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// Simulated time between frames (s); default: a twentieth of the duration of a dynamic stage; in a static stage, two
-    /// to four each time that its number of steps doubles.
+    /// Simulated time between frames (s); default: a twentieth of the duration of a dynamic stage; in a static stage,
+    /// two to four each time that its number of steps doubles.
     pub frame_interval: Option<f64>,
-    /// Simulated time between rows of the history (s); default: a five-hundredth of the duration of a dynamic stage; in a
-    /// static stage, 32 to 64 each time that its number of steps doubles.
+    /// Simulated time between rows of the history (s); default: a five-hundredth of the duration of a dynamic stage;
+    /// in a static stage, 32 to 64 each time that its number of steps doubles.
     pub history_interval: Option<f64>,
     /// Simulated time between checkpoints (s); default: one at the end.
     pub checkpoint_interval: Option<f64>,
