@@ -200,6 +200,12 @@ def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
     assert package.check(case)["blocks"] == 2
 
 
+def test_bounds_leave_no_files(package, case, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert package.bound(case)["associated"]["factor"] > 0.0
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_search_without_an_end_says_so(package, case):
     held = package.fos(case.with_values({"joint_law.joint.cohesion": 1e6}), high=2.0)
     assert held.factor is None and held.status == "stable_throughout" and held.at_least == pytest.approx(2.0)

@@ -263,8 +263,8 @@ def bound(case: CaseLike) -> dict[str, Any]:
     `associated`, `level_tops` and `catching` have `factor`, `end` and `mechanism` each. Raises CaseError for a case
     that limit analysis cannot treat.
     """
-    with case_file(case) as path:
-        return record(["bound", path])
+    with case_file(case) as path, tempfile.TemporaryDirectory() as page:
+        return record(["bound", path, "-o", page])
 
 
 def check(case: CaseLike) -> dict[str, Any]:
