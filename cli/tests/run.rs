@@ -7,7 +7,7 @@ use std::fs;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use support::{Place, Outcome, case, json};
+use support::{Outcome, Place, case, json};
 
 #[test]
 fn every_promised_file_is_there_and_whole() {
