@@ -18,10 +18,10 @@ pub struct Outlook {
     stage: u32,
     /// Times (s) since the start of the stage and logarithms of the ratio, after the ramp.
     fall: Vec<[f64; 2]>,
+    /// Time (s) since the start of the stage at which it will be at rest.
+    rest: Option<f64>,
     /// Simulated times (s) of the static stages that are over.
     taken: Vec<f64>,
-    /// Time (s) since the start of the stage of the last report.
-    now: f64,
 }
 
 impl Outlook {
@@ -29,13 +29,15 @@ impl Outlook {
     pub fn note(&mut self, simulation: &Simulation, report: &StepReport) {
         let state = simulation.state();
         if state.stage != self.stage {
-            (self.stage, self.now) = (state.stage, 0.0);
+            self.stage = state.stage;
             self.fall.clear();
+            self.rest = None;
         }
-        self.now = report.time - state.stage_start;
-        let Some((ramp, _)) = simulation.rest_target() else { return };
-        if self.now > ramp && report.unbalanced > 0.0 {
-            self.fall.push([self.now, report.unbalanced.ln()]);
+        let now = report.time - state.stage_start;
+        let Some((ramp, target)) = simulation.rest_target() else { return };
+        if now > ramp && report.unbalanced > 0.0 {
+            self.fall.push([now, report.unbalanced.ln()]);
+            self.rest = self.rest_time(target);
         }
     }
 
@@ -52,9 +54,8 @@ impl Outlook {
         let most = (simulation.stage().duration - time).max(0.0);
         let own = match simulation.rest_target() {
             None => most,
-            Some((ramp, target)) => {
-                let fresh = self.stage == state.stage;
-                let line = self.rest_time(target).filter(|_| fresh);
+            Some((ramp, _)) => {
+                let line = self.rest.filter(|_| self.stage == state.stage);
                 let end = line.or_else(|| (ramp > 0.0).then_some(RAMPS * ramp)).or_else(|| self.usual())?;
                 (end - time).clamp(0.0, most)
             }
