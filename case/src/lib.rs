@@ -295,6 +295,28 @@ pub struct JointLaw {
     pub closure_max: Option<f64>,
 }
 
+impl JointLaw {
+    /// A Mohr–Coulomb joint with friction (degrees) alone.
+    pub fn frictional(friction_deg: f64) -> Self {
+        Self {
+            kind: JointLawKind::MohrCoulomb,
+            normal_stiffness: None,
+            shear_stiffness: None,
+            friction_deg,
+            cohesion: 0.0,
+            tension: 0.0,
+            residual_friction_deg: None,
+            residual_cohesion: None,
+            residual_tension: 0.0,
+            dilation_deg: 0.0,
+            dilation_slip: None,
+            jrc: None,
+            jcs: None,
+            closure_max: None,
+        }
+    }
+}
+
 /// Acceleration of gravity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -206,23 +206,7 @@ fn two_digits_below(value: f64) -> f64 {
 
 /// The laws of the case by name; a continuum, which needs none, has one without strength.
 fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
-    let without = case::JointLaw {
-        kind: case::JointLawKind::MohrCoulomb,
-        normal_stiffness: None,
-        shear_stiffness: None,
-        friction_deg: 0.0,
-        cohesion: 0.0,
-        tension: 0.0,
-        residual_friction_deg: None,
-        residual_cohesion: None,
-        residual_tension: 0.0,
-        dilation_deg: 0.0,
-        dilation_slip: None,
-        jrc: None,
-        jcs: None,
-        closure_max: None,
-    };
-    let without = case.joint_laws.is_empty().then_some(without);
+    let without = case.joint_laws.is_empty().then(|| case::JointLaw::frictional(0.0));
     let laws = case.joint_laws.values().chain(&without);
     laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect()
 }

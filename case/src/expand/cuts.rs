@@ -3,7 +3,7 @@
 use super::Expanded;
 use crate::key::Key;
 use crate::validate::checks::{Check, fail, points};
-use crate::{Case, JointLaw, JointLawKind, JointTrace};
+use crate::{Case, JointLaw, JointTrace};
 
 /// Name of the law of construction joints.
 pub const LAW: &str = "cut";
@@ -42,20 +42,6 @@ fn law_of_others(case: &Case) -> Check {
 }
 
 fn law() -> JointLaw {
-    JointLaw {
-        kind: JointLawKind::MohrCoulomb,
-        normal_stiffness: None,
-        shear_stiffness: None,
-        friction_deg: FRICTION_DEG,
-        cohesion: STRENGTH,
-        tension: STRENGTH,
-        residual_friction_deg: None,
-        residual_cohesion: Some(0.0),
-        residual_tension: 0.0,
-        dilation_deg: 0.0,
-        dilation_slip: None,
-        jrc: None,
-        jcs: None,
-        closure_max: None,
-    }
+    let tough = JointLaw { cohesion: STRENGTH, tension: STRENGTH, ..JointLaw::frictional(FRICTION_DEG) };
+    JointLaw { residual_cohesion: Some(0.0), ..tough }
 }
