@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::contact::{ContactHistory, ContactState, EdgeId, VertexEdge};
+use crate::contact::{ContactHistory, ContactState, EdgeId};
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector, polygon};
 use crate::mechanics::equivalent_strain;
@@ -13,7 +13,7 @@ use crate::step;
 
 use super::Simulation;
 use super::case::Plane;
-use super::snapshot::{Boundary, JointPoint, Polygons, Snapshot};
+use super::snapshot::{Boundary, Polygons, Snapshot};
 
 /// A block as hosts see it; velocities are those of half a step ago.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -120,7 +120,6 @@ impl Simulation {
         }
         let positions = positions(model, state);
         snapshot.boundaries = self.boundaries(&positions);
-        self.each_contact(|contact| snapshot.joints.push(joint_point(model, &positions, contact)));
         snapshot
     }
 
@@ -298,19 +297,6 @@ fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
         sine += model.mass_matrix.row_sum[i] * before.perp(&after);
     }
     sine.atan2(cosine)
-}
-
-fn joint_point(model: &Model, positions: &[Point], contact: &VertexEdge) -> JointPoint {
-    let history = &contact.history;
-    JointPoint {
-        position: positions[model.boundary.node_point[history.node]],
-        normal: contact.normal,
-        length: contact.length,
-        normal_stress: -history.normal_force / contact.length,
-        shear_stress: history.shear_force / contact.length,
-        state: history.state,
-        law: contact.law.number(),
-    }
 }
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.

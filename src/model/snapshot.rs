@@ -1,6 +1,5 @@
 //! One instant of a slope as outputs see it: polygons with fields, without covers, weights or time stepping.
 
-use crate::contact::ContactState;
 use crate::geometry::{Point, Vector};
 
 /// Polygons stored end to end: polygon `k` has the points `start[k]..start[k + 1]`.
@@ -34,25 +33,6 @@ impl Polygons {
     }
 }
 
-/// A piece of joint between a boundary point and the edge it meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointPoint {
-    /// Where (m).
-    pub position: Point,
-    /// Outward unit normal of the edge.
-    pub normal: Vector,
-    /// Tributary length (m).
-    pub length: f64,
-    /// Normal stress on the joint (Pa, tension positive).
-    pub normal_stress: f64,
-    /// Shear stress on the joint (Pa).
-    pub shear_stress: f64,
-    /// Open, slip or lock.
-    pub state: ContactState,
-    /// Index of the joint law in [`Snapshot::joint_laws`].
-    pub law: u32,
-}
-
 /// One instant, current positions.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Snapshot {
@@ -76,8 +56,6 @@ pub struct Snapshot {
     pub rock: Vec<u32>,
     /// Outline of each block at its current position: all its boundary loops, outer first.
     pub boundaries: Vec<Boundary>,
-    /// Contacts that carry force or have just opened.
-    pub joints: Vec<JointPoint>,
     /// Names of the joint laws.
     pub joint_laws: Vec<String>,
     /// Names of the rocks.
