@@ -7,6 +7,7 @@ mod counts;
 mod faults;
 mod figures;
 mod install;
+mod parts;
 mod python;
 mod repository;
 mod sanitize;
@@ -38,6 +39,7 @@ usage: cargo xtask TASK
   overhead         tells what a step costs through the C ABI and the FMUs above the engine's own
   schema           writes docs/case.schema.json
   header           writes include/enmm.h
+  parts            writes the list of all crates in libraries and program, and their licences
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
@@ -73,6 +75,7 @@ fn main() -> ExitCode {
         ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
         ["wheel"] => wheel::build(&repository).map(|_| ExitCode::SUCCESS),
+        ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(tasks::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
