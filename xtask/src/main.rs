@@ -11,6 +11,7 @@ mod parts;
 mod python;
 mod repository;
 mod sanitize;
+mod supply;
 mod tasks;
 mod venv;
 mod wheel;
