@@ -274,6 +274,7 @@ def test_the_wheel_holds_library_and_program_for_its_platform(wheel):
     assert sum("libenmm." in name or "enmm.dll" in name for name in names) == 1
     assert sum("/scripts/enmm" in name for name in names) == 1
     assert sum("enmm_fmi" in name for name in names) == 2
+    assert sum(name.endswith(("/licenses/LICENSES", "/sboms/sbom.cdx.json")) for name in names) == 2
 
 
 def test_the_wheel_runs_a_case_in_a_bare_environment(wheel, cases, tmp_path):

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use enmm_fmi::pack::{PackError, Packed, pack};
+use enmm_fmi::platform::Library;
 use enmm_fmi::{library, table};
 
 use crate::case::CaseArguments;
@@ -21,6 +22,10 @@ pub struct Arguments {
     /// Version of the standard.
     #[arg(long, value_enum, default_value = "3")]
     fmi: Version,
+    /// Library of another platform to pack as well, such as win64=enmm_fmi3.dll; may be repeated. Names are those of
+    /// FMI 2 or FMI 3; a library for this platform replaces the one beside the program.
+    #[arg(long, value_name = "PLATFORM=PATH")]
+    library: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -38,7 +43,7 @@ pub fn fmu(arguments: &Arguments) -> ExitCode {
         Version::Three => table::Version::Three,
     };
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.case.path));
-    let packed = match packed(&arguments.case, version, &output) {
+    let packed = match packed(arguments, version, &output) {
         Ok(packed) => packed,
         Err((message, status)) => return fail(&message, status),
     };
@@ -57,21 +62,40 @@ fn default_output(case: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn packed(arguments: &CaseArguments, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
-    let case = arguments.path.as_path();
-    let loaded = arguments.load().map_err(|error| (error.to_string(), BAD_INPUT))?;
+fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
+    let case = arguments.case.path.as_path();
+    let loaded = arguments.case.load().map_err(|error| (error.to_string(), BAD_INPUT))?;
     if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
         return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
     }
+    let mut libraries: Vec<Library> =
+        arguments.library.iter().map(|given| other(given, version)).collect::<Result<_, _>>()?;
+    if libraries.iter().all(|library| library.folder != library::platform(version)) {
+        libraries.push(own(version)?);
+    }
+    let name = case.file_name().unwrap_or_default().to_string_lossy();
+    pack(&loaded, &name, version, &libraries).map_err(|error| {
+        let status = if matches!(error, PackError::Part(..)) { FAILED } else { BAD_INPUT };
+        (error.to_string(), status)
+    })
+}
+
+/// The library beside this program.
+fn own(version: table::Version) -> Result<Library, (String, u8)> {
     let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
     let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;
     let unreadable = |error| (format!("{}: cannot read the library ({error})", path.display()), BAD_INPUT);
-    let library = std::fs::read(&path).map_err(unreadable)?;
-    let name = case.file_name().unwrap_or_default().to_string_lossy();
-    pack(&loaded, &name, version, &library).map_err(|error| {
-        let status = if matches!(error, PackError::Case(_)) { BAD_INPUT } else { FAILED };
-        (error.to_string(), status)
-    })
+    std::fs::read(&path).map_err(unreadable).map(|bytes| Library::of_this_system(version, bytes))
+}
+
+/// A library that was given as `PLATFORM=PATH`.
+fn other(given: &str, version: table::Version) -> Result<Library, (String, u8)> {
+    let wrong = |reason: String| (format!("--library {given}: {reason}"), BAD_INPUT);
+    let (platform, path) = given
+        .split_once('=')
+        .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmi3.dll".to_owned()))?;
+    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
+    Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))
 }
 
 fn line(packed: &Packed, version: table::Version, output: &Path) -> String {

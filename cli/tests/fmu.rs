@@ -90,3 +90,53 @@ fn all_that_check_warns_of_is_told() {
     let told: Vec<_> = checked.lines().filter(|line| line.contains("warning: ")).map(str::trim).collect();
     assert_eq!(told, text(&output.stderr).lines().collect::<Vec<_>>());
 }
+
+/// The headers of a 64-bit Windows library without code, and the name of an entry point.
+fn windows_library() -> Vec<u8> {
+    let mut bytes = vec![0; 64];
+    bytes[..2].copy_from_slice(b"MZ");
+    bytes[60] = 64;
+    bytes.extend(b"PE\0\0");
+    let words = [0x8664_u16, 0, 0, 0, 0, 0, 0, 0, 112, 0x2022, 0x20b];
+    words.iter().for_each(|word| bytes.extend(word.to_le_bytes()));
+    bytes.resize(64 + 24 + 112, 0);
+    bytes.extend(b"\0fmi3DoStep\0");
+    bytes
+}
+
+#[test]
+fn libraries_of_other_platforms_are_packed_beside_that_of_this_system() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = example();
+    let case = case.to_str().unwrap();
+    std::fs::write(folder.path().join("enmm_fmi3.dll"), windows_library()).unwrap();
+    let output = enmm(folder.path(), &[case, "--library", "win64=enmm_fmi3.dll", "-o", "both.fmu"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let fmu = std::fs::read(folder.path().join("both.fmu")).unwrap();
+    let own = enmm_fmi::library::platform(enmm_fmi::table::Version::Three);
+    for name in ["binaries/x86_64-windows/block_on_incline.dll", &format!("binaries/{own}/block_on_incline")] {
+        assert!(fmu.windows(name.len()).any(|part| part == name.as_bytes()), "{name}");
+    }
+}
+
+#[test]
+fn a_library_that_does_not_fit_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = example();
+    std::fs::write(folder.path().join("x.dll"), windows_library()).unwrap();
+    let wrong: [(&[&str], &str); 6] = [
+        (&["x.dll"], "has no `=`: give PLATFORM=PATH"),
+        (&["win64=missing.dll"], "cannot read the library"),
+        (&["windows=x.dll"], "unknown platform \"windows\": known are linux64, win64"),
+        (&["linux64=x.dll"], "is a library of x86_64-windows, not of linux64"),
+        (&["win64=x.dll", "--fmi", "2"], "has no entry point fmi2DoStep"),
+        (&["win64=x.dll", "--library", "x86_64-windows=x.dll"], "two libraries are for binaries/x86_64-windows"),
+    ];
+    for (words, told) in wrong {
+        let output = enmm(folder.path(), &[&[case.to_str().unwrap(), "--library"], words].concat());
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(told) && error.lines().count() == 1, "{error}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

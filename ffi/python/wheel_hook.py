@@ -1,8 +1,9 @@
 """Puts the library, the program and the libraries of FMUs into the wheel, and names the platform it is for.
 
 `cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them. The library lies in the package, the program
-among the scripts, and the libraries that `enmm fmu` packs in `lib`, where the program looks for them. The package calls
-the library by ctypes, so one wheel serves every Python of a platform.
+among the scripts, and the libraries that `enmm fmu` packs in `lib`, where the program looks for them. Licences and the
+list of all parts are in the metadata. The package calls the library by ctypes, so one wheel serves every Python of a
+platform.
 """
 
 import os
@@ -21,6 +22,10 @@ NAMES = {
 }
 
 
+# Licences of all that is in the binaries, and the list of it.
+PARTS = Path(__file__).resolve().parents[1] / "fmi" / "parts"
+
+
 class WheelHook(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         given = os.environ.get("ENMM_BINARIES")
@@ -35,6 +40,11 @@ class WheelHook(BuildHookInterface):
         build_data["tag"] = f"py3-none-{platform([folder / name for name in (library, program, *of_fmus)])}"
         build_data["force_include"][str(folder / library)] = f"enmm/{library}"
         build_data["shared_scripts"][str(folder / program)] = program
+        metadata = f"enmm-{self.metadata.version}.dist-info"
+        build_data["force_include"] |= {
+            str(PARTS / "LICENSES"): f"{metadata}/licenses/LICENSES",
+            str(PARTS / "sbom.cdx.json"): f"{metadata}/sboms/sbom.cdx.json",
+        }
         build_data["shared_data"] |= {str(folder / name): f"lib/{name}" for name in of_fmus}
 
 

@@ -8,9 +8,11 @@ mod counts;
 mod faults;
 mod figures;
 mod install;
+mod parts;
 mod python;
 mod repository;
 mod sanitize;
+mod supply;
 mod tasks;
 mod venv;
 mod wheel;
@@ -41,6 +43,7 @@ usage: cargo xtask TASK
   reference        writes docs/book/reference.md, the reference of all keys of a case
   book             builds the site of the documents by mdBook, which it installs in the target folder
   header           writes include/enmm.h
+  parts            writes the list of all crates in libraries and program, and their licences
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
@@ -77,6 +80,7 @@ fn main() -> ExitCode {
         ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
         ["wheel"] => wheel::build(&repository).map(|_| ExitCode::SUCCESS),
+        ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(tasks::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {

@@ -55,6 +55,28 @@ impl Repository {
         command
     }
 
+    /// A command of cargo that builds what leaves this machine: paths of its folders are not written into binaries.
+    pub fn cargo_to_ship(&self, args: &[&str]) -> Command {
+        let mut flags: Vec<String> =
+            std::env::var("RUSTFLAGS").unwrap_or_default().split_whitespace().map(str::to_owned).collect();
+        // Of several that fit, rustc takes the last.
+        let names = ["/home", "/cargo", "/enmm"];
+        flags.extend(
+            self.build_folders().iter().zip(names).map(|(from, to)| format!("--remap-path-prefix={from}={to}")),
+        );
+        let mut command = self.cargo(args);
+        command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"));
+        command
+    }
+
+    /// Folders of this machine that no binary should name: home, that of cargo, and the repository.
+    pub fn build_folders(&self) -> [String; 3] {
+        let text = |path: &Path| path.display().to_string();
+        let home = std::env::home_dir().unwrap_or_default();
+        let cargo = std::env::var_os("CARGO_HOME").map_or_else(|| home.join(".cargo"), PathBuf::from);
+        [text(&home), text(&cargo), text(&self.root)]
+    }
+
     /// A command in the root.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);

@@ -11,6 +11,7 @@ use crate::faults;
 use crate::figures;
 use crate::python;
 use crate::repository::{self, Repository};
+use crate::supply;
 use crate::venv;
 
 const SCHEMA: &str = "docs/case.schema.json";
@@ -55,6 +56,9 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
             repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
         steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
+        steps.take("parts", || supply::parts(repository).map(|()| Counts::default()));
+        steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
+        steps.take("oldest compiler", || supply::oldest_compiler(repository).map(|()| Counts::default()));
         steps.take("python", || python::test(repository, &[python::ALL]));
         steps.take("figures", || figures::compare(repository));
         steps.take("bits", || bits::quick(repository));

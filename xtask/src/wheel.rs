@@ -4,6 +4,7 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::path::{Path, PathBuf};
 
 use crate::repository::{self, Repository};
+use crate::supply;
 use crate::venv;
 
 /// Folder of the package `enmm`.
@@ -18,8 +19,11 @@ const SIZE_MAX: u64 = 15_000_000;
 pub fn build(repository: &Repository) -> Result<PathBuf, String> {
     let packages = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
     let args = ["build", "--release"].into_iter().chain(packages.iter().flat_map(|name| ["--package", name]));
-    repository::run(&mut repository.cargo(&args.collect::<Vec<_>>()))?;
-    pack(repository)
+    repository::run(&mut repository.cargo_to_ship(&args.collect::<Vec<_>>()))?;
+    let wheel = pack(repository)?;
+    let binaries = std::fs::read_dir(binaries(repository)).map_err(|error| format!("binaries: {error}"))?;
+    binaries.flatten().try_for_each(|file| supply::no_build_paths(&file.path(), &repository.build_folders()))?;
+    Ok(wheel)
 }
 
 /// Makes the wheel of what has been built.
@@ -27,7 +31,7 @@ pub fn build(repository: &Repository) -> Result<PathBuf, String> {
 /// # Errors
 /// As [`build`].
 pub fn pack(repository: &Repository) -> Result<PathBuf, String> {
-    let binaries = repository.target.join("wheel-binaries");
+    let binaries = binaries(repository);
     let wheels = repository.target.join("wheels");
     for folder in [&binaries, &wheels] {
         repository::remove(folder)?;
@@ -50,6 +54,11 @@ pub fn pack(repository: &Repository) -> Result<PathBuf, String> {
     }
     println!("wrote {} ({:.1} MB)", wheel.display(), size as f64 / 1e6);
     Ok(wheel)
+}
+
+/// Folder of the binaries as they are in the wheel.
+fn binaries(repository: &Repository) -> PathBuf {
+    repository.target.join("wheel-binaries")
 }
 
 /// Copies a binary without its symbols and line tables, which only developers need.

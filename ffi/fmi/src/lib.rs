@@ -15,6 +15,7 @@ pub mod pack;
 mod page;
 pub mod phase;
 mod picture;
+pub mod platform;
 pub mod resource;
 pub mod table;
 mod terminals;

@@ -1,5 +1,5 @@
-//! An FMU: one file that holds the description, the library, the case and the page about them. The same case and
-//! library give the same bytes.
+//! An FMU: one file that holds the description, the libraries, the case and the page about them. The same case and
+//! libraries give the same bytes.
 
 use std::io::{self, Cursor, Write};
 use std::path::Path;
@@ -10,7 +10,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::description::{Facts, tool};
-use crate::library::platform;
+use crate::platform::Library;
 use crate::table::{Table, Version};
 use crate::{description2, description3, page, picture, resource, terminals};
 
@@ -33,23 +33,38 @@ pub enum PackError {
     /// The model of the case cannot be built.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// Two libraries belong in the same folder.
+    #[error("two libraries are for binaries/{0}: give one library for each platform")]
+    Twice(String),
     /// A part cannot be made.
     #[error("cannot make {0} of the FMU ({1})")]
     Part(&'static str, String),
 }
 
-/// Packs a case: `name` is that of its file, `library` the shared library of the version for this system.
+/// Packs a case: `name` is that of its file, `libraries` those of the version, one for each platform. Their order does
+/// not matter.
 ///
 /// # Errors
-/// A case whose model cannot be built.
-pub fn pack(loaded: &LoadedCase, name: &str, version: Version, library: &[u8]) -> Result<Packed, PackError> {
+/// A case whose model cannot be built; two libraries for one platform.
+pub fn pack(loaded: &LoadedCase, name: &str, version: Version, libraries: &[Library]) -> Result<Packed, PackError> {
+    let libraries = in_order(libraries)?;
     let model = loaded.cosimulation()?;
     let facts = Facts::of(&model, &identifier(name));
     let table = Table::new(model.case(), facts.blocks, &loaded.hash, version);
-    let files = files(loaded, name, &model, &facts, &table, library)?;
+    let files = files(loaded, name, &model, &facts, &table, &libraries)?;
     let bytes = archive(&files).map_err(|error| PackError::Part("the archive", error.to_string()))?;
     let warnings = loaded.warnings.iter().chain(model.warnings()).cloned().collect();
     Ok(Packed { bytes, variables: table.variables.len(), blocks: facts.blocks, warnings })
+}
+
+/// The libraries by the names of their folders, so that the same ones give the same file.
+fn in_order(libraries: &[Library]) -> Result<Vec<&Library>, PackError> {
+    let mut sorted: Vec<&Library> = libraries.iter().collect();
+    sorted.sort_by(|a, b| a.folder.cmp(&b.folder));
+    match sorted.windows(2).find(|pair| pair[0].folder == pair[1].folder) {
+        Some(pair) => Err(PackError::Twice(pair[0].folder.clone())),
+        None => Ok(sorted),
+    }
 }
 
 /// A file of the archive.
@@ -65,7 +80,7 @@ fn files(
     model: &Cosimulation,
     facts: &Facts,
     table: &Table,
-    library: &[u8],
+    libraries: &[&Library],
 ) -> Result<Vec<File>, PackError> {
     let file = |path: &str, bytes: Vec<u8>| File { path: path.to_owned(), bytes, executable: false };
     let failed = |part: &'static str| move |error: io::Error| PackError::Part(part, error.to_string());
@@ -84,13 +99,16 @@ fn files(
     };
     let mut files = vec![file("modelDescription.xml", description.map_err(failed("the model description"))?)];
     files.extend(drawing);
-    let suffix = std::env::consts::DLL_SUFFIX;
-    let path = format!("binaries/{}/{}{suffix}", platform(table.version), facts.identifier);
-    files.push(File { path, bytes: library.to_owned(), executable: true });
+    files.extend(libraries.iter().map(|library| File {
+        path: format!("binaries/{}/{}{}", library.folder, facts.identifier, library.suffix),
+        bytes: library.bytes.clone(),
+        executable: true,
+    }));
     files.push(file(&format!("resources/{}", resource::FILE), case));
     files.push(file("documentation/index.html", page::page(model, table, facts).into_bytes()));
     files.push(file(&format!("documentation/{}", page::PICTURE), slope));
     files.push(file("documentation/licenses/license.txt", license(facts).into_bytes()));
+    files.push(file("documentation/sbom.cdx.json", PARTS.as_bytes().to_owned()));
     Ok(files)
 }
 
@@ -108,18 +126,18 @@ fn archive(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
     Ok(archive.finish()?.into_inner())
 }
 
+/// The licences of enmm and of all crates in its libraries, and the list of these, by `cargo xtask parts`.
+const LICENSES: &str = include_str!("../parts/LICENSES");
+const PARTS: &str = include_str!("../parts/sbom.cdx.json");
+
 fn license(facts: &Facts) -> String {
-    let (mit, apache) = (include_str!("../../../LICENSE-MIT"), include_str!("../../../LICENSE-APACHE"));
     format!(
-        "The library in binaries/ was made by {} and may be used under either of the two licences below. It contains\n\
-         Rust crates and the font DejaVu Sans under their own licences, all of which allow redistribution; Cargo.lock\n\
-         of the sources names them. Of the case in resources/ the model description says:\n\n\
-         {}\n{}\n{}\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}",
+        "The libraries in binaries/ were made by {}. Of the case in resources/ the model description says:\n\n\
+         {}\n{}\n{}\n\n{LICENSES}",
         tool(),
         facts.author,
         facts.copyright,
         facts.license,
-        rule = "-".repeat(80),
     )
 }
 

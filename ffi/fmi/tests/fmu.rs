@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm_fmi::pack::{PackError, identifier, pack};
+use enmm_fmi::platform::Library;
 use enmm_fmi::table::{Axis, Causality, Quantity, Table, Type, Version};
 use enmm_fmi::{library, log, resource};
 use enmm_io::{LoadedCase, load_case, parse_case};
@@ -31,13 +32,21 @@ fn case(path: &str) -> LoadedCase {
     load_case(&root().join(path)).unwrap()
 }
 
+fn own(version: Version, bytes: &[u8]) -> [Library; 1] {
+    [Library::of_this_system(version, bytes.to_vec())]
+}
+
+fn packed_alone(name: &str, version: Version, bytes: &[u8]) -> Vec<u8> {
+    pack(&case(CASES[0]), name, version, &own(version, bytes)).unwrap().bytes
+}
+
 /// Table of the case and the files of its FMU.
 fn packed(path: &str, version: Version) -> (Table, Vec<(String, Vec<u8>)>) {
     packed_of(&case(path), path, version)
 }
 
 fn packed_of(loaded: &LoadedCase, path: &str, version: Version) -> (Table, Vec<(String, Vec<u8>)>) {
-    let packed = pack(loaded, path, version, LIBRARY).unwrap();
+    let packed = pack(loaded, path, version, &own(version, LIBRARY)).unwrap();
     let table = Table::new(&loaded.case, packed.blocks, &loaded.hash, version);
     assert_eq!(packed.variables, table.variables.len());
     let mut archive = zip::ZipArchive::new(Cursor::new(packed.bytes)).unwrap();
@@ -252,6 +261,7 @@ fn the_files_are_those_of_the_standard() {
             "documentation/index.html",
             "documentation/slope.png",
             "documentation/licenses/license.txt",
+            "documentation/sbom.cdx.json",
         ];
         let expected: Vec<&str> = ["modelDescription.xml"].iter().chain(drawn).copied().chain(rest).collect();
         assert_eq!(names, expected);
@@ -259,6 +269,12 @@ fn the_files_are_those_of_the_standard() {
         for (name, bytes) in files.iter().filter(|(name, _)| name.ends_with(".png")) {
             assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{name}");
         }
+        let licenses = String::from_utf8(part(&files, "documentation/licenses/license.txt").to_vec()).unwrap();
+        for told in ["MIT License", "Apache License", "Bitstream Vera Fonts Copyright", "\nrayon ", "\nfaer "] {
+            assert!(licenses.contains(told), "{told}");
+        }
+        let parts: serde_json::Value = serde_json::from_slice(part(&files, "documentation/sbom.cdx.json")).unwrap();
+        assert_eq!(parts["bomFormat"], "CycloneDX");
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("case.json"), part(&files, "resources/case.json")).unwrap();
         let loaded = resource::load(folder.path()).unwrap();
@@ -272,9 +288,9 @@ fn the_files_are_those_of_the_standard() {
 #[test]
 fn packing_twice_gives_the_same_bytes_that_every_reader_of_archives_knows() {
     for version in VERSIONS {
-        let [first, second] = [0, 1].map(|_| pack(&case(CASES[0]), "a/ports.toml", version, LIBRARY).unwrap().bytes);
+        let [first, second] = [0, 1].map(|_| packed_alone("a/ports.toml", version, LIBRARY));
         assert_eq!(first, second);
-        let elsewhere = pack(&case(CASES[0]), "ports.toml", version, b"another").unwrap().bytes;
+        let elsewhere = packed_alone("ports.toml", version, b"another");
         assert_ne!(first, elsewhere);
         let headers: Vec<usize> = (0..first.len() - 30).filter(|&k| first[k..].starts_with(b"PK\x03\x04")).collect();
         assert!(headers.len() >= 7);
@@ -299,7 +315,7 @@ fn a_model_that_cannot_be_built_is_an_error_of_the_case() {
     let mut wrong = case(CASES[0]).case;
     wrong.fixes[0].block = Some([50.0, 50.0]);
     let loaded = LoadedCase::of(wrong, "wrong.toml").unwrap();
-    let error = pack(&loaded, "wrong.toml", Version::Three, LIBRARY).unwrap_err();
+    let error = pack(&loaded, "wrong.toml", Version::Three, &[]).unwrap_err();
     assert!(matches!(error, PackError::Case(_)) && error.to_string().starts_with("wrong.toml:"), "{error}");
 }
 
@@ -401,7 +417,7 @@ fn the_range_of_the_strength_factor_is_that_of_the_engine() {
 #[test]
 fn the_identifier_is_part_of_the_description() {
     assert_eq!(identifier("1 slope.toml"), "case_1_slope");
-    let packed = pack(&case(CASES[1]), "1 slope.toml", Version::Two, LIBRARY).unwrap();
+    let packed = pack(&case(CASES[1]), "1 slope.toml", Version::Two, &own(Version::Two, LIBRARY)).unwrap();
     let mut archive = zip::ZipArchive::new(Cursor::new(packed.bytes)).unwrap();
     let mut text = String::new();
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut text).unwrap();

@@ -1,0 +1,109 @@
+//! Checks of dependencies: parts that are listed, licences and advisories, and the oldest compiler that is promised.
+
+use std::path::Path;
+
+use crate::parts;
+use crate::repository::{self, Repository};
+use crate::venv::succeeds;
+
+/// Compares the lists of parts with the dependencies, where the sources of all platforms are here or can be fetched.
+///
+/// # Errors
+/// When a list differs.
+pub fn parts(repository: &Repository) -> Result<(), String> {
+    if !succeeds(&mut repository.cargo(&["fetch", "--locked"])) {
+        println!("SKIPPED parts: sources of crates for other platforms are missing and cannot be fetched");
+        return Ok(());
+    }
+    parts::compare(repository)
+}
+
+/// Runs `cargo deny` with `deny.toml`, where it is installed; advisories only where they can be fetched.
+///
+/// # Errors
+/// When a dependency is not as `deny.toml` allows.
+pub fn deny(repository: &Repository) -> Result<(), String> {
+    if !succeeds(&mut repository.cargo(&["deny", "--version"])) {
+        println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny`)");
+        return Ok(());
+    }
+    repository::run(&mut repository.cargo(&["deny", "--offline", "check", "bans", "licenses", "sources"]))?;
+    if succeeds(&mut repository.cargo(&["deny", "fetch", "db"])) {
+        repository::run(&mut repository.cargo(&["deny", "check", "advisories"]))
+    } else {
+        println!("SKIPPED advisories: their database cannot be fetched");
+        Ok(())
+    }
+}
+
+/// Checks all crates with the oldest compiler that the manifest promises, where this toolchain is installed.
+///
+/// # Errors
+/// When the manifest states no version, or a crate does not compile.
+pub fn oldest_compiler(repository: &Repository) -> Result<(), String> {
+    let manifest = std::fs::read_to_string(repository.root.join("Cargo.toml"));
+    let version = promised(&manifest.map_err(|error| format!("Cargo.toml: {error}"))?)?;
+    let toolchain = format!("+{version}");
+    // Cargo sets these for its children; they name the toolchain that runs this program, which would win.
+    let fresh = |args: &[&str]| {
+        let mut command = repository.command("cargo");
+        command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").env_remove("RUSTC").env("RUSTUP_AUTO_INSTALL", "0");
+        command.arg(&toolchain).args(args);
+        command
+    };
+    if !succeeds(&mut fresh(&["--version"])) {
+        println!("SKIPPED Rust {version}: not installed (`rustup toolchain install {version} --profile minimal`)");
+        return Ok(());
+    }
+    let target = repository.target.join("oldest-compiler");
+    repository::run(fresh(&["check", "--locked", "--workspace"]).env("CARGO_TARGET_DIR", target))
+}
+
+/// `rust-version` of a manifest.
+fn promised(manifest: &str) -> Result<String, String> {
+    let line = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \""));
+    let version = line.and_then(|rest| rest.strip_suffix('"'));
+    version.map(str::to_owned).ok_or_else(|| "Cargo.toml states no rust-version".to_owned())
+}
+
+/// Fails when a file contains the path of a folder of the machine that built it.
+///
+/// # Errors
+/// When it does, or cannot be read.
+pub fn no_build_paths(file: &Path, folders: &[String]) -> Result<(), String> {
+    let bytes = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    match folders.iter().find(|folder| contains(&bytes, folder)) {
+        Some(folder) => Err(format!("{}: contains the path {folder} of the machine that built it", file.display())),
+        None => Ok(()),
+    }
+}
+
+fn contains(bytes: &[u8], folder: &str) -> bool {
+    // A root folder is in every path, and says nothing.
+    folder.len() > 1 && bytes.windows(folder.len()).any(|part| part == folder.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_promised_version_is_that_of_every_document() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
+        let version = promised(&text("Cargo.toml")).unwrap();
+        for name in ["README.md", "CONTRIBUTING.md"] {
+            assert!(text(name).contains(&format!("Rust {version}")) || text(name).contains(&format!("({version} or ")));
+        }
+        let own = format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"));
+        assert!(text("CITATION.cff").contains(&own), "CITATION.cff states another version than Cargo.toml");
+        assert!(promised("[package]\n").is_err());
+    }
+
+    #[test]
+    fn a_build_path_is_found() {
+        assert!(contains(b"at /home/a/.cargo/registry/x.rs", "/home/a"));
+        assert!(!contains(b"at /home/a/.cargo/registry/x.rs", "/home/b"));
+        assert!(!contains(b"at /cargo/registry/x.rs", "/"));
+    }
+}
