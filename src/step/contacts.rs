@@ -77,7 +77,8 @@ impl Step<'_> {
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
         let predicted = &workspace.predicted;
-        let approach = |StepTimes { dt, kick, .. }| Approach { predicted, dt, kick, damping };
+        let approach =
+            |StepTimes { dt, kick, .. }| Approach { predicted, dt, kick, forward: model.theta_in(dt), damping };
         let narrow = NarrowPhase {
             boundary: &model.boundary,
             position: &workspace.position,
@@ -100,7 +101,6 @@ impl Step<'_> {
             rule: model.entrance,
             flush_cosine: model.entrance.flush_cosine(),
             reach,
-            theta: model.theta,
             first: state.step == 0,
             in_situ: model.in_situ.as_ref(),
             serial: workspace.serial,

@@ -59,7 +59,7 @@ impl Step<'_> {
             let quiet = match support.resistance {
                 Resistance::Spring => {
                     row.target = support.preload - support.stiffness * row.displacement;
-                    row.viscosity = support.stiffness * model.theta * dt;
+                    row.viscosity = support.stiffness * model.theta_in(dt) * dt;
                     continue;
                 }
                 Resistance::Dashpot(quiet) => quiet,

@@ -102,11 +102,11 @@ impl NarrowPhase<'_> {
     /// springs are centred in a dynamic stage.
     #[inline(always)]
     fn answer(&self, contact: &mut VertexEdge, compliance: [f64; 2], approach: &Approach) {
-        let Approach { predicted, dt, kick, damping } = *approach;
+        let Approach { predicted, dt, kick, forward, damping } = *approach;
         let speed = contact.relative(predicted);
         let spring = |k: usize| {
             let (stiffness, compliance, approach) = (contact.stiffness[k], compliance[k], speed[k]);
-            Spring { stiffness, compliance, approach, forward: self.theta, lag: 0.0, dt, kick }
+            Spring { stiffness, compliance, approach, forward, lag: 0.0, dt, kick }
         };
         let (mut normal, mut shear) = (spring(0), spring(1));
         let physical = self.laws[contact.law].penalty.map(|penalty| !penalty);

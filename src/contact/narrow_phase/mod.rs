@@ -79,8 +79,6 @@ pub struct NarrowPhase<'a> {
     pub flush_cosine: f64,
     /// Gap (m) below which a pair becomes a contact of this step.
     pub reach: f64,
-    /// θ of the contact springs.
-    pub theta: f64,
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by position.
@@ -97,6 +95,8 @@ pub struct Approach<'a> {
     pub dt: f64,
     /// Time (s) for which forces act.
     pub kick: f64,
+    /// Forward weight of the solver's own springs: 1 and the dashpot.
+    pub forward: f64,
     /// Damping ratio of a dynamic stage.
     pub damping: Option<f64>,
 }
