@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import tell
+from conftest import from_environment, tell
 from ensemble_support import FRICTION, PLANE_COHESION, PLANE_FRICTION, block, plane_slide, plane_slide_factor
 from scipy import stats
 
@@ -38,6 +38,14 @@ def ensemble(package):
 @pytest.fixture
 def variables(ensemble):
     return {FRICTION: ensemble.Normal(*TANGENT, of="tangent")}
+
+
+def with_random(package, path, random, correlated=(), **ensemble):
+    """The block as a case file with random values."""
+    table = {**block().to_dict(), "solver": {"memory_limit": 8000000000}, "ensemble": ensemble}
+    table |= {"random": random, "random_correlation": list(correlated)}
+    package.Case.from_dict(table).save(path)
+    return path
 
 
 # Random numbers.
@@ -261,9 +269,18 @@ def test_a_factor_above_limit_analysis_is_in_doubt(ensemble):
 # Closed forms.
 
 
-def test_failures_of_a_block_are_as_probable_as_the_closed_form(ensemble, variables):
+def test_failures_of_a_block_are_as_probable_as_the_closed_form(ensemble, package, tmp_path):
+    # The program works the samples out; Python finds them in the store.
     n = 1000 if LONG else 40
-    found = ensemble.run(block(), variables, n)
+    row = {"key": FRICTION, "distribution": "normal", "of": "tangent", "mean": TANGENT[0], "sd": TANGENT[1]}
+    case, store = with_random(package, tmp_path / "case.toml", [row], samples=n), tmp_path / "s.sqlite"
+    words = [from_environment("ENMM_BIN"), "sample", case, "--store", store, "-o", tmp_path / "out"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    asked = []
+    found = ensemble.run(case, **ensemble.from_case(case), store=store, progress=lambda *k: asked.append(k))
+    record = json.loads((tmp_path / "out" / "ensemble.json").read_text(encoding="utf-8"))
+    assert not asked and record["probability_of_failure"] == found.probability_of_failure
     tangent = np.tan(np.radians(found.table[FRICTION]))
     exact = tangent / math.tan(math.radians(30))
     assert len(found) == n and not found.doubtful
@@ -333,7 +350,7 @@ def test_processes_give_the_same_table(ensemble, variables, table, workers):
 def cluster():
     from distributed import LocalCluster
 
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
     with LocalCluster(**options) as cluster:
         yield cluster
 
@@ -519,14 +536,6 @@ CORRELATED = [
     {"keys": ["rock.rock.young", "rock.rock.density"], "value": 0.5},
     {"keys": ["joint_law.joint.cohesion", "rock.rock.young"], "value": 0.3},
 ]
-
-
-def with_random(package, path, random, correlated=(), **ensemble):
-    """The block as a case file with random values."""
-    table = {**block().to_dict(), "solver": {"memory_limit": 8000000000}, "ensemble": ensemble}
-    table |= {"random": random, "random_correlation": list(correlated)}
-    package.Case.from_dict(table).save(path)
-    return path
 
 
 def rows_of(path):

@@ -66,7 +66,7 @@ pub enum RandomOf {
 pub struct RandomVariable {
     /// Key of the case, such as `joint_law.plane.friction_deg` or `joint_set[0].seed`.
     pub key: String,
-    /// Distribution.
+    /// Kind of distribution.
     pub distribution: RandomDistribution,
     /// What the distribution is of: its parameters and bounds are of that.
     #[serde(default)]
@@ -92,7 +92,7 @@ pub struct RandomVariable {
     /// Upper end at which the distribution is cut off and rescaled.
     #[serde(default)]
     pub high: Option<f64>,
-    /// First of the seeds, at most 2⁶² − 1; default: 1.
+    /// First of the seeds, at most 4.6e18; default: `1`.
     #[serde(default)]
     pub first: Option<u64>,
 }
@@ -175,7 +175,7 @@ pub struct Ensemble {
     pub samples: u64,
     /// How samples are drawn.
     pub sampling: Sampling,
-    /// Seed of the random numbers.
+    /// Seed of the random numbers: another one gives other samples.
     pub seed: u64,
     /// What is worked out of each sample.
     pub output: EnsembleOutput,

@@ -5,10 +5,10 @@ use crate::key::{Key, list};
 use crate::random::{Ensemble, RandomDistribution, RandomVariable};
 use crate::{Case, RandomOf};
 
-/// Greatest magnitude of a parameter.
-const PARAMETER: Range = Range::within(1e300);
+/// Greatest magnitude of a parameter, beyond that of any value of a case.
+const PARAMETER: Range = Range::within(1e20);
 /// Parameters that must be positive.
-const POSITIVE: Range = Range::above(0.0).to(1e300);
+const POSITIVE: Range = Range::above(0.0).to(1e20);
 /// Greatest first seed: sums of it and the number of a sample are whole numbers of TOML.
 const FIRST_MAX: u64 = (1 << 62) - 1;
 

@@ -203,7 +203,7 @@ def _pool(executor: AnyExecutor) -> Any:
         client: Any = distributed.Client
         local: Any = distributed.LocalCluster
         if executor == "dask":
-            cluster = stack.enter_context(local(threads_per_worker=1, dashboard_address=None))
+            cluster = stack.enter_context(local(threads_per_worker=1, dashboard_address=":0"))
             executor = stack.enter_context(client(cluster))
         else:
             executor = stack.enter_context(client(executor))
