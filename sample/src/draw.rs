@@ -176,3 +176,54 @@ fn cholesky(
     }
     Ok(factor)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(sampling: &str, correlation: f64) -> Case {
+        let random = |key: &str| serde_json::json!({ "key": key, "distribution": "uniform", "least": 0, "most": 1 });
+        let case = serde_json::json!({
+            "title": "", "domain": {}, "mesh": { "size": 1.0 }, "rock": {}, "stage": [],
+            "random": [random("a"), random("b"), { "key": "c", "distribution": "seeds", "first": 5 }, random("d")],
+            "random_correlation": [
+                { "keys": ["a", "b"], "value": correlation }, { "keys": ["b", "d"], "value": correlation }],
+            "ensemble": { "samples": 64, "sampling": sampling },
+        });
+        serde_json::from_value(case).unwrap()
+    }
+
+    fn column(samples: &Samples, i: usize) -> Vec<f64> {
+        let number = |row: &Vec<Value>| match row[i] {
+            Value::Number(number) => number,
+            Value::Seed(seed) => seed as f64,
+        };
+        samples.rows.iter().map(number).collect()
+    }
+
+    #[test]
+    fn a_latin_hypercube_takes_every_part_once_also_with_correlations() {
+        let samples = draw(&case("latin_hypercube", -0.6)).unwrap();
+        for i in [0, 1, 3] {
+            let mut parts: Vec<usize> = column(&samples, i).iter().map(|x| (64.0 * x) as usize).collect();
+            parts.sort_unstable();
+            assert_eq!(parts, (0..64).collect::<Vec<_>>());
+        }
+        assert_eq!(column(&samples, 2), (5..69).map(f64::from).collect::<Vec<_>>());
+        let rank = crate::spearman(&column(&samples, 0), &column(&samples, 1));
+        assert!(rank.is_some_and(|rank| (-0.9..-0.3).contains(&rank)), "{rank:?}");
+    }
+
+    #[test]
+    fn a_sample_does_not_depend_on_the_number_of_samples() {
+        let mut short = case("monte_carlo", 0.3);
+        short.ensemble.samples = 9;
+        assert_eq!(draw(&short).unwrap().rows, draw(&case("monte_carlo", 0.3)).unwrap().rows[..9]);
+    }
+
+    #[test]
+    fn correlations_that_exclude_each_other_are_refused() {
+        let refused = draw(&case("monte_carlo", 0.8)).unwrap_err();
+        assert!(refused.key == "random_correlation" && refused.message.contains("at once"), "{refused}");
+    }
+}

@@ -48,6 +48,7 @@ fn parameters(key: &Key, variable: &RandomVariable) -> Check {
                 let message = format!("is {value}, but a {} distribution has {has}; remove it", kind.name());
                 return fail(&key.field(name), message);
             }
+            Some(value) if name == "sd" => number(key, name, value, POSITIVE, "", "write a fixed value otherwise")?,
             Some(value) => number(key, name, value, PARAMETER, "", "correct it")?,
             None => {}
         }
@@ -67,10 +68,6 @@ fn parameters(key: &Key, variable: &RandomVariable) -> Check {
 
 /// The parameters make a distribution.
 fn shape(key: &Key, variable: &RandomVariable) -> Check {
-    let fixed = "write a fixed value into the case itself";
-    if let Some(sd) = variable.sd {
-        number(key, "sd", sd, POSITIVE, "", fixed)?;
-    }
     let positive = [RandomDistribution::Lognormal, RandomDistribution::Exponential];
     if let Some(mean) = variable.mean.filter(|_| positive.contains(&variable.distribution)) {
         number(key, "mean", mean, POSITIVE, "", "this distribution has positive values alone")?;
