@@ -166,7 +166,7 @@ fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, values
 /// Asks a process for one sample; fails when the process was lost.
 fn ask(command: &mut Command, k: usize, loaded: &LoadedCase) -> Result<Answer, String> {
     let output = command.output().map_err(|error| format!("the process of sample {k} did not start: {error}"))?;
-    if let Ok(Json::Object(found)) = serde_json::from_slice(&output.stdout) {
+    if let Ok(found) = serde_json::from_slice(&output.stdout) {
         return Ok(read(&found, loaded));
     }
     let told = String::from_utf8_lossy(&output.stderr);
@@ -176,12 +176,14 @@ fn ask(command: &mut Command, k: usize, loaded: &LoadedCase) -> Result<Answer, S
             let message = format!("the engine failed: {told}");
             Ok(Answer::Done(Row { outputs: Vec::new(), message }))
         }
+        // The case cannot be read any more.
+        Some(status) if status == i32::from(BAD_INPUT) => Ok(Answer::Changed),
         _ => Err(format!("the process of sample {k} ended with {}: {told}", output.status)),
     }
 }
 
-fn read(found: &Map<String, Json>, loaded: &LoadedCase) -> Answer {
-    if found.contains_key("changed") {
+fn read(found: &Json, loaded: &LoadedCase) -> Answer {
+    if found["changed"].is_string() {
         return Answer::Changed;
     }
     let names = columns(loaded.case.ensemble.output);

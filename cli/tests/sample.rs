@@ -164,6 +164,25 @@ output = "associated"
 }
 
 #[test]
+fn a_case_that_changes_while_it_is_sampled_ends_the_work() {
+    let place = Place::with(&case(RANDOM));
+    let words = [&["sample", "case.toml", "-n", "40", "--jobs", "1"], &QUICK[..]].concat();
+    for changed in [case(RANDOM).replace("young = 1e9", "young = 2e9"), "title = 1".to_owned()] {
+        fs::write(place.path("case.toml"), case(RANDOM)).expect("written");
+        let before = stored(&place, "case/ensemble.sqlite");
+        let driver = place.start(&words);
+        while stored(&place, "case/ensemble.sqlite") <= before {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        fs::write(place.path("case.toml"), changed).expect("written");
+        let answer = Outcome::of(driver.wait_with_output().expect("ended"));
+        assert_eq!(answer.status, Some(3), "{answer:?}");
+        assert!(answer.stderr.contains("the case changed while"), "{answer:?}");
+        assert!(!place.path("case/ensemble.json").exists());
+    }
+}
+
+#[test]
 fn what_cannot_be_sampled_is_refused_before_anything_is_written() {
     let refuse = |random: &str, more: &[&str], parts: &[&str]| {
         let place = Place::with(&case(random));
