@@ -160,14 +160,14 @@ fn cholesky(
         (matrix[a][b], matrix[b][a]) = (correlation.value, correlation.value);
     }
     let mut factor: Vec<Vec<f64>> = Vec::with_capacity(size);
-    for i in 0..size {
+    for (i, given) in matrix.iter().enumerate() {
         let mut row: Vec<f64> = Vec::with_capacity(i + 1);
         for (j, above) in factor.iter().enumerate() {
-            let rest = row.iter().zip(above).fold(matrix[i][j], |rest, (a, b)| rest - a * b);
+            let rest = row.iter().zip(above).fold(given[j], |rest, (a, b)| rest - a * b);
             row.push(rest / above[j]);
         }
-        let rest = row.iter().fold(matrix[i][i], |rest, a| rest - a * a);
-        if !(rest > 0.0) {
+        let rest = row.iter().fold(given[i], |rest, a| rest - a * a);
+        if rest.is_nan() || rest <= 0.0 {
             let message = "no variables can have all these correlations at once; bring some nearer to 0".to_owned();
             return Err(Invalid { key: "random_correlation".to_owned(), message });
         }

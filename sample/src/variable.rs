@@ -51,8 +51,8 @@ impl Variable {
         let (low, high) = (row.low, row.high);
         let start = low.map_or(0.0, |low| shape.probability(low));
         let end = high.map_or(1.0, |high| shape.probability(high));
-        // A comparison with NaN is false.
-        if !(end - start > LEAST_SHARE) {
+        let share = end - start;
+        if share.is_nan() || share <= LEAST_SHARE {
             let name = if low.is_some() { "low" } else { "high" };
             let message = "hardly any value lies within the bounds; widen them".to_owned();
             return Err(Invalid { key: key.field(name).to_string(), message });
