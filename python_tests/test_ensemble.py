@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import tell
+from conftest import from_environment, tell
 from ensemble_support import FRICTION, PLANE_COHESION, PLANE_FRICTION, block, plane_slide, plane_slide_factor
 from scipy import stats
 
@@ -38,6 +38,14 @@ def ensemble(package):
 @pytest.fixture
 def variables(ensemble):
     return {FRICTION: ensemble.Normal(*TANGENT, of="tangent")}
+
+
+def with_random(package, path, random, correlated=(), **ensemble):
+    """The block as a case file with random values."""
+    table = {**block().to_dict(), "solver": {"memory_limit": 8000000000}, "ensemble": ensemble}
+    table |= {"random": random, "random_correlation": list(correlated)}
+    package.Case.from_dict(table).save(path)
+    return path
 
 
 # Random numbers.
@@ -261,9 +269,18 @@ def test_a_factor_above_limit_analysis_is_in_doubt(ensemble):
 # Closed forms.
 
 
-def test_failures_of_a_block_are_as_probable_as_the_closed_form(ensemble, variables):
+def test_failures_of_a_block_are_as_probable_as_the_closed_form(ensemble, package, tmp_path):
+    # The program works the samples out; Python finds them in the store.
     n = 1000 if LONG else 40
-    found = ensemble.run(block(), variables, n)
+    row = {"key": FRICTION, "distribution": "normal", "of": "tangent", "mean": TANGENT[0], "sd": TANGENT[1]}
+    case, store = with_random(package, tmp_path / "case.toml", [row], samples=n), tmp_path / "s.sqlite"
+    words = [from_environment("ENMM_BIN"), "sample", case, "--store", store, "-o", tmp_path / "out"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    asked = []
+    found = ensemble.run(case, **ensemble.from_case(case), store=store, progress=lambda *k: asked.append(k))
+    record = json.loads((tmp_path / "out" / "ensemble.json").read_text(encoding="utf-8"))
+    assert not asked and record["probability_of_failure"] == found.probability_of_failure
     tangent = np.tan(np.radians(found.table[FRICTION]))
     exact = tangent / math.tan(math.radians(30))
     assert len(found) == n and not found.doubtful
@@ -333,7 +350,7 @@ def test_processes_give_the_same_table(ensemble, variables, table, workers):
 def cluster():
     from distributed import LocalCluster
 
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
     with LocalCluster(**options) as cluster:
         yield cluster
 
@@ -346,6 +363,10 @@ def test_dask_gives_the_same_table(ensemble, variables, table, cluster):
         assert ensemble.run(block(), variables, 8, executor=client, options=QUICK)._csv() == table
     by_address = ensemble.run(block(), variables, 8, executor=cluster.scheduler_address, options=QUICK)
     assert by_address._csv() == table
+
+
+def test_a_local_cluster_of_dask_gives_the_same_table(ensemble, variables, table):
+    assert ensemble.run(block(), variables, 8, executor="dask", options=QUICK)._csv() == table
 
 
 def test_a_worker_of_dask_that_is_killed_loses_nothing(ensemble, variables, table, cluster, tmp_path):
@@ -496,6 +517,86 @@ def test_mpi_gives_the_same_table(tmp_path, table):
     done = subprocess.run(words, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout == table and done.stderr.strip().endswith("3")
+
+
+# The program.
+
+RANDOM = [
+    {"key": FRICTION, "distribution": "normal", "of": "tangent", "mean": 0.7, "sd": 0.1, "low": 0.3, "high": 1.2},
+    {"key": "joint_law.joint.cohesion", "distribution": "lognormal", "mean": 2e3, "sd": 9e2, "high": 1e4},
+    {"key": "joint_law.joint.tension", "distribution": "triangular", "least": 0, "mode": 50, "most": 400, "low": 9},
+    {"key": "joint_law.joint.dilation_deg", "distribution": "uniform", "least": 0, "most": 5},
+    {"key": "rock.rock.young", "distribution": "normal", "of": "log10", "mean": 10, "sd": 0.2},
+    {"key": "rock.rock.density", "distribution": "exponential", "mean": 2e3, "low": 100, "high": 6e3},
+    {"key": "solver.memory_limit", "distribution": "seeds", "first": 8000000000},
+]
+"""Every distribution, what it can be of, bounds and seeds."""
+CORRELATED = [
+    {"keys": [FRICTION, "joint_law.joint.cohesion"], "value": -0.6},
+    {"keys": ["rock.rock.young", "rock.rock.density"], "value": 0.5},
+    {"keys": ["joint_law.joint.cohesion", "rock.rock.young"], "value": 0.3},
+]
+
+
+def rows_of(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+def same(ours, theirs):
+    """Whether two cells of tables are the same text, or numbers of the same bits."""
+    try:
+        return float(ours).hex() == float(theirs).hex()
+    except ValueError:
+        return ours == theirs
+
+
+@pytest.mark.parametrize("sampling", ["monte_carlo", "latin_hypercube"])
+@pytest.mark.parametrize("correlated", [[], CORRELATED], ids=["independent", "correlated"])
+def test_the_program_draws_the_same_samples_to_the_bit(ensemble, package, enmm, tmp_path, sampling, correlated):
+    n = 1000 if LONG else 60
+    options = {"samples": n, "sampling": sampling, "seed": 7, "output": "associated"}
+    case = with_random(package, tmp_path / "case.toml", RANDOM, correlated, **options)
+    done = enmm("sample", case, "-o", tmp_path / "out", "--jobs", 2)
+    assert done.returncode == 0, done.stderr
+    theirs = rows_of(tmp_path / "out" / "ensemble.csv")
+    asked = []
+    # The store of the program has all: nothing is worked out again, so both have the same keys.
+    found = ensemble.run(
+        case,
+        **ensemble.from_case(case),
+        store=tmp_path / "out" / "ensemble.sqlite",
+        progress=lambda *k: asked.append(k),
+    )
+    assert asked == []
+    found.write_csv(tmp_path / "ours.csv")
+    ours = rows_of(tmp_path / "ours.csv")
+    assert len(ours) == len(theirs) == n + 1 and ours[0] == theirs[0]
+    cells = [(a, b) for x, y in zip(ours, theirs, strict=True) for a, b in zip(x, y, strict=True)]
+    assert [pair for pair in cells if not same(*pair)] == []
+
+
+def test_the_program_finds_the_same_probability_and_continues_the_store(ensemble, package, enmm, tmp_path):
+    case = with_random(package, tmp_path / "case.toml", RANDOM[:1], samples=16)
+    store = tmp_path / "s.sqlite"
+    options = {"tolerance": 0.05}
+    arguments = ensemble.from_case(case)
+    half = ensemble.run(case, **{**arguments, "n": 8}, store=store, options=options)
+    words = ["sample", case, "-o", tmp_path / "out", "--store", store, "--tolerance", 0.05]
+    done = enmm(*words)
+    assert done.returncode == 0 and done.stderr.startswith("8 of 16 samples"), done.stderr
+    found = ensemble.run(case, **arguments, store=store, options=options)
+    record = json.loads((tmp_path / "out" / "ensemble.json").read_text(encoding="utf-8"))
+    assert half.values.tolist() == found.values.tolist()[:8]
+    assert record["probability_of_failure"] == found.probability_of_failure
+    assert record["interval"] == pytest.approx(list(found.interval()), abs=1e-12)
+    assert record["beta"] == pytest.approx(found.beta, rel=1e-9)
+    assert [value for _, value in record["quantiles"]] == pytest.approx([found.quantile(p) for p in (0.05, 0.5, 0.95)])
+    assert record["rank_correlation"] == pytest.approx(found.sensitivity())
+    alone = enmm("sample", case, "-o", tmp_path / "alone", "--tolerance", 0.05)
+    assert alone.returncode == 0 and alone.stderr.startswith("0 of 16 samples"), alone.stderr
+    tables = [(tmp_path / name / "ensemble.csv").read_text(encoding="utf-8") for name in ("out", "alone")]
+    assert tables[0] == tables[1], "samples that Python worked out, and those of the program alone"
 
 
 # UM-Bridge.

@@ -119,6 +119,28 @@ friction_deg = 20.0
 name = "settle"
 kind = "static"
 duration_max = 10.0
+
+[[random]]
+key = "joint_law.clean.friction_deg"
+distribution = "normal"
+mean = 35.0
+sd = 3.0
+low = 20.0
+high = 50.0
+
+[[random]]
+key = "joint_law.weak.friction_deg"
+distribution = "triangular"
+least = 15.0
+mode = 20.0
+most = 25.0
+
+[[random_correlation]]
+keys = ["joint_law.clean.friction_deg", "joint_law.weak.friction_deg"]
+value = 0.5
+
+[ensemble]
+limit = 1.0
 "#;
 
 /// The case in few words, as it is written.

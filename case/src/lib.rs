@@ -10,6 +10,7 @@ mod joint_set;
 pub mod key;
 pub mod limits;
 mod pictures;
+mod random;
 mod validate;
 
 use std::collections::BTreeMap;
@@ -24,6 +25,7 @@ pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use in_situ::InSitu;
 pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
 pub use pictures::{PictureKind, Pictures};
+pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use validate::Invalid;
 
 /// A closed or open list of points (m).
@@ -113,6 +115,16 @@ pub struct Case {
     /// Numerical choices.
     #[serde(default)]
     pub solver: Solver,
+    // Not written, so that they are not part of the fingerprint.
+    /// Random values of `enmm sample`.
+    #[serde(default, skip_serializing)]
+    pub random: Vec<RandomVariable>,
+    /// Correlations of random values.
+    #[serde(default, skip_serializing, rename = "random_correlation")]
+    pub random_correlations: Vec<RandomCorrelation>,
+    /// The samples of `enmm sample`.
+    #[serde(default, skip_serializing)]
+    pub ensemble: Ensemble,
 }
 
 /// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.

@@ -8,6 +8,7 @@ mod joint_sets;
 mod joints;
 mod loads;
 mod ports;
+mod random;
 mod stages;
 
 use thiserror::Error;
@@ -70,7 +71,8 @@ impl Case {
         bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
         output(&root.field("output"), &self.output)?;
-        solver(&root.field("solver"), &self.solver)
+        solver(&root.field("solver"), &self.solver)?;
+        random::validate_random(&root, self)
     }
 
     /// Returns the law of joints that name none: `domain.joint_law`, else the only law of the case, else none.

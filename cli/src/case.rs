@@ -25,4 +25,12 @@ impl CaseArguments {
     pub fn load(&self) -> Result<LoadedCase, CaseError> {
         load_case_with(&self.path, &self.settings)
     }
+
+    /// Reads the case with further values.
+    ///
+    /// # Errors
+    /// As [`CaseArguments::load`].
+    pub fn load_with(&self, more: &[String]) -> Result<LoadedCase, CaseError> {
+        load_case_with(&self.path, &[&self.settings, more].concat())
+    }
 }

@@ -11,6 +11,7 @@ mod new;
 mod output;
 mod progress;
 mod run;
+mod sample;
 mod verify;
 mod view;
 
@@ -59,6 +60,8 @@ enum Command {
     Verify(verify::Arguments),
     /// Finds the factor of safety of a case by dividing its strength until it fails.
     Fos(fos::Arguments),
+    /// Finds the probability of failure of a case with random values from many samples.
+    Sample(sample::Arguments),
     /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
     Bound(bound::Arguments),
     /// Shows a run in a browser while it goes on.
@@ -84,6 +87,7 @@ fn execute(command: Command) -> ExitCode {
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
+        Command::Sample(arguments) => sample::sample(&arguments),
         Command::Bound(arguments) => bound::bound(&arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

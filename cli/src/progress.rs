@@ -1,5 +1,6 @@
 //! How a run shows on the screen: a bar on a terminal, plain lines elsewhere, nothing when it is to be quiet.
 
+use std::cell::Cell;
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -141,6 +142,54 @@ impl Search {
         bar.set_length(expected as u64);
         bar.set_position(done as u64);
         bar.set_message(format!("{done} of about {expected} trials, about {} left", clock(left)));
+    }
+
+    /// Removes the bar.
+    pub fn close(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how many samples of an ensemble are done: a bar on a terminal, plain lines elsewhere.
+pub struct Count {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+    start: Instant,
+    /// Time of the last line, and samples that were there at the start.
+    told: Cell<(Option<Instant>, Option<usize>)>,
+}
+
+impl Count {
+    /// Nothing when it is to be quiet.
+    pub fn new(quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal() && !quiet;
+        let bar = terminal.then(|| {
+            let style = ProgressStyle::with_template("{wide_bar} {msg}");
+            ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        });
+        Self { bar, quiet, start: Instant::now(), told: Cell::default() }
+    }
+
+    /// `done` of `n` samples are done.
+    pub fn tell(&self, done: usize, n: usize) {
+        let (last, first) = self.told.get();
+        let begun = first.unwrap_or(done);
+        let due = last.is_none_or(|last| last.elapsed() >= LINES) || done == n || first.is_none();
+        let rate = (done - begun.min(done)) as f64 / self.start.elapsed().as_secs_f64().max(1e-9);
+        let left = if rate > 0.0 { format!(", about {} left", clock((n - done) as f64 / rate)) } else { String::new() };
+        let line = format!("{done} of {n} samples{left}");
+        self.told.set((if due { Some(Instant::now()) } else { last }, Some(begun)));
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(n as u64);
+                bar.set_position(done as u64);
+                bar.set_message(line);
+            }
+            None if due && !self.quiet => drop(writeln!(std::io::stderr(), "{line}")),
+            None => {}
+        }
     }
 
     /// Removes the bar.

@@ -116,8 +116,24 @@ pub fn fos(
     options: &FosOptions,
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Found, FosError> {
-    options.check().map_err(FosError::Options)?;
     let clock = Instant::now();
+    let found = search(loaded, options, hear)?;
+    let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
+    write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
+    write_fos_page(&options.directory, loaded, &found).map_err(FosError::Output)?;
+    Ok(found)
+}
+
+/// Finds the factor of safety of a case and writes nothing.
+///
+/// # Errors
+/// What cannot be used or built.
+pub fn search(
+    loaded: &LoadedCase,
+    options: &FosOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Found, FosError> {
+    options.check().map_err(FosError::Options)?;
     let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
     let search = ReductionOptions { low, high, tolerance, interrupt };
     let mut find = || mechanisms(&loaded.case, which, &search, hear);
@@ -134,11 +150,7 @@ pub fn fos(
         other => FosError::NoRest(other),
     })?;
     searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
-    let found = Found { searches, which };
-    let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
-    write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
-    write_fos_page(&options.directory, loaded, &found).map_err(FosError::Output)?;
-    Ok(found)
+    Ok(Found { searches, which })
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {

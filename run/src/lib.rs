@@ -4,6 +4,7 @@
 pub mod blocks;
 mod bound;
 pub mod check;
+mod ensemble;
 mod film;
 pub mod fos;
 mod found;
@@ -15,6 +16,7 @@ pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record};
 pub use check::check;
+pub use ensemble::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::write_bound_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};

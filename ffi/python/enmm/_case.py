@@ -1,6 +1,5 @@
 """Cases: what a user writes, as text and as a table of values."""
 
-import hashlib
 import os
 import tomllib
 from collections.abc import Mapping
@@ -114,11 +113,12 @@ class Case:
 
     @property
     def digest(self) -> str:
-        """64 hexadecimal digits of the values and of the bytes of the files that the case names."""
-        whole = hashlib.sha256(_toml.dumps(_sorted(self._table)).encode())
-        for _, path in self._files():
-            whole.update(hashlib.sha256(path.read_bytes()).digest())
-        return whole.hexdigest()
+        """Fingerprint of the case with the files that it names, 16 hexadecimal digits, equal for equal models.
+
+        It is `Model.case_hash`, and the model is built to find it. Random values are not part of it.
+        """
+        with self.model() as model:
+            return model.case_hash
 
     def _files(self) -> list[tuple[str, Path]]:
         """Keys and full paths of the files that the case names."""

@@ -16,7 +16,7 @@ from ._driver import EnsembleError, run
 from ._sampling import draw, uniform
 from ._store import Store
 from ._summary import Ensemble, Interval, wilson
-from ._variables import Distribution, Exponential, LogNormal, Normal, Seeds, Triangular, Uniform, from_tables
+from ._variables import Distribution, Exponential, LogNormal, Normal, Seeds, Triangular, Uniform, from_case, from_tables
 
 __all__ = [
     "Distribution",
@@ -31,6 +31,7 @@ __all__ = [
     "Triangular",
     "Uniform",
     "draw",
+    "from_case",
     "from_tables",
     "run",
     "uniform",

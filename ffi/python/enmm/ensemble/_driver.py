@@ -1,8 +1,8 @@
 """The driver: gives samples to workers, stores every answer at once, and returns the table of all."""
 
 import hashlib
-import json
 import os
+import struct
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import (
@@ -83,7 +83,8 @@ def run(
         )
     samples = draw(variables, n, seed, method, correlations or {})
     version = load_library().version
-    keys = [_key(base.digest, values, output, options or {}, version) for values in samples]
+    digest = base.digest
+    keys = [_key(digest, values, output, options or {}, version) for values in samples]
     with ExitStack() as stack:
         kept = stack.enter_context(Store(store))
         rows = kept.find(keys)
@@ -127,9 +128,16 @@ def _check(case: Case, variables: Mapping[str, Variable], output: Output) -> Non
 
 
 def _key(digest: str, values: dict[str, Any], output: Output, options: Mapping[str, Any], version: str) -> str:
-    """Hash of all that a sample depends on."""
-    whole = [digest, sorted(values.items()), _name(output), sorted(options.items()), version]
-    return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
+    """Hash of all that a sample depends on; the program has the same (`sample/src/identity.rs`)."""
+    lines = ["enmm sample 1", f"case {digest}", f"version {version}", f"output {_name(output)}"]
+    lines += [f"option {name} {_bits(float(value))}" for name, value in sorted(options.items())]
+    lines += [f"value {key} {_bits(value)}" for key, value in sorted(values.items())]
+    return hashlib.sha256("".join(f"{line}\n" for line in lines).encode()).hexdigest()
+
+
+def _bits(value: float) -> str:
+    """The bits of a number in hexadecimal digits; a seed in decimal digits."""
+    return str(value) if isinstance(value, int) else struct.pack(">d", value).hex()
 
 
 def _name(output: Output) -> str:
@@ -195,7 +203,7 @@ def _pool(executor: AnyExecutor) -> Any:
         client: Any = distributed.Client
         local: Any = distributed.LocalCluster
         if executor == "dask":
-            cluster = stack.enter_context(local(threads_per_worker=1, dashboard_address=None))
+            cluster = stack.enter_context(local(threads_per_worker=1, dashboard_address=":0"))
             executor = stack.enter_context(client(cluster))
         else:
             executor = stack.enter_context(client(executor))

@@ -1,5 +1,7 @@
 """Samples: counter-based random numbers, Latin hypercube, correlation by a Gaussian copula.
 
+The program draws the same samples to the bit (crate `sample`), so sums are written out in its order.
+
 Sample k of a variable depends on the seed, the name of the variable and k alone, so it is the same on every machine,
 for any number of workers, and after a restart. The generator is Philox4x64-10 (J. K. Salmon et al., Parallel random
 numbers: as easy as 1, 2, 3, SC 2011) as numpy has it: key (seed, first 8 bytes of SHA-256 of the name, big-endian),
@@ -7,6 +9,7 @@ counter k; the first word of the first block it then gives, without its lowest 1
 """
 
 import hashlib
+import math
 from collections.abc import Mapping
 from statistics import NormalDist
 from typing import Any
@@ -15,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._errors import invalid
+from ._normal import probability
 from ._variables import Distribution, Seeds, Variable
 
 METHODS = ("monte_carlo", "latin_hypercube")
@@ -60,11 +64,11 @@ def draw(
     if correlations:
         factor = _cholesky(names, correlations)
         start = (strata + chance) / n if stratified else chance
-        normals = np.vectorize(_STANDARD.inv_cdf, otypes=[float])(start) @ factor.T
+        normals = np.array([_correlated(factor, row) for row in start])
         if stratified:  # The ranks of the correlated numbers choose the strata, so that each is still taken once.
             strata = np.argsort(np.argsort(normals, axis=0, kind="stable"), axis=0, kind="stable")
         else:
-            chance = np.vectorize(_STANDARD.cdf, otypes=[float])(normals)
+            chance = np.vectorize(probability, otypes=[float])(normals)
     if stratified:
         chance = (strata + chance) / n
     column = {name: i for i, name in enumerate(names)}
@@ -77,8 +81,21 @@ def _value(variable: Variable, k: int, chance: npt.NDArray[np.float64], column: 
     return variable.value(float(chance[k, column]))
 
 
-def _cholesky(names: list[str], correlations: Mapping[tuple[str, str], float]) -> npt.NDArray[np.float64]:
-    matrix = np.eye(len(names))
+def _correlated(factor: list[list[float]], row: npt.NDArray[np.float64]) -> list[float]:
+    """Correlated normal variables from independent numbers within 0 and 1."""
+    normals = [_STANDARD.inv_cdf(float(u)) for u in row]
+    found = []
+    for factors in factor:
+        total = 0.0
+        for a, b in zip(factors, normals, strict=False):
+            total += a * b
+        found.append(total)
+    return found
+
+
+def _cholesky(names: list[str], correlations: Mapping[tuple[str, str], float]) -> list[list[float]]:
+    """Lower factor of the matrix of correlations, row by row up to the diagonal."""
+    matrix = np.eye(len(names)).tolist()
     for (a, b), value in correlations.items():
         for name in (a, b):
             if name not in names:
@@ -88,8 +105,18 @@ def _cholesky(names: list[str], correlations: Mapping[tuple[str, str], float]) -
         if a == b or not -1 < value < 1:
             raise invalid(f"correlations: that of {a!r} and {b!r} is {value}, must be of two and within -1 and 1")
         i, j = names.index(a), names.index(b)
-        matrix[i, j] = matrix[j, i] = value
-    try:
-        return np.asarray(np.linalg.cholesky(matrix), dtype=np.float64)
-    except np.linalg.LinAlgError as error:
-        raise invalid("correlations: no variables can have them all at once; bring some nearer to 0") from error
+        matrix[i][j] = matrix[j][i] = float(value)
+    factor: list[list[float]] = []
+    for i, given in enumerate(matrix):
+        row: list[float] = []
+        for j, above in enumerate([*factor, row]):
+            rest = given[j]
+            for a, b in zip(row, above, strict=False):
+                rest -= a * b
+            if j == i:
+                if not rest > 0:
+                    raise invalid("correlations: no variables can have them all at once; bring some nearer to 0")
+                rest = math.sqrt(rest)
+            row.append(rest if j == i else rest / above[j])
+        factor.append(row)
+    return factor

@@ -6,7 +6,10 @@ from dataclasses import dataclass, fields
 from statistics import NormalDist
 from typing import Any, ClassVar
 
+from .._case import Case
 from .._errors import invalid
+from .._program import CaseLike
+from ._normal import probability
 
 _STANDARD = NormalDist()
 OF = ("value", "tangent", "log10")
@@ -95,7 +98,7 @@ class Normal(Distribution):
         self._need(self.sd > 0, f"sd is {self.sd}, must be above 0; write a fixed value into the case")
 
     def cdf(self, x: float) -> float:
-        return NormalDist(self.mean, self.sd).cdf(x)
+        return probability((x - self.mean) / self.sd)
 
     def ppf(self, p: float) -> float:
         return self.mean + self.sd * _STANDARD.inv_cdf(p)
@@ -114,11 +117,13 @@ class LogNormal(Distribution):
         self._need(self.sd > 0, f"sd is {self.sd}, must be above 0; write a fixed value into the case")
 
     def _log(self) -> tuple[float, float]:
-        sd = math.sqrt(math.log1p((self.sd / self.mean) ** 2))
-        return math.log(self.mean) - 0.5 * sd**2, sd
+        ratio = self.sd / self.mean
+        sd = math.sqrt(math.log1p(ratio * ratio))
+        return math.log(self.mean) - 0.5 * (sd * sd), sd
 
     def cdf(self, x: float) -> float:
-        return 0.0 if x <= 0 else NormalDist(*self._log()).cdf(math.log(x))
+        mean, sd = self._log()
+        return 0.0 if x <= 0 else probability((math.log(x) - mean) / sd)
 
     def ppf(self, p: float) -> float:
         mean, sd = self._log()
@@ -160,7 +165,9 @@ class Triangular(Distribution):
         a, c, b = self.least, self.mode, self.most
         if x <= a or x >= b:
             return 0.0 if x <= a else 1.0
-        return (x - a) ** 2 / ((b - a) * (c - a)) if x < c else 1.0 - (b - x) ** 2 / ((b - a) * (b - c))
+        if x < c:
+            return (x - a) * (x - a) / ((b - a) * (c - a))
+        return 1.0 - (b - x) * (b - x) / ((b - a) * (b - c))
 
     def ppf(self, p: float) -> float:
         a, c, b = self.least, self.mode, self.most
@@ -230,3 +237,21 @@ def from_tables(rows: Sequence[Mapping[str, Any]]) -> dict[str, Variable]:
         except TypeError as error:
             raise invalid(f"random[{k}]: {error}; a {name} distribution has {', '.join(known)}") from error
     return variables
+
+
+def from_case(case: CaseLike) -> dict[str, Any]:
+    """The arguments of `run` that the tables `[[random]]`, `[[random_correlation]]` and `[ensemble]` of a case give.
+
+    `run(case, **from_case(case))` is the ensemble of `enmm sample`, to the bit.
+    """
+    table = Case.of(case).to_dict()
+    ensemble = table.get("ensemble", {})
+    return {
+        "variables": from_tables(table.get("random", [])),
+        "n": ensemble.get("samples", 100),
+        "output": ensemble.get("output", "factor_of_safety"),
+        "method": ensemble.get("sampling", "monte_carlo"),
+        "seed": ensemble.get("seed", 1),
+        "limit": ensemble.get("limit", 1.0),
+        "correlations": {tuple(row["keys"]): row["value"] for row in table.get("random_correlation", [])},
+    }

@@ -1,0 +1,93 @@
+//! What is worked out of one sample.
+
+use std::path::PathBuf;
+
+use enmm::model::case::EnsembleOutput;
+use enmm_io::LoadedCase;
+use enmm_sample::Row;
+use enmm_stability::limit_analysis::{Collapse, Factor};
+use enmm_stability::strength_reduction::{End, MechanismOptions};
+use serde_json::{Value, json};
+
+use super::SearchOptions;
+use crate::fos::{FosError, FosOptions, Found, end_name, remedy, search};
+
+/// Words of the warning that a factor is above the bound (`stability/src/strength_reduction/doubt.rs`).
+const DOUBT: &str = "above what limit analysis";
+
+/// Names of the outputs of a sample, in their order; the first decides whether it fails.
+pub fn columns(output: EnsembleOutput) -> &'static [&'static str] {
+    match output {
+        EnsembleOutput::FactorOfSafety => {
+            &["factor_of_safety", "stable", "unstable", "status", "failing_blocks", "failing_area", "doubt"]
+        }
+        EnsembleOutput::LevelTops => &["level_tops", "status"],
+        EnsembleOutput::Associated => &["associated", "status"],
+    }
+}
+
+/// Works out one sample on this thread: `sample` is the case with its values. None when the search was interrupted.
+pub fn answer(sample: &LoadedCase, options: &SearchOptions) -> Option<Row> {
+    let output = sample.case.ensemble.output;
+    let found = match output {
+        EnsembleOutput::FactorOfSafety => factor(sample, options)?,
+        EnsembleOutput::LevelTops => bound(sample, |bound| &bound.level_tops),
+        EnsembleOutput::Associated => bound(sample, |bound| &bound.associated),
+    };
+    let names = columns(output).iter().map(|name| (*name).to_owned());
+    Some(match found {
+        Ok(values) => Row { outputs: names.zip(values).collect(), message: String::new() },
+        Err(message) => Row { outputs: Vec::new(), message },
+    })
+}
+
+type Values = Result<Vec<Value>, String>;
+
+fn bound(sample: &LoadedCase, of: fn(&enmm_stability::limit_analysis::Bound) -> &Collapse) -> Values {
+    let bound = crate::bound(sample).map_err(|error| error.to_string())?;
+    let (limit, end) = match of(&bound).factor {
+        Factor::Found(factor) => (factor, "found"),
+        Factor::AtLeast(least) => (least, "at_least"),
+        Factor::AtMost(most) => (most, "at_most"),
+    };
+    Ok(vec![json!(limit), json!(end)])
+}
+
+fn factor(sample: &LoadedCase, options: &SearchOptions) -> Option<Values> {
+    let whole = FosOptions::into_directory(PathBuf::new());
+    let options = FosOptions {
+        low: options.low,
+        high: options.high,
+        tolerance: options.tolerance.unwrap_or(whole.tolerance),
+        mechanisms: MechanismOptions { least_area: options.least_area.unwrap_or(0.0), count: 1 },
+        threads: Some(1),
+        ..whole
+    };
+    match search(sample, &options, &mut |_, _| {}) {
+        Ok(found) => Some(values(&found)),
+        Err(FosError::Interrupted) => None,
+        Err(error) => Some(Err(error.to_string())),
+    }
+}
+
+/// Factor and what fails. A factor beyond the search is its limit, with the status that says so.
+fn values(found: &Found) -> Values {
+    let main = found.main();
+    let status = end_name(&main.end);
+    let factor = main.factor().or(main.at_least()).or(main.high);
+    let Some(factor) = factor.filter(|_| !matches!(main.end, End::Failed(_) | End::Interrupted)) else {
+        let remedy = remedy(main).unwrap_or_default();
+        return Err(format!("the search for the factor of safety ended {status}: {remedy}"));
+    };
+    let failing = main.first_unstable();
+    let doubt = main.warnings.iter().find(|warning| warning.contains(DOUBT));
+    Ok(vec![
+        json!(factor),
+        json!(main.low),
+        json!(main.high),
+        json!(status),
+        json!(failing.map_or(0, |trial| trial.failing.len())),
+        json!(failing.map_or(0.0, |trial| trial.failing_area())),
+        json!(doubt.map_or("", String::as_str)),
+    ])
+}
