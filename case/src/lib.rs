@@ -732,7 +732,7 @@ pub struct Solver {
     pub contact_stiffness: f64,
     /// Shear over normal contact stiffness.
     pub shear_ratio: f64,
-    /// θ of the contact spring at 0.9 of the critical step: 1 is backward Euler, more adds a dashpot, which a shorter
+    /// θ of the contact spring at the default step: 1 is backward Euler, more adds a dashpot, which a shorter
     /// step keeps.
     pub contact_theta: f64,
     /// Change of a contact force, relative to the largest, below which the open–close iteration has settled.

@@ -20,12 +20,15 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Model, State};
+use crate::state::{Drive, Events, Fixity, Inputs, Model, Port, State, Water};
 
 use locator::Locator;
 
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
+
+/// `dt_safety` of the step for which θ is stated.
+const THETA_SAFETY: f64 = 0.9;
 
 /// A model as built: what is fixed, the state at its start, and what the build has to tell.
 #[derive(Debug, Clone)]
@@ -117,9 +120,7 @@ fn model(
     let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
-    let faces = ports::Faces { boundary: &boundary, tolerance: positions.tolerance };
-    let loads = loads(case, &positions, &faces)?;
-    let (ports, water) = (ports::ports(case, &positions, &faces)?, ports::water(case, &faces)?);
+    let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
     let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
@@ -146,6 +147,7 @@ fn model(
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
         dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
+        theta_step: step_below(THETA_SAFETY * shortest_critical_dt(&covers, &rocks), case),
         critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
         mass_scaling: case.solver.mass_scaling,
@@ -167,6 +169,16 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))
+}
+
+/// Loads, ports and water, which act on faces of the rock.
+fn on_faces(
+    case: &Case,
+    positions: &Locator,
+    boundary: &Boundary,
+) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
+    let faces = ports::Faces { boundary, tolerance: positions.tolerance };
+    Ok((loads(case, positions, &faces)?, ports::ports(case, positions, &faces)?, ports::water(case, &faces)?))
 }
 
 /// Shortest stable step (s) of all rocks.
@@ -191,7 +203,12 @@ fn internal_step(case: &Case, critical: f64) -> f64 {
         case::Integrator::Explicit => solver.dt_safety * critical,
         case::Integrator::Implicit => solver.implicit_step.unwrap_or(implicit::STEPS * solver.dt_safety * critical),
     };
-    let limit = stable.min(solver.dt_max.unwrap_or(f64::INFINITY));
+    step_below(stable.min(solver.dt_max.unwrap_or(f64::INFINITY)), case)
+}
+
+/// The largest integer fraction of a tenth of the communication step that is not above a limit (s).
+fn step_below(limit: f64, case: &Case) -> f64 {
+    let solver = &case.solver;
     let rounded = || if limit == solver.implicit_step.unwrap_or(0.0) { limit } else { two_digits_below(limit) };
     let tenth = solver.communication_step.map_or_else(rounded, |step| step / 10.0);
     tenth / (tenth / limit - 1e-9).ceil().max(1.0)

@@ -118,9 +118,6 @@ pub struct FreeFieldPoint {
     pub stiffness: Vector,
 }
 
-/// Step for which θ is stated, relative to the critical one: the default step.
-const DASHPOT_STEP: f64 = 0.9;
-
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
 #[doc(alias = "slope")]
 #[derive(Debug, Clone)]
@@ -181,8 +178,10 @@ pub struct Model {
     pub dt: f64,
     /// Stability limit (s).
     pub critical_dt: f64,
-    /// θ of the contact springs in a step of 0.9 of the critical one; bolts take it as it is.
+    /// θ of the contact springs in a step of `theta_step`; bolts take it as it is.
     pub theta: f64,
+    /// The default step of the mesh (s), from which a case may choose a shorter one.
+    pub theta_step: f64,
     /// How many times lighter free blocks are as rigid bodies in explicit static stages.
     pub mass_scaling: f64,
     /// Relative change of force at which the open–close iteration has settled.
@@ -203,7 +202,7 @@ impl Model {
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not
     /// weaken (Eq. 15a).
     pub fn theta_in(&self, dt: f64) -> f64 {
-        1.0 + (self.theta - 1.0) * DASHPOT_STEP * self.critical_dt / dt
+        1.0 + (self.theta - 1.0) * self.theta_step / dt
     }
 
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
