@@ -9,9 +9,13 @@ use crate::repository::{self, Repository};
 const MDBOOK: &str = "0.5.4";
 /// Folders outside the documents that pages link to.
 const LINKED: [&str; 5] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include"];
+/// A run that draws contours.
+const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
 /// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
-const PICTURES: [[&str; 4]; 8] = [
+const PICTURES: [[&str; 4]; 10] = [
     ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
+    [CONTOURS, "road_cut", "stage1_displacement_contours.png", "road_cut_displacement.png"],
+    [CONTOURS, "road_cut", "stage2_mean_stress_contours.png", "road_cut_mean_stress.png"],
     ["fos", "road_cut", "fos.png", "road_cut_fos.png"],
     ["fos", "road_cut", "failure.png", "road_cut_failure.png"],
     ["run", "toppling", "stage1_joints.png", "toppling_joints.png"],
@@ -66,14 +70,13 @@ pub fn write_reference(repository: &Repository) -> Result<(), String> {
 /// When a case does not run or a picture is missing.
 pub fn write_pictures(repository: &Repository) -> Result<(), String> {
     let results = repository.target.join("picture-results");
-    let folder = |command: &str, case: &str| results.join(format!("{command}_{case}"));
-    let mut done: Vec<PathBuf> = Vec::new();
-    for [command, case, picture, shown] in PICTURES {
-        let from = folder(command, case);
-        if !done.contains(&from) {
+    for (k, [command, case, picture, shown]) in PICTURES.into_iter().enumerate() {
+        let first = PICTURES.iter().position(|other| other[..2] == [command, case]).unwrap_or(k);
+        let from = results.join(format!("{case}_{first}"));
+        if first == k {
             let mut run = repository.command(repository.enmm());
-            repository::run(run.arg(command).arg(format!("examples/cases/{case}.toml")).arg("-o").arg(&from))?;
-            done.push(from.clone());
+            run.args(command.split(' ')).arg(format!("examples/cases/{case}.toml"));
+            repository::run(run.arg("-o").arg(&from))?;
         }
         let bytes = fs::read(from.join(picture)).map_err(|error| format!("{}: {error}", from.display()))?;
         write(&repository.root.join("docs/book/pictures").join(shown), &bytes)?;

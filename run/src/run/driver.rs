@@ -204,7 +204,8 @@ impl<'a> Driver<'a> {
         self.progress.penetration_max = 0.0;
         let (state, pictures) = (self.simulation.state(), &self.simulation.case().output.pictures);
         self.progress.started.clear();
-        if pictures.include(PictureKind::Displacement) && state.stage_displacement.is_empty() {
+        let since = [PictureKind::Displacement, PictureKind::DisplacementContours];
+        if since.into_iter().any(|kind| pictures.include(kind)) && state.stage_displacement.is_empty() {
             self.progress.started.clone_from(&state.displacement);
         }
         self.note_stage(None, "")
