@@ -3,19 +3,37 @@
 
 use std::path::Path;
 
+use enmm::model::case::Case;
 use enmm_io::load_case;
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
-/// The plane slide of the examples without water and bolts, and with less strength than it needs: the closed form of
-/// Hoek and Bray, F = (cA + W·cos ψ·tan φ)/(W·sin ψ), for H = 30 m, ψ = 35°, ψf = 60° and a crack of 7 m.
-#[test]
-fn a_slope_that_slides_in_its_static_stage_has_the_factor_of_its_slide() {
+/// The plane slide of the examples without water, and with less strength than it needs.
+fn weak_slide([friction_deg, cohesion]: [f64; 2]) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/plane_slide.toml");
     let mut case = load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
-    let (friction_deg, cohesion) = (28.0f64, 2e3);
     let plane = case.joint_laws.get_mut("plane").expect("the law of the plane");
     (plane.friction_deg, plane.cohesion) = (friction_deg, cohesion);
     case.water = None;
+    case
+}
+
+/// Bolts that a second static stage installs tie the wedge that has slid in the first one: its slip did not count any
+/// more.
+#[test]
+fn a_slide_before_the_bolts_are_installed_is_a_failure() {
+    let case = weak_slide([28.0, 2e3]);
+    assert!(case.stages.len() == 2 && !case.stages[1].install.is_empty());
+    let found = factor_of_safety(&case, &ReductionOptions::default(), &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+    assert!(found.rest_factor > 1.0, "{}", found.rest_factor);
+    assert!(found.warnings.iter().any(|warning| warning.contains("a failure that other rock stopped")));
+}
+
+/// The closed form of Hoek and Bray, F = (cA + W·cos ψ·tan φ)/(W·sin ψ), for H = 30 m, ψ = 35°, ψf = 60° and a crack of
+/// 7 m.
+#[test]
+fn a_slope_that_slides_in_its_static_stage_has_the_factor_of_its_slide() {
+    let (friction_deg, cohesion) = (28.0f64, 2e3);
+    let mut case = weak_slide([friction_deg, cohesion]);
     case.bolts.clear();
     case.stages.truncate(1);
     let found = factor_of_safety(&case, &ReductionOptions::default(), &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));

@@ -140,6 +140,7 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
     let mut simulation = Simulation::new(case.clone())?;
     let drive = simulation.drive();
     (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
+    let mut slip = 0.0_f64;
     while simulation.stage().kind == StageKind::Static {
         let outcome = simulation.run_stage_with(REST_STEPS, interrupt);
         let (time, stage) = (simulation.time(), simulation.stage().name.clone());
@@ -151,9 +152,10 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
             }
             Err(error) => return Ok(Settled::NotAtRest { stage, time, unbalanced: f64::NAN, failure: Some(error) }),
         }
+        // A later stage may install bolts across a joint that has slipped before.
+        slip = slip.max(largest_slip(&simulation, &[]));
         simulation.next_stage()?;
     }
-    let slip = largest_slip(&simulation, &[]);
     let is_caught = !simulation.case().yields() && slip > settling_slip(&simulation);
     let simulation = Box::new(simulation);
     Ok(if is_caught { Settled::Caught(simulation, slip) } else { Settled::AtRest(simulation) })
