@@ -104,7 +104,7 @@ fn a_set_that_misses_the_rock_is_told() {
     };
     let around = "region = [[-5, -5], [15, -5], [15, 15], [-5, 15]]";
     let told = warnings(&set(around));
-    assert!(told.iter().all(|warning| warning.contains("were merged within the snap tolerance")), "{told:?}");
+    assert!(told.iter().all(|warning| warning.contains("merged within the snap tolerance")), "{told:?}");
     let simulation = Simulation::new(loaded(&set(around)).case).expect("builds");
     assert!(!ignored_traces(&simulation.built().noding).is_empty(), "the region reaches beyond the rock");
     let told = warnings(&set("region = [[20, 0], [25, 0], [25, 5], [20, 5]]"));

@@ -30,10 +30,9 @@ pub(super) fn of_geometry(noding: &NodingReport, case: &Case, joints: &Joints) -
     let traces = &joints.traces;
     let mut warnings = Vec::new();
     if noding.merged_vertices > 0 {
-        warnings.push(format!(
-            "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",
-            noding.merged_vertices, noding.tolerance
-        ));
+        let count = noding.merged_vertices;
+        let what = if count == 1 { "trace end or vertex was" } else { "trace ends or vertices were" };
+        warnings.push(format!("{count} {what} merged within the snap tolerance {:.3e} m", noding.tolerance));
     }
     warnings.extend(lost_joints(noding, case, joints));
     if !noding.overlapping_traces.is_empty() {
