@@ -8,6 +8,17 @@ use std::fs;
 use support::{Place, incline, json};
 
 #[test]
+fn stages_that_are_left_out_are_told_once() {
+    let place = Place::with(&incline(0.65, "[[stage]]\nname = \"quake\"\nkind = \"dynamic\"\nduration = 0.1\n"));
+    let answer = place.enmm(&["fos", "case.toml", "--tolerance", "0.1"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let told = format!("{}{}", answer.stderr, answer.stdout);
+    assert_eq!(told.matches("are left out: quake").count(), 1, "{answer:?}");
+    let found = json(&place.path("case/fos/fos.json"));
+    assert!(found["warnings"].to_string().contains("are left out: quake"), "{found}");
+}
+
+#[test]
 fn run_fos_and_bound_of_one_case_leave_a_page_each() {
     let place = Place::with(&incline(0.65, ""));
     let pages = ["case/report.html", "case/fos/report.html", "case/bound/report.html"];
