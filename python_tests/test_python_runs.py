@@ -196,6 +196,8 @@ def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
         assert found.failing_blocks.to_pandas()["x"][0] == pytest.approx(0.683, abs=1e-2)
         assert repr(found).startswith("<enmm.Fos 1.21")
         assert package.Fos(found.directory).record == found.record
+        assert found.report == found.directory / "report.html"
+        assert [picture.name for picture in found.pictures] == ["failure.png", "fos.png"]
     assert package.bound(case)["level_tops"]["factor"] == pytest.approx(exact, rel=1e-6)
     assert package.check(case)["blocks"] == 2
 
@@ -204,6 +206,8 @@ def test_bounds_leave_no_files(package, case, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     assert package.bound(case)["associated"]["factor"] > 0.0
     assert list(tmp_path.iterdir()) == []
+    package.bound(case, tmp_path / "kept")
+    assert [path.name for path in (tmp_path / "kept").iterdir()] == ["report.html"]
 
 
 def test_a_search_without_an_end_says_so(package, case):

@@ -10,6 +10,7 @@ import urllib.error
 import urllib.request
 
 import browser
+import meshio
 import pytest
 from conftest import from_environment
 from PIL import Image
@@ -215,6 +216,38 @@ def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
     assert pixel(1.5, 1.3) == (240, 197, 102)
     assert base != air and max(base) - min(base) < 30
     quiet(report)
+
+
+def test_bolts_supports_and_water_are_drawn(enmm, page, cases, tmp_path):
+    answer = enmm("run", cases / "plane_slide.toml", "-o", tmp_path / "out", "--quiet", "--set", "output.pictures=false")
+    assert answer.returncode == 0, answer.stderr
+    page.open((tmp_path / "out" / "report.html").as_uri())
+    page.painted()
+    last = {part: meshio.read(max((tmp_path / "out" / "frames").glob(f"{part}_*.vtu"))) for part in ("bolts", "water")}
+    (forces,) = last["bolts"].cell_data["force"]
+    at_end = "enmm.film.frames.at(-1)"
+    found = page.run(f"Array.from({at_end}.bolts.force)")
+    assert len(found) == 4 and all(close(a, b) for a, b in zip(found, forces))
+    assert page.run("enmm.film.head.bolts.map(({name}) => name)") == [f"row_{k}" for k in (1, 2, 3, 4)]
+    # Held sides and base: triangles and rollers, nothing that absorbs waves.
+    assert set(page.run(f"Array.from({at_end}.supports.sign)")) <= {1, 2, 3}
+    assert page.run(f"{at_end}.supports.sign.length") > 20
+    # The greatest pressure is that of the frame for ParaView.
+    pressure = page.run(f"drawPressure(enmm.slope, {at_end}, enmm.theme)")
+    assert pressure == pytest.approx(last["water"].point_data["water_pressure"].max(), rel=1e-3)
+    places = [(0.7 * head + 0.3 * end)[:2].tolist() for head, end in last["bolts"].points.reshape(-1, 2, 3)]
+
+    def drawn() -> list[bool]:
+        """Whether each bolt has its colour, #be125a, but for smoothing."""
+        picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+        pixels = [picture.getpixel(tuple(round(part) for part in place(page, x, y))) for x, y in places]
+        return [max(abs(a - b) for a, b in zip(pixel, (190, 18, 90))) < 60 for pixel in pixels]
+
+    assert all(drawn())
+    page.run("document.getElementById('structures').click()")
+    page.painted()
+    assert not any(drawn())
+    quiet(page)
 
 
 def test_a_hostile_title_stays_text(enmm, page, tmp_path, short_case):

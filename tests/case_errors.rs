@@ -67,6 +67,23 @@ fn wrong_type_says_expected_and_found() {
     assert_refused("[5.0, 0.0],", "[5.0],", "LINE: joint[1].points[0]: has 1 values, must have 2; write `[1.0, 1.0]`");
 }
 
+/// A key that may be of two types names both, and the words that a list may have.
+#[test]
+fn wrong_type_names_all_types_and_words() {
+    let kinds = "model, deformed, history, displacement, joints, joint_stress, stress, velocity, covers, \
+                 displacement_contours, mean_stress_contours";
+    for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
+        assert_refused(
+            "frame_interval = 0.5",
+            &format!("pictures = {value}"),
+            &format!(
+                "LINE: output.pictures: is {shown}, must be true or false, or an array of some of the strings {kinds}; \
+                 write `pictures = true`"
+            ),
+        );
+    }
+}
+
 /// The remedy has the user's own value where it leaves no doubt.
 #[test]
 fn wrong_type_is_quoted_back_in_the_right_one() {

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use enmm::model::Simulation;
+use enmm::model::assemble::ignored_traces;
 use enmm::model::case::Solver;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
@@ -93,6 +94,21 @@ fn ignored_traces_are_named_with_their_places() {
     assert!(told[0].contains("joint[1] from (20.000000, 1.000000) to (20.000000, 2.500000) m"), "{told:?}");
     assert!(told[0].contains("joint[5]") && !told[0].contains("joint[6]"), "{told:?}");
     assert!(told[0].ends_with("and 2 more"), "{told:?}");
+}
+
+/// Some traces of a set always lie beside the rock: that is no news. A set of which all do is.
+#[test]
+fn a_set_that_misses_the_rock_is_told() {
+    let set = |keys: &str| {
+        CASE.replace("[[fix]]", &format!("[[joint_set]]\nangle_deg = 20\nspacing = 1.0\nseed = 1\n{keys}\n[[fix]]"))
+    };
+    let around = "region = [[-5, -5], [15, -5], [15, 15], [-5, 15]]";
+    let told = warnings(&set(around));
+    assert!(told.iter().all(|warning| warning.contains("merged within the snap tolerance")), "{told:?}");
+    let simulation = Simulation::new(loaded(&set(around)).case).expect("builds");
+    assert!(!ignored_traces(&simulation.built().noding).is_empty(), "the region reaches beyond the rock");
+    let told = warnings(&set("region = [[20, 0], [25, 0], [25, 5], [20, 5]]"));
+    assert!(told.iter().any(|warning| warning.starts_with("joint_set[0]: none of its ")), "{told:?}");
 }
 
 #[test]

@@ -200,6 +200,12 @@ fn wrapped(text: &str) -> String {
 /// Which values a key takes: those of its schema, or what the program says of values far outside.
 fn range(schema: &Schema, property: &Json, refusals: &[String]) -> String {
     let kind = schema.resolve(property);
+    if let Some(kinds) = kind["anyOf"].as_array() {
+        return kinds.iter().map(|kind| range(schema, kind, refusals)).collect::<Vec<_>>().join(", ");
+    }
+    if kind["type"] == "array" && schema.resolve(&kind["items"])["oneOf"].is_array() {
+        return format!("a list of {}", range(schema, &kind["items"], refusals));
+    }
     if let Some(words) = kind["oneOf"].as_array() {
         let words: Vec<String> =
             words.iter().filter_map(|word| Some(format!("`{}`", word["const"].as_str()?))).collect();
@@ -251,6 +257,26 @@ fn heading(path: &str) -> String {
         Some("stage[].law" | "stage[].switch_law") => format!("`{} = [{{ … }}]` of a stage", &path[8..path.len() - 2]),
         Some(name) => format!("`[[{name}]]`"),
         None => format!("`[{path}]`"),
+    }
+}
+
+/// The number behind the first of some words, such as 30 in `at most 30; default 0`.
+fn number_behind(text: &str, words: &[&str]) -> Option<f64> {
+    let behind = words.iter().find_map(|word| Some(text.split_once(word)?.1))?;
+    behind.split([' ', ';', ',', ':']).next()?.trim_end_matches('.').parse().ok()
+}
+
+/// Least and greatest value that a text names, as `at least 0 and at most 90`, `above 0` or `1 to 100,`.
+fn ends(text: &str) -> [Option<f64>; 2] {
+    let words: Vec<&str> = text.split(' ').collect();
+    let span = words.windows(3).find_map(|three| {
+        let high = three[2].strip_suffix([',', ';', ':', '.'])?;
+        (three[1] == "to").then_some([three[0].parse().ok()?, high.parse().ok()?])
+    });
+    match span {
+        Some(ends) => ends.map(Some),
+        None => [&["at least ", "above ", "greater than "][..], &["at most ", "less than ", "below "]]
+            .map(|words| number_behind(text, words)),
     }
 }
 
@@ -315,4 +341,21 @@ fn cases_of_the_key_reference_are_valid() {
     let unused: Vec<&String> =
         schema["properties"].as_object().expect("keys").keys().filter(|key| !tables.contains_key(*key)).collect();
     assert!(unused.is_empty(), "{unused:?}");
+}
+
+/// What the sentence of a key says of its limits, against what the program says of values outside them.
+#[test]
+fn limits_in_the_sentences_of_keys_are_those_of_the_checks() {
+    let (page, _) = reference();
+    let mut compared = 0;
+    for row in page.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let (said, checked) = (ends(cells[1]), ends(cells[4]));
+        for (said, checked) in said.into_iter().zip(checked) {
+            let Some(said) = said else { continue };
+            assert_eq!(checked, Some(said), "the sentence of a key and its check differ: {row}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "only {compared} limits were found");
 }

@@ -129,6 +129,16 @@ fn the_last_static_stage_counts() {
     assert!(found.warnings.iter().any(|warning| warning.contains("after")), "{:?}", found.warnings);
 }
 
+/// A base moves in dynamic stages only, which are left out: the factor is that of the slope at rest.
+#[test]
+fn a_motion_of_the_base_is_left_out_with_a_warning() {
+    let shaken = jointed(0.9, 1.0, "[[base_motion]]\ntable = [[0, 0], [1, 1]]\n")
+        + "[[stage]]\nname = \"shaken\"\nkind = \"dynamic\"\nduration = 1.0\n";
+    let [still, shaken] = [jointed(0.9, 1.0, ""), shaken].map(|text| of_text(&text).expect("a bound"));
+    assert_eq!(shaken.associated.factor, still.associated.factor);
+    assert!(shaken.warnings.iter().any(|warning| warning.contains("base motion is left out")), "{:?}", shaken.warnings);
+}
+
 #[test]
 fn what_cannot_be_treated_is_refused_by_its_key() {
     let plain = jointed(0.9, 1.0, "");
@@ -139,11 +149,6 @@ fn what_cannot_be_treated_is_refused_by_its_key() {
             "joint_law.joint.kind",
         ),
         (jointed(0.9, 1.0, "[[quiet]]\nedge = [[0, -10], [0, 0]]\n"), "quiet[0]"),
-        (
-            jointed(0.9, 1.0, "[[base_motion]]\ntable = [[0, 0], [1, 1]]\n")
-                + "[[stage]]\nname = \"shaken\"\nkind = \"dynamic\"\nduration = 1.0\n",
-            "base_motion[0]",
-        ),
         (
             jointed(0.9, 1.0, "[[load]]\nkind = \"body\"\nacceleration = [0.1, 0]\ntable = [[0, 0], [1, 1]]\n"),
             "load[0].table",

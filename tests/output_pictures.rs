@@ -10,8 +10,9 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, Polygons};
 use enmm_picture::{
-    ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_picture, history_picture,
-    joint_stress_pictures, joints_picture, model_picture, stage_displacement_picture, stress_picture, velocity_picture,
+    ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
+    displacement_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,
+    stage_displacement_picture, stress_picture, velocity_picture,
 };
 use output_sample::{Sample, profile, sample};
 
@@ -59,6 +60,8 @@ fn check_stage(slope: &Sample, snapshot: &Snapshot, prefix: &str) {
         ("displacement", stage_displacement_picture(&stage, &snapshot.displacement)),
         ("velocity", velocity_picture(&stage)),
         ("stress", stress_picture(&stage)),
+        ("displacement_contours", displacement_contours(&stage, &snapshot.displacement)),
+        ("mean_stress_contours", mean_stress_contours(&stage, &slope.reference.elements.points)),
         ("joints", joints_picture(&stage, &slope.joints())),
         ("normal_stress", normal),
         ("shear_stress", shear),

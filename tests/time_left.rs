@@ -1,5 +1,4 @@
 //! The simulated time that a run expects to need is right within a factor of 1.5 after the first tenth of its steps.
-//! A static stage without a ramp of gravity gives no hint that early: the beam alone is expected five times too long.
 
 use std::path::Path;
 
@@ -32,7 +31,8 @@ fn ratio_after_a_tenth(case: &str) -> f64 {
 
 #[test]
 fn the_time_left_is_right_within_half_after_a_tenth() {
-    for case in ["block_on_incline", "coupled_slope", "goodman_bray", "masonry_wall", "plane_slide", "shaken_slope"] {
+    let ramped = ["block_on_incline", "coupled_slope", "goodman_bray", "masonry_wall", "plane_slide", "shaken_slope"];
+    for case in ramped.into_iter().chain(["simply_supported_beam"]) {
         let ratio = ratio_after_a_tenth(&format!("{case}.toml"));
         assert!((1.0 / 1.5..1.5).contains(&ratio), "{case}: {ratio}");
     }

@@ -60,8 +60,14 @@ fn a_dip_has_a_side_and_an_angle_none() {
         ("dip_deg = 40\ndip_direction_deg = 90", "joint_set[0].dip_direction_deg: is 90, but the case does not say"),
         ("dip_deg = 400", "case.toml:7: joint_set[0].dip_deg: is 400 degrees, must be at least -360 and at most 360"),
         ("angle_deg = 1\nangle_sd_deg = 3\ndip_sd_deg = 2", "joint_set[0].angle_sd_deg: is 3, and `dip_sd_deg`"),
+        ("angle_deg = 1\nangle_sd_deg = 31", "angle_sd_deg: is 31 degrees, must be at least 0 and at most 30"),
+        ("angle_deg = 1\nspacing_sd = 3.1", "joint_set[0].spacing_sd: is 3.1 m, must be at most the mean, 3 m"),
     ] {
         assert!(error(&set(keys)).contains(message), "{}", error(&set(keys)));
+    }
+    // What the checks take can be built.
+    for keys in ["angle_deg = 1\nangle_sd_deg = 30", "angle_deg = 1\nspacing_sd = 3.0"] {
+        Simulation::new(loaded(&set(keys)).case).unwrap_or_else(|error| panic!("{keys}: {error}"));
     }
     assert_eq!(serde_json::to_string(&Side::Left).unwrap(), "\"left\"");
 }

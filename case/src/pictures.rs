@@ -28,6 +28,10 @@ pub enum PictureKind {
     Velocity,
     /// `covers.png`: physical covers of the stars of the mesh.
     Covers,
+    /// `stage1_displacement_contours.png`: contours of the displacement since the start of the stage.
+    DisplacementContours,
+    /// `stage1_mean_stress_contours.png`: contours of the mean stress in the plane, smoothed within blocks.
+    MeanStressContours,
 }
 
 /// Which pictures to draw: `true` for the usual ones, `false` for none, or a list of kinds.

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm_report::PAGE;
 use enmm_run::{BoundFailure, bound_record, write_bound_page};
 use enmm_stability::limit_analysis::{Bound, Collapse};
 
 use crate::case::CaseArguments;
-use crate::run::directory_of;
+use crate::run::directory_for;
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Arguments of `enmm bound`.
@@ -16,7 +17,7 @@ use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,
-    /// Directory for report.html; default: the name of the case file, here.
+    /// Directory for report.html; default: NAME/bound, where NAME is that of the case file.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object.
@@ -32,9 +33,12 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
     match found.and_then(|loaded| enmm_run::bound(&loaded).map(|bound| (loaded, bound))) {
         Ok((loaded, bound)) => {
             print_line(&if json { bound_record(&bound).to_string() } else { text(&bound) });
-            let directory = output.clone().unwrap_or_else(|| directory_of(&case.path));
+            let directory = output.clone().unwrap_or_else(|| directory_for(&case.path, "bound"));
             if let Err(error) = write_bound_page(&directory, &loaded, &bound) {
                 return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
+            }
+            if !json {
+                print_line(&format!("{:<21} {}", "page to open", directory.join(PAGE).display()));
             }
         }
         Err(error) => {

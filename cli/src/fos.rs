@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;
+use enmm_report::PAGE;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::{FosError, FosOptions};
 use enmm_stability::left_out_stages;
@@ -15,7 +16,7 @@ use enmm_stability::strength_reduction::{
 
 use crate::case::CaseArguments;
 use crate::progress::Search;
-use crate::run::{INTERRUPT, directory_of, interrupt};
+use crate::run::{INTERRUPT, directory_for, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
@@ -23,7 +24,7 @@ use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line}
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,
-    /// Directory for the results; default: the name of the case file, here.
+    /// Directory for the results; default: NAME/fos, where NAME is that of the case file.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Least F that is tried, and the first.
@@ -57,7 +58,7 @@ const HEAD: &str = "trial           F  verdict   by            time (s)  displac
 /// Finds the factor of safety of a case.
 pub fn fos(arguments: &Arguments) -> ExitCode {
     let options = FosOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
+        directory: arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "fos")),
         low: arguments.low,
         high: arguments.high,
         tolerance: arguments.tolerance,
@@ -75,7 +76,8 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
     }
-    if let Some(warning) = left_out_stages(&loaded.case).filter(|_| !arguments.json) {
+    let left_out = left_out_stages(&loaded.case).filter(|_| !arguments.json);
+    if let Some(warning) = &left_out {
         tell_line(&format!("warning: {warning}"));
     }
     let search = Search::new(arguments.json);
@@ -92,7 +94,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     let found = enmm_run::fos(&loaded, &options, &mut hear);
     search.close();
     match found {
-        Ok(found) => report(arguments, &found, &options.directory),
+        Ok(found) => report(arguments, &found, &options.directory, left_out.as_ref()),
         Err(error @ FosError::NoRest(_)) => {
             warn(&loaded);
             refuse(arguments, &error, FAILED)
@@ -134,15 +136,18 @@ fn row(t: &Trial, progress: Progress) -> String {
     )
 }
 
-fn report(arguments: &Arguments, found: &Found, directory: &Path) -> ExitCode {
+/// Prints what was found, without the warning that was `told` before the first trial.
+fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&String>) -> ExitCode {
     if arguments.json {
         match std::fs::read_to_string(directory.join("fos.json")) {
             Ok(text) => print_line(text.trim_end()),
             Err(error) => return refuse(arguments, &format!("cannot read fos.json again ({error})"), FAILED),
         }
     } else {
-        let results = format!("results              {}", directory.display());
-        print_line(&found.searches.iter().map(|search| result(search, found)).chain([results]).collect::<String>());
+        let results = format!("{:<20} {}\n", "results", directory.display());
+        let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
+        let searches = found.searches.iter().map(|search| result(search, found, told));
+        print_line(&searches.chain([results, page]).collect::<String>());
     }
     let main = found.main();
     let message = remedy(main).unwrap_or_default();
@@ -160,7 +165,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path) -> ExitCode {
 }
 
 /// What a search found, as lines of a name and a text.
-fn result(reduction: &Reduction, found: &Found) -> String {
+fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String {
     let mut lines = vec![String::new()];
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));
     if let (Some(factor), Some(low), Some(high)) = (reduction.factor(), reduction.low, reduction.high) {
@@ -181,7 +186,8 @@ fn result(reduction: &Reduction, found: &Found) -> String {
         let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.position.x, b.position.y);
         tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
-    lines.extend(reduction.warnings.iter().map(|warning| format!("warning: {warning}")));
+    let warnings = reduction.warnings.iter().filter(|&warning| told != Some(warning));
+    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"
 }
 

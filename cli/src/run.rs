@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
+use enmm_report::PAGE;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
@@ -76,6 +77,11 @@ pub fn directory_of(case: &Path) -> PathBuf {
     }
 }
 
+/// Where a command puts its results beside those of a run, such as `plane_slide/fos`: no page replaces another.
+pub fn directory_for(case: &Path, command: &str) -> PathBuf {
+    directory_of(case).join(command)
+}
+
 fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
     let checkpoint = directory.join("checkpoint.enmm");
     if !quiet {
@@ -102,9 +108,7 @@ fn table(summary: &Summary, directory: &Path) -> String {
     let mut lines = vec![String::new()];
     let mut row = |name: &str, value: String| lines.push(format!("{name:<20} {value}"));
     row("results", directory.display().to_string());
-    if directory.join("deformed.png").exists() && summary.status != RunStatus::Interrupted {
-        row("picture to open", directory.join("deformed.png").display().to_string());
-    }
+    row("page to open", directory.join(PAGE).display().to_string());
     row("simulated time", format!("{:.6} s in {} steps", summary.time, summary.steps));
     for stage in &summary.stages {
         let end = match stage.converged {

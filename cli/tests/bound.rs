@@ -18,8 +18,9 @@ fn a_block_on_an_incline_is_bounded_by_its_tangents() {
         assert!(found[kind]["factor"].as_f64().is_some_and(|factor| (factor - 1.3).abs() < 1e-4), "{found}");
     }
     assert_eq!(found["level_tops"]["mechanism"].as_array().map(Vec::len), Some(1));
-    assert_eq!(place.names(), ["case", "case.toml"], "the page goes to the name of the case");
-    let files = std::fs::read_dir(place.path("case")).expect("a folder").map(|file| file.expect("a file").file_name());
+    assert_eq!(place.names(), ["case", "case.toml"], "the page goes to the folder of the case");
+    let files =
+        std::fs::read_dir(place.path("case/bound")).expect("a folder").map(|file| file.expect("a file").file_name());
     assert_eq!(files.collect::<Vec<_>>(), ["report.html"], "the page holds its film");
 }
 

@@ -7,6 +7,35 @@ use std::fs;
 
 use support::{Place, incline, json};
 
+#[test]
+fn stages_that_are_left_out_are_told_once() {
+    let place = Place::with(&incline(0.65, "[[stage]]\nname = \"quake\"\nkind = \"dynamic\"\nduration = 0.1\n"));
+    let answer = place.enmm(&["fos", "case.toml", "--tolerance", "0.1"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let told = format!("{}{}", answer.stderr, answer.stdout);
+    assert_eq!(told.matches("are left out: quake").count(), 1, "{answer:?}");
+    let found = json(&place.path("case/fos/fos.json"));
+    assert!(found["warnings"].to_string().contains("are left out: quake"), "{found}");
+}
+
+#[test]
+fn run_fos_and_bound_of_one_case_leave_a_page_each() {
+    let place = Place::with(&incline(0.65, ""));
+    let pages = ["case/report.html", "case/fos/report.html", "case/bound/report.html"];
+    let read = |page: &str| fs::read(place.path(page)).expect("a page");
+    let mut first = Vec::new();
+    for (command, page) in ["run", "fos", "bound"].into_iter().zip(pages) {
+        let answer = place.enmm(&[command, "case.toml"]);
+        assert_eq!(answer.status, Some(0), "{answer:?}");
+        assert!(answer.stdout.contains(page), "{answer:?}");
+        first.push(read(page));
+    }
+    for (page, first) in pages.into_iter().zip(first) {
+        assert!(read(page) == first, "{page} was replaced");
+    }
+    assert_eq!(place.names(), ["case", "case.toml"], "one folder for a case");
+}
+
 /// FoS = tan φ/tan a = 2·tan φ; the bracket of 1 % about it, and 0.5 % for the judge.
 #[test]
 fn a_block_on_an_incline_has_the_factor_of_its_tangents() {

@@ -14,7 +14,7 @@ fn every_promised_file_is_there_and_whole() {
     let place = Place::with(&case(0.1));
     let answer = place.enmm(&["run", "case.toml"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
-    assert!(answer.stdout.contains("deformed.png"), "{answer:?}");
+    assert!(answer.stdout.contains("page to open         case/report.html"), "{answer:?}");
     assert_eq!(place.names(), ["case", "case.toml"], "results go to the name of the case");
     let names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm", "report.html", "film.bin"];
     for name in names.into_iter().chain(["model.png", "deformed.png", "history.png", "frames/elements_0000.vtu"]) {

@@ -32,11 +32,11 @@ const CROSSES: [f64; 2] = [34.0, 15.0];
 /// Arms and arrows shorter than this (px) are left out.
 const SHORTEST: f64 = 2.5;
 /// Share of the largest value below which three quarters of the slope must stay for a logarithmic scale.
-const FEW: f64 = 0.03;
+pub const FEW: f64 = 0.03;
 /// Decades of a logarithmic scale.
 const DECADES: f64 = 3.0;
 /// Share of the values that lie below the upper end of a scale of stress: corners carry a few that are far larger.
-const MOST: f64 = 0.98;
+pub const MOST: f64 = 0.98;
 
 /// What the pictures of a stage have in common.
 #[derive(Debug, Clone)]
@@ -237,23 +237,28 @@ fn linear_ticks(largest: f64) -> Vec<(f64, String)> {
     ticks.values.iter().map(|&value| (value / largest, ticks.label(value))).collect()
 }
 
-/// Ticks of a logarithmic scale that ends at `largest`: 1, 2 and 5 times the powers of ten.
+/// Ticks of a logarithmic scale that ends at `largest`.
 fn decade_ticks(largest: f64) -> Vec<(f64, String)> {
+    let top = largest.log10();
+    decades(largest).map(|value| (1.0 + (value.log10() - top) / DECADES, number_text(value))).collect()
+}
+
+/// 1, 2 and 5 times the powers of ten in the decades below `largest`.
+pub fn decades(largest: f64) -> impl Iterator<Item = f64> {
     let top = largest.log10();
     let powers = (top - DECADES).floor() as i32..=top.floor() as i32;
     let values = powers.flat_map(|k| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(k)));
-    let ticks = values.map(|value| (1.0 + (value.log10() - top) / DECADES, number_text(value)));
-    ticks.filter(|(fraction, _)| (0.0..=1.0).contains(fraction)).collect()
+    values.filter(move |value| (0.0..=1.0).contains(&(1.0 + (value.log10() - top) / DECADES)))
 }
 
 /// Name and size of the first unit whose least value a value reaches.
-fn unit_of(value: f64, units: &[(&'static str, f64, f64)]) -> (&'static str, f64) {
+pub fn unit_of(value: f64, units: &[(&'static str, f64, f64)]) -> (&'static str, f64) {
     let fits = units.iter().find(|(_, _, least)| value >= *least).or(units.last());
     fits.map_or(("", 1.0), |(name, size, _)| (*name, *size))
 }
 
 /// The value that a share of the values does not exceed; 0 without a finite one.
-fn quantile(values: &[f64], share: f64) -> f64 {
+pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut values: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1) as f64;
@@ -294,14 +299,17 @@ impl Principal {
 }
 
 /// A picture of a stage under construction.
-struct Sheet<'a> {
+pub struct Sheet<'a> {
     stage: &'a StageEnd<'a>,
-    svg: Svg,
-    view: View,
+    /// What is drawn so far.
+    pub svg: Svg,
+    /// Where the slope is drawn.
+    pub view: View,
 }
 
 impl<'a> Sheet<'a> {
-    fn new(stage: &'a StageEnd, room: f64, what: &str) -> Self {
+    /// A sheet with its titles, and so much room (px) at the right of the slope.
+    pub fn new(stage: &'a StageEnd, room: f64, what: &str) -> Self {
         let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - room, height: HEIGHT_MAX };
         let view = View::fit(Bounds::of(&stage.snapshot.elements.points), area);
         let mut svg = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES + 5.0 * 25.0);
@@ -316,7 +324,8 @@ impl<'a> Sheet<'a> {
         self.svg.clipped(&view.area, |svg| draw_filled(svg, &snapshot.elements, &view, &colours, step));
     }
 
-    fn draw_outlines(&mut self) {
+    /// Draws the outlines of blocks.
+    pub fn draw_outlines(&mut self) {
         let (snapshot, view) = (self.stage.snapshot, self.view);
         self.svg.clipped(&view.area, |svg| draw_block_outlines(svg, snapshot, &view));
     }
@@ -331,7 +340,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Water, bolts with their tension, and axes.
-    fn decorate(&mut self) {
+    pub fn decorate(&mut self) {
         let (stage, view) = (self.stage, self.view);
         draw_absence(&mut self.svg, &view, &stage.snapshot.elements);
         self.svg.clipped(&view.area, |svg| draw_water(svg, &view, stage.water));
@@ -350,7 +359,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Ends with a length bar and a note.
-    fn close(mut self, note: &str) -> Picture {
+    pub fn close(mut self, note: &str) -> Picture {
         let y = self.view.area.bottom() + BELOW_FRAME + 24.0;
         let x = draw_length(&mut self.svg, &self.view, y);
         self.svg.text([x, y], note, TextStyle::new(LABEL_SIZE));

@@ -4,20 +4,25 @@
 //! corner only what the rigid motion leaves, in whole quanta: mostly zeros, which take no room.
 
 use crate::data::{BlockFrame, Frame, Outline};
-use crate::error::FilmError;
-use crate::number::{Width, push_integer, push_planes, single};
+use crate::error::{FilmError, expect, finite};
+use crate::number::{Width, push_integer, push_planes};
+use crate::structures::push_structures;
 
 /// Largest quantum over the size of the model: a corner is drawn at most half of it away from where it is.
 pub const QUANTUM: f64 = 1.0 / 131_072.0;
 /// Largest quantum over the largest displacement of a corner in the frame.
 const QUANTUM_OF_MOTION: f64 = 1.0 / 512.0;
+/// Bit of the state of an edge on which the water presses.
+const WET: u8 = 4;
 /// Smallest quantum over the size of the model: below, single precision of the reference ends.
 const QUANTUM_LEAST: f64 = 1e-12;
 
 /// Corners and centroids of all blocks as a reader of the film has them.
 #[derive(Debug)]
 pub struct Shape {
-    /// Greater side of the box round all corners (m).
+    /// Middle of the box round all corners (m).
+    origin: [f64; 2],
+    /// Greater side of that box (m).
     size: f64,
     /// Corner behind the last of each block.
     ends: Vec<usize>,
@@ -59,7 +64,7 @@ pub fn outlines(outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
 /// Appends centroids and corners relative to the origin in single precision.
 fn push_places(outlines: &[Outline], origin: [f64; 2], size: f64, bytes: &mut Vec<u8>) -> Shape {
     let near = |place: [f64; 2]| [(place[0] - origin[0]) as f32, (place[1] - origin[1]) as f32];
-    let mut shape = Shape { size, ends: Vec::new(), arms: Vec::new() };
+    let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new() };
     let (mut centroids, mut corners) = (Vec::new(), Vec::new());
     for block in outlines {
         let centroid = near(block.centroid);
@@ -87,27 +92,33 @@ fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]
 }
 
 impl Shape {
-    /// Bytes of a frame.
+    /// Bytes of a frame of a film with so many monitors and bolts; with its supports when they are `wanted`.
     ///
     /// # Errors
     /// A list of the wrong length, or the first number that is not finite, with its block and the time.
-    pub fn frame(&self, frame: &Frame, monitors: usize) -> Result<Vec<u8>, FilmError> {
+    pub fn frame(&self, frame: &Frame, [monitors, bolts]: [usize; 2], wanted: bool) -> Result<Vec<u8>, FilmError> {
         let corners = self.arms.len();
         expect("blocks of a frame", frame.blocks.len(), self.ends.len())?;
         expect("corners of a frame", frame.corners.len(), corners)?;
         expect("edges of a frame", frame.edges.len(), if frame.edges.is_empty() { 0 } else { corners })?;
         expect("monitors of a frame", frame.monitors.len(), monitors)?;
+        expect("bolts of a frame", frame.structures.bolts.len(), bolts)?;
+        let wet = frame.structures.wet;
+        expect("wet edges of a frame", wet.len(), if wet.is_empty() { 0 } else { frame.edges.len() })?;
         finite(frame.time, frame.time, || "the time of a frame".to_owned())?;
         let quantum = self.quantum(frame)?;
         let mut bytes = Vec::with_capacity(32 * frame.blocks.len() + 3 * corners);
         bytes.extend(frame.stage.to_le_bytes());
-        bytes.extend([u8::from(!frame.edges.is_empty()), 0, 0, 0]);
+        bytes.extend([u8::from(!frame.edges.is_empty()), u8::from(wanted), 0, 0]);
         bytes.extend(quantum.to_le_bytes());
         bytes.extend(frame.blocks.iter().map(|block| u8::from(block.removed)));
-        bytes.extend(frame.edges.iter().map(|&state| state as u8));
+        let is_wet = |corner: usize| wet.get(corner).copied().unwrap_or_default();
+        let edges = frame.edges.iter().enumerate();
+        bytes.extend(edges.map(|(corner, &state)| state as u8 | if is_wet(corner) { WET } else { 0 }));
         let motion = push_numbers(frame, &mut bytes)?;
         push_monitors(frame, &mut bytes)?;
         self.push_corners(frame, &motion, quantum, &mut bytes);
+        push_structures(&frame.structures, frame.time, self.origin, wanted, &mut bytes)?;
         Ok(bytes)
     }
 
@@ -185,20 +196,4 @@ fn push_monitors(frame: &Frame, bytes: &mut Vec<u8>) -> Result<(), FilmError> {
         }
     }
     Ok(())
-}
-
-/// A number in single precision.
-///
-/// # Errors
-/// A number that is not finite there, with what it is.
-pub fn finite(value: f64, time: f64, what: impl FnOnce() -> String) -> Result<f32, FilmError> {
-    single(value).ok_or_else(|| FilmError::NotFinite { what: what(), value, time })
-}
-
-/// Whether a list has its length.
-///
-/// # Errors
-/// Both lengths, when it has not.
-pub fn expect(what: &'static str, found: usize, expected: usize) -> Result<(), FilmError> {
-    if found == expected { Ok(()) } else { Err(FilmError::Count { what, found, expected }) }
 }

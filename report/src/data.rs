@@ -23,6 +23,8 @@ pub struct Head {
     pub columns: Vec<Column>,
     /// Monitored points.
     pub monitors: Vec<MonitorPlace>,
+    /// Free lengths of bolts.
+    pub bolts: Vec<BoltPlace>,
     /// Names of the rocks that [`Outline::rock`] counts.
     pub rocks: Vec<String>,
 }
@@ -71,6 +73,15 @@ pub struct MonitorPlace {
     pub name: String,
     /// Reference position (m).
     pub place: [f64; 2],
+}
+
+/// A free length of a bolt.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BoltPlace {
+    /// Name of its bolt; the lengths of a grouted one share it.
+    pub name: String,
+    /// Reference position of both ends (m), the end at the head first.
+    pub ends: [[f64; 2]; 2],
 }
 
 /// A block in the reference configuration.
@@ -132,6 +143,58 @@ pub struct MonitorFrame {
     pub velocity: [f64; 2],
 }
 
+/// What a free length of a bolt does in a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum BoltState {
+    /// It is installed later, or its rock is gone.
+    #[default]
+    Absent,
+    /// It bears, or it is slack.
+    Whole,
+    /// It has yielded.
+    Yielded,
+    /// It has broken.
+    Broken,
+}
+
+/// A free length of a bolt in a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BoltFrame {
+    /// What it does.
+    pub state: BoltState,
+    /// Displacement of both ends (m).
+    pub displacement: [[f64; 2]; 2],
+    /// Tension (N per metre of depth).
+    pub force: f64,
+}
+
+/// A supported point in a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SupportFrame {
+    /// Where (m).
+    pub place: [f64; 2],
+    /// Whether it is held along x and along y.
+    pub axes: [bool; 2],
+    /// Whether it is of a boundary that lets waves out, and not of a fixity.
+    pub absorbs: bool,
+}
+
+/// What acts on the rock in a frame beside its joints.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Structures<'a> {
+    /// All free lengths of bolts, in the order of [`Head::bolts`].
+    pub bolts: &'a [BoltFrame],
+    /// The supports that hold; a film keeps those of the first frame of each stage.
+    pub supports: &'a [SupportFrame],
+    /// Weight of the water (N/m³).
+    pub water_weight: f64,
+    /// Surface of the water (m) from left to right, level beyond both ends; empty without water.
+    pub water_surface: &'a [[f64; 2]],
+    /// Whether the water presses on the edge behind each corner; empty without water and in a film without joint
+    /// states.
+    pub wet: &'a [bool],
+}
+
 /// One instant.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame<'a> {
@@ -147,6 +210,8 @@ pub struct Frame<'a> {
     pub edges: &'a [EdgeState],
     /// All monitored points, in the order of [`Head::monitors`].
     pub monitors: &'a [MonitorFrame],
+    /// Bolts, supports and water.
+    pub structures: Structures<'a>,
 }
 
 /// Information beside the frames, appended as soon as there is some.

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::number::single;
+
 /// Why a film or a page cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
@@ -49,4 +51,20 @@ impl FilmError {
     pub fn at(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         |error| Self::File { path: path.to_owned(), error }
     }
+}
+
+/// A number in single precision.
+///
+/// # Errors
+/// A number that is not finite there, with what it is.
+pub fn finite(value: f64, time: f64, what: impl FnOnce() -> String) -> Result<f32, FilmError> {
+    single(value).ok_or_else(|| FilmError::NotFinite { what: what(), value, time })
+}
+
+/// Whether a list has its length.
+///
+/// # Errors
+/// Both lengths, when it has not.
+pub fn expect(what: &'static str, found: usize, expected: usize) -> Result<(), FilmError> {
+    if found == expected { Ok(()) } else { Err(FilmError::Count { what, found, expected }) }
 }

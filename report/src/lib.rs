@@ -13,12 +13,13 @@ mod error;
 mod number;
 mod page;
 mod serve;
+mod structures;
 mod writer;
 
 pub use block::QUANTUM;
 pub use data::{
-    Axis, BlockFrame, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame, MonitorPlace, Note, Outline,
-    Quantity, Trial, TrialTable,
+    Axis, BlockFrame, BoltFrame, BoltPlace, BoltState, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
+    MonitorPlace, Note, Outline, Quantity, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
 pub use page::{live_page, write_page};

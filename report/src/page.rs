@@ -14,9 +14,10 @@ use crate::writer::temporary_beside;
 const PAGE: &str = include_str!("../viewer/viewer.html");
 const STYLE: &str = include_str!("../viewer/viewer.css");
 /// Scripts in the order in which a page runs them.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 8] = [
     include_str!("../viewer/film.js"),
     include_str!("../viewer/colour.js"),
+    include_str!("../viewer/structures.js"),
     include_str!("../viewer/slope.js"),
     include_str!("../viewer/chart.js"),
     include_str!("../viewer/panel.js"),

@@ -4,10 +4,10 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::block::{self, Shape, expect, finite};
-use crate::chunk::{self, Chunks, Kind, MAGIC};
+use crate::block::{self, Shape};
+use crate::chunk::{self, Chunk, Chunks, Kind, MAGIC};
 use crate::data::{Frame, Head, Note, Outline};
-use crate::error::FilmError;
+use crate::error::{FilmError, expect, finite};
 use crate::number::{Width, push_planes};
 
 /// Rows that are gathered before they are written, unless a frame comes first.
@@ -21,7 +21,10 @@ pub struct FilmWriter {
     shape: Shape,
     columns: Vec<String>,
     monitors: usize,
+    bolts: usize,
     rows: Vec<Vec<f64>>,
+    /// Stage of the last frame.
+    stage: Option<u32>,
 }
 
 impl FilmWriter {
@@ -49,15 +52,16 @@ impl FilmWriter {
         }
         let (_, shape) = checked(head, outlines)?;
         let shortened = temporary_beside(path);
-        keep(path, &shortened, until)?;
+        let stage = keep(path, &shortened, until)?;
         std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
         let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
-        Ok(Self::of(path, file, shape, head))
+        Ok(Self { stage, ..Self::of(path, file, shape, head) })
     }
 
     fn of(path: &Path, file: File, shape: Shape, head: &Head) -> Self {
         let columns = head.columns.iter().map(|column| column.name.clone()).collect();
-        Self { path: path.to_owned(), file, shape, columns, monitors: head.monitors.len(), rows: Vec::new() }
+        let (monitors, bolts) = (head.monitors.len(), head.bolts.len());
+        Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows: Vec::new(), stage: None }
     }
 
     /// Appends a frame, behind the rows that were gathered before.
@@ -65,9 +69,13 @@ impl FilmWriter {
     /// # Errors
     /// A list of the wrong length, a number that is not finite, or what the file system refuses.
     pub fn frame(&mut self, frame: &Frame) -> Result<(), FilmError> {
-        let bytes = self.shape.frame(frame, self.monitors)?;
+        // Supports change with the stage alone.
+        let begins = self.stage != Some(frame.stage);
+        let bytes = self.shape.frame(frame, [self.monitors, self.bolts], begins)?;
         self.flush()?;
-        self.append(Kind::Frame, frame.time, &bytes)
+        self.append(Kind::Frame, frame.time, &bytes)?;
+        self.stage = Some(frame.stage);
+        Ok(())
     }
 
     /// Takes a row of the histories: one number per column, the time (s) first.
@@ -124,6 +132,11 @@ fn checked(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmEr
             finite(value, 0.0, || format!("place of monitor {:?}", monitor.name))?;
         }
     }
+    for bolt in &head.bolts {
+        for value in bolt.ends.into_iter().flatten() {
+            finite(value, 0.0, || format!("ends of bolt {:?}", bolt.name))?;
+        }
+    }
     block::outlines(outlines)
 }
 
@@ -137,17 +150,21 @@ pub fn temporary_beside(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{name}.{}-0.tmp", std::process::id()))
 }
 
-/// Copies the chunks of a film up to a time (s).
-fn keep(from: &Path, to: &Path, until: f64) -> Result<(), FilmError> {
+/// Copies the chunks of a film up to a time (s); returns the stage of its last frame.
+fn keep(from: &Path, to: &Path, until: f64) -> Result<Option<u32>, FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: from.to_owned(), problem: error.to_string() };
     let film = File::open(from).map_err(FilmError::at(from))?;
     let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
     let mut kept = BufWriter::new(File::create(to).map_err(FilmError::at(to))?);
     kept.write_all(&MAGIC).map_err(FilmError::at(to))?;
+    let mut last: Option<Chunk> = None;
     while let Some(chunk) = chunks.next().map_err(no_film)? {
         let begins = matches!(chunk.kind, Kind::Head | Kind::Outlines);
         if begins || chunk.time <= until {
             kept.write_all(&chunk.bytes).map_err(FilmError::at(to))?;
+            if chunk.kind == Kind::Frame {
+                last = Some(chunk);
+            }
         } else if chunk.kind == Kind::Rows {
             let body = chunk.body().map_err(no_film)?;
             let Some((time, rows)) = rows_until(&body, until) else { continue };
@@ -155,7 +172,9 @@ fn keep(from: &Path, to: &Path, until: f64) -> Result<(), FilmError> {
             kept.write_all(&bytes).map_err(FilmError::at(to))?;
         }
     }
-    kept.flush().map_err(FilmError::at(to))
+    kept.flush().map_err(FilmError::at(to))?;
+    let body = last.map(|frame| frame.body()).transpose().map_err(no_film)?;
+    Ok(body.and_then(|body| body.first_chunk().copied()).map(u32::from_le_bytes))
 }
 
 /// The rows up to a time (s) of a body of rows, and the time of the last of them; none when there is no such row.

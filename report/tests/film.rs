@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use enmm_report::{EdgeState, FilmError, FilmWriter, Note, QUANTUM, write_page};
-use support::{Chunk, MONITOR, Moment, Reader, Slope, chunks, head};
+use support::{BOLT, Chunk, MONITOR, Moment, Reader, SURFACE, Slope, chunks, head};
 use tempfile::tempdir;
 
 /// Single precision and five digits (the last byte is left out).
@@ -19,6 +19,27 @@ struct Decoded {
     corners: Vec<[f64; 2]>,
     edges: Vec<u8>,
     monitor: [f32; 4],
+    structures: Structures,
+}
+
+/// Bolts, supports and water of a frame as a reader has them.
+struct Structures {
+    bolt: (u8, Vec<f32>),
+    /// Signs, and places from the origin (m), when they follow.
+    supports: Option<(Vec<u8>, [Vec<f32>; 2])>,
+    water: (f64, [Vec<f32>; 2]),
+}
+
+fn structures(reader: &mut Reader, with_supports: bool) -> Structures {
+    let state = reader.take(1)[0];
+    let bolt = [4, 4, 4, 4, 3].into_iter().flat_map(|width| reader.planes(1, width)).collect();
+    let supports = with_supports.then(|| {
+        let count = reader.u32() as usize;
+        (reader.take(count).to_vec(), [0, 1].map(|_| reader.planes(count, 3)))
+    });
+    let weight = reader.f64();
+    let points = reader.u32() as usize;
+    Structures { bolt: (state, bolt), supports, water: (weight, [0, 1].map(|_| reader.planes(points, 4))) }
 }
 
 /// Arms of all corners about their centroids, from the outlines.
@@ -44,7 +65,7 @@ fn arms(body: &[u8]) -> Vec<(usize, [f64; 2])> {
 
 fn decoded(body: &[u8], arms: &[(usize, [f64; 2])], blocks: usize) -> Decoded {
     let mut reader = Reader(body);
-    reader.take(8);
+    let with_supports = reader.take(8)[5] == 1;
     let quantum = reader.f64();
     reader.take(blocks);
     let edges = reader.take(arms.len()).to_vec();
@@ -52,6 +73,7 @@ fn decoded(body: &[u8], arms: &[(usize, [f64; 2])], blocks: usize) -> Decoded {
         [4, 4, 3, 3, 3, 3, 3, 3, 3].iter().map(|&width| reader.planes(blocks, width)).collect();
     let monitor = std::array::from_fn(|_| reader.f32());
     let rest: [Vec<f64>; 2] = std::array::from_fn(|_| arms.iter().map(|_| reader.integer() as f64 * quantum).collect());
+    let structures = structures(&mut reader, with_supports);
     assert!(reader.0.is_empty());
     let corner = |(k, &(block, [a, b])): (usize, &(usize, [f64; 2]))| {
         let [x, y, turn] = [0, 1, 2].map(|n| f64::from(numbers[n][block]));
@@ -59,7 +81,7 @@ fn decoded(body: &[u8], arms: &[(usize, [f64; 2])], blocks: usize) -> Decoded {
         [x + a * less - b * sine + rest[0][k], y + a * sine + b * less + rest[1][k]]
     };
     let corners = arms.iter().enumerate().map(corner).collect();
-    Decoded { quantum, numbers, corners, edges, monitor }
+    Decoded { quantum, numbers, corners, edges, monitor, structures }
 }
 
 fn compare(found: &Decoded, put: &Moment) {
@@ -77,10 +99,38 @@ fn compare(found: &Decoded, put: &Moment) {
             assert!(error <= wanted.abs() * if n < 2 { FULL } else { SHORT }, "number {n} of block {k}");
         }
     }
-    assert_eq!(found.edges, put.edges.iter().map(|&state| state as u8).collect::<Vec<_>>());
+    let edge = |(&state, &wet): (&EdgeState, &bool)| state as u8 + if wet { 4 } else { 0 };
+    assert_eq!(found.edges, put.edges.iter().zip(&put.wet).map(edge).collect::<Vec<_>>());
     let [x, y] = MONITOR.displacement;
     let [vx, vy] = MONITOR.velocity;
     assert_eq!(found.monitor.map(f64::from), [x, y, vx, vy]);
+}
+
+/// `origin` (m) is that of the film.
+fn compare_structures(found: &Structures, put: &Moment, origin: [f64; 2]) {
+    let near = |found: f32, wanted: f64, error: f64| (f64::from(found) - wanted).abs() <= error * wanted.abs();
+    let [[ax, ay], [bx, by]] = BOLT.displacement;
+    assert_eq!(found.bolt.0, 2, "it yields");
+    for (k, wanted) in [ax, ay, bx, by, BOLT.force].into_iter().enumerate() {
+        assert!(near(found.bolt.1[k], wanted, if k < 4 { FULL } else { SHORT }), "number {k} of the bolt");
+    }
+    assert_eq!(found.supports.is_some(), put.time == 0.0, "supports stand in the first frame of the stage");
+    if let Some((signs, places)) = &found.supports {
+        assert_eq!(signs.len(), put.supports.len());
+        for (k, support) in put.supports.iter().enumerate() {
+            let sign = u8::from(support.axes[0]) + 2 * u8::from(support.axes[1]) + 4 * u8::from(support.absorbs);
+            assert_eq!(signs[k], sign);
+            for axis in [0, 1] {
+                assert!(near(places[axis][k], support.place[axis] - origin[axis], SHORT), "place of support {k}");
+            }
+        }
+    }
+    assert_eq!(found.water.0, 9810.0);
+    for (k, point) in SURFACE.iter().enumerate() {
+        for axis in [0, 1] {
+            assert!(near(found.water.1[axis][k], point[axis] - origin[axis], FULL), "point {k} of the water table");
+        }
+    }
 }
 
 #[test]
@@ -90,6 +140,8 @@ fn a_film_gives_back_frames_within_its_errors() {
     let moments = slope.film(&path, 5);
     let chunks = chunks(&std::fs::read(&path).unwrap());
     let arms = arms(&chunks[1].2);
+    let mut outlines = Reader(&chunks[1].2[8..]);
+    let origin = [outlines.f64(), outlines.f64()];
     assert_eq!(arms.len(), slope.corners());
     let frames: Vec<_> = chunks.iter().filter(|(kind, ..)| kind == "FRAM").collect();
     assert_eq!(frames.len(), 5);
@@ -101,6 +153,7 @@ fn a_film_gives_back_frames_within_its_errors() {
         let most = moment.corners.iter().flatten().fold(0.0_f64, |most, part| most.max(part.abs()));
         assert!(found.quantum <= most / 512.0);
         compare(&found, moment);
+        compare_structures(&found.structures, moment, origin);
     }
 }
 
@@ -215,8 +268,12 @@ fn what_cannot_be_shown_is_refused_with_its_place() {
     assert!(text(film.frame(&moment.frame()).unwrap_err()).contains("is 1e39"));
     let mut moment = slope.at(0.5);
     moment.edges = vec![EdgeState::Open];
+    moment.wet.clear();
     assert_eq!(text(film.frame(&moment.frame()).unwrap_err()), "1 edges of a frame were given, the film has 48");
     assert!(text(film.row(&[0.0, f64::NAN]).unwrap_err()).starts_with("wave of a row is NaN"));
+    let mut moment = slope.at(0.5);
+    moment.supports[3].place[1] = f64::NAN;
+    assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("place of support 3 is NaN"), "the first frame");
     let size = std::fs::metadata(&path).unwrap().len();
     film.frame(&slope.at(0.5).frame()).unwrap();
     assert!(std::fs::metadata(&path).unwrap().len() > size, "a refused frame leaves the film as it was");

@@ -150,6 +150,11 @@ function unitFor(unit, size) {
       ["kPa", 1e3, 1e6],
       ["MPa", 1e6, Infinity],
     ],
+    "N/m": [
+      ["N/m", 1, 1e3],
+      ["kN/m", 1e3, 1e6],
+      ["MN/m", 1e6, Infinity],
+    ],
     "J/m": [
       ["J/m", 1, 1e3],
       ["kJ/m", 1e3, 1e6],

@@ -1,6 +1,6 @@
 // The film: bytes to typed arrays. `format.md` of the crate has the layout.
 
-const MAGIC = "enmmfil1";
+const MAGIC = "enmmfil2";
 const CHUNK_HEADER = 16;
 // Numbers of a block in a frame, in the order of the film, with the bytes that each takes.
 const NUMBERS = [
@@ -14,6 +14,15 @@ const NUMBERS = [
   ["syy", 3],
   ["sxy", 3],
 ];
+// Numbers of a bolt in a frame, likewise.
+const BOLT_NUMBERS = [
+  ["ux0", 4],
+  ["uy0", 4],
+  ["ux1", 4],
+  ["uy1", 4],
+  ["force", 3],
+];
+const WET = 4; // Bit of the state of an edge on which water presses.
 const OPEN = 1,
   SLIP = 2,
   LOCK = 3;
@@ -150,21 +159,41 @@ function readOutlines(reader) {
   return shape;
 }
 
-function readFrame(reader, time, shape, monitors) {
+// `before` is the frame before, whose supports still hold unless others follow.
+function readFrame(reader, time, shape, { monitors, bolts }, before) {
   const frame = { time, stage: reader.u32() };
   const withEdges = reader.u8() === 1;
-  reader.take(3);
+  const withSupports = reader.u8() === 1;
+  reader.take(2);
   frame.quantum = reader.f64();
   frame.removed = reader.take(shape.count);
-  frame.edges = withEdges ? reader.take(shape.corners) : null;
+  const edges = withEdges ? reader.take(shape.corners) : null;
+  frame.edges = edges?.map((state) => state & ~WET) ?? null;
+  frame.wet = edges?.some((state) => state & WET) ? edges.map((state) => state & WET) : null;
   for (const [name, width] of NUMBERS) frame[name] = reader.planes(shape.count, width);
   frame.monitors = [];
-  for (let k = 0; k < monitors; k++) {
+  for (let k = 0; k < monitors.length; k++) {
     frame.monitors.push({ ux: reader.f32(), uy: reader.f32(), vx: reader.f32(), vy: reader.f32() });
   }
   frame.restX = slim(reader.integers(shape.corners));
   frame.restY = slim(reader.integers(shape.corners));
+  readStructures(reader, frame, bolts.length, withSupports ? null : before.supports);
   return frame;
+}
+
+function readSupports(reader) {
+  const count = reader.u32();
+  return { sign: reader.take(count), x: reader.planes(count, 3), y: reader.planes(count, 3) };
+}
+
+// Bolts, supports and water.
+function readStructures(reader, frame, bolts, same) {
+  frame.bolts = { state: reader.take(bolts) };
+  for (const [name, width] of BOLT_NUMBERS) frame.bolts[name] = reader.planes(bolts, width);
+  frame.supports = same ?? readSupports(reader);
+  frame.water = { weight: reader.f64() };
+  const points = reader.u32();
+  [frame.water.x, frame.water.y] = [reader.planes(points, 4), reader.planes(points, 4)];
 }
 
 // The same integers in as few bytes as they need: frames stay in memory.
@@ -235,7 +264,7 @@ class Film {
       this.head = json();
       this.rows.columns = this.head.columns.map(() => []);
     } else if (kind === "OUTL") this.shape = readOutlines(reader);
-    else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.shape, this.head.monitors.length));
+    else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.shape, this.head, this.frames.at(-1)));
     else if (kind === "ROWS") this.takeRows(reader);
     else if (kind === "NOTE") this.notes.push({ time, ...json() });
   }

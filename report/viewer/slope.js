@@ -21,6 +21,7 @@ class Slope {
   pose(moment, magnification, base) {
     const { x, y, film } = this,
       shape = film.shape;
+    this.magnification = magnification;
     film.displace(moment.from, moment.to, moment.part, x, y);
     if (base !== null) film.displace(base, base, 0, this.baseX, this.baseY);
     for (let c = 0; c < shape.corners; c++) {
@@ -150,6 +151,7 @@ class Slope {
     });
     if (over.joints && frame.edges) this.drawJoints(frame, theme, side);
     for (const mark of over.marks) this.drawMark(mark, frame, theme);
+    if (over.bolts) drawStructures(this, frame, over.bolts, theme);
     if (over.block !== null && !frame.removed[over.block]) this.drawBlock(film.shape.blocks[over.block], theme);
     over.monitors.forEach((monitor, k) => this.drawMonitor(monitor, k === over.monitor, theme));
   }

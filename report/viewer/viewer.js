@@ -12,7 +12,7 @@ class Viewer {
     this.player = new Player(film, () => this.refresh());
     this.colour = COLOURS[0];
     this.choice = { block: null, monitor: null };
-    this.settings = { magnification: 1, sinceStage: false, logarithmic: false, outlines: true };
+    this.settings = { magnification: 1, sinceStage: false, logarithmic: false, structures: true };
     this.marks = [];
     this.theme = {};
     this.due = false;
@@ -135,11 +135,18 @@ class Viewer {
       this.film.of("stage").length > 1
         ? [box("since-stage", "Displacements since the start of the stage", "sinceStage")]
         : [];
+    const signs = element(
+      "p",
+      { class: "soft" },
+      "△ held, ○ held along one axis, □ boundary that lets waves out; bolts with their greatest tension, thick when " +
+        "they yield, dashed when broken; water along edges, the thicker the greater its pressure.",
+    );
     return section(
       "Drawing",
       element("label", {}, "Displacements drawn", slider, shown),
       ...since,
       box("logarithmic", "Logarithmic colours, three decades", "logarithmic"),
+      ...(hasStructures(this.film) ? [box("structures", "Bolts, supports and water", "structures"), signs] : []),
     );
   }
 
@@ -179,7 +186,7 @@ class Viewer {
     document.documentElement.dataset.theme = name;
     by("theme").textContent = name === "dark" ? "Light" : "Dark";
     const style = getComputedStyle(document.documentElement);
-    for (const key of ["paper", "ink", "soft", "line", "accent", "mark", "edge", "halo"])
+    for (const key of ["paper", "ink", "soft", "line", "accent", "mark", "edge", "halo", "water", "bolt"])
       this.theme[key] = style.getPropertyValue(`--${key}`);
     this.theme.dark = name === "dark";
     this.setColour(this.colour);
@@ -273,7 +280,9 @@ class Viewer {
       .of("marked")
       .filter((_, k) => this.marks[k])
       .map(({ blocks }) => blocks.map((id) => this.places.get(id)).filter((k) => k !== undefined));
-    const over = { joints: this.colour.key === "joint", marks, monitors: this.monitors, ...this.choice };
+    const { magnification, structures } = settings,
+      bolts = structures ? boltsNow(film, moment, base, magnification) : null;
+    const over = { joints: this.colour.key === "joint", marks, monitors: this.monitors, bolts, ...this.choice };
     slope.draw(frame, this.paint(frame, base), over, this.theme);
     this.showNumbers(frame, moment);
   }

@@ -1,11 +1,14 @@
 //! What the page `report.html` shows of a model: its blocks and frames as the film has them.
 
+mod structures;
+
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use enmm_report::{
     Axis, BlockFrame, Column, EdgeState, FilmError, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace, Note, Outline,
-    PAGE, Quantity, write_page,
+    PAGE, Quantity, Structures, write_page,
 };
 
 use enmm::contact::{ContactState, EdgeId, NodeId};
@@ -14,6 +17,7 @@ use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::{BlockState, Simulation};
 use enmm_io::LoadedCase;
 use enmm_picture::joints;
+use structures::{Beside, bolt_places};
 
 /// A film of a model.
 #[derive(Debug)]
@@ -84,6 +88,8 @@ impl Film {
             MonitorFrame { displacement: [u.x, u.y], velocity: [v.x, v.y] }
         };
         let states = edge_states(simulation);
+        let beside = Beside::now(simulation);
+        let wet = self.wet_corners(simulation);
         self.writer
             .frame(&Frame {
                 time,
@@ -92,6 +98,7 @@ impl Film {
                 corners: &self.corners.iter().map(displacement).collect::<Vec<_>>(),
                 edges: &self.corners.iter().map(|&point| states[point]).collect::<Vec<_>>(),
                 monitors: &(0..simulation.case().monitors.len()).map(monitor).collect::<Vec<_>>(),
+                structures: Structures { wet: &wet, ..beside.structures() },
             })
             .map_err(refused)
     }
@@ -117,13 +124,18 @@ impl Film {
                 BlockFrame { removed: state.removed, displacement, rotation, ..BlockFrame::default() }
             })
             .collect();
-        let corner = |&point: &EdgeId| {
-            let block = boundary.block[point].index();
+        let moved = |place: Point, block: BlockId| {
+            let block = block.index();
             let (displacement, rotation) = motion(block);
-            let arm = boundary.reference[point] - (states[block].centroid - states[block].displacement);
+            let arm = place - (states[block].centroid - states[block].displacement);
             let (sine, less) = (rotation.sin(), rotation.cos() - 1.0);
-            [displacement.x + arm.x * less - arm.y * sine, displacement.y + arm.x * sine + arm.y * less]
+            displacement + Vector::new(arm.x * less - arm.y * sine, arm.x * sine + arm.y * less)
         };
+        let corner = |&point: &EdgeId| {
+            let displacement = moved(boundary.reference[point], boundary.block[point]);
+            [displacement.x, displacement.y]
+        };
+        let beside = Beside::moved(simulation, moved);
         self.writer
             .frame(&Frame {
                 time,
@@ -132,8 +144,16 @@ impl Film {
                 corners: &self.corners.iter().map(corner).collect::<Vec<_>>(),
                 edges: &[],
                 monitors: &vec![MonitorFrame::default(); simulation.case().monitors.len()],
+                structures: beside.structures(),
             })
             .map_err(refused)
+    }
+
+    /// Whether the water presses on the edge behind each corner; empty without water.
+    fn wet_corners(&self, simulation: &Simulation) -> Vec<bool> {
+        let Some(water) = &simulation.model().water else { return Vec::new() };
+        let wet: BTreeSet<EdgeId> = water.edges.iter().copied().collect();
+        self.corners.iter().map(|point| wet.contains(point)).collect()
     }
 
     /// Takes a row of the histories.
@@ -185,6 +205,7 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening) -> Head 
         quantities: opening.quantities,
         columns: opening.columns.iter().map(column).collect(),
         monitors: monitors.collect(),
+        bolts: bolt_places(simulation),
         rocks: case.rocks.keys().cloned().collect(),
     }
 }

@@ -3,6 +3,7 @@
 //! Everything that can fail as input fails before anything is written. Prints nothing: an [`Observer`] hears.
 
 mod driver;
+mod load_at_once;
 mod outlook;
 mod results;
 mod rows;

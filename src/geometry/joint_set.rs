@@ -16,10 +16,20 @@ const DIP_DEVIATIONS_MAX: f64 = 3.0;
 /// Pieces shorter than this part of the size of the region are dropped.
 const PIECE_RATIO_MIN: f64 = 1e-9;
 
-/// Greatest turn of a trace whose pole follows Fisher's distribution (rad).
+/// Greatest turn of a trace whose pole follows Fisher's distribution (rad) (theory, section 13).
 const FISHER_TURN_MAX: f64 = std::f64::consts::FRAC_PI_3;
-/// Ratio of the greatest lognormal or exponential length that is looked for outside the region to the mean.
+/// Ratio of the greatest lognormal or exponential length that is looked for outside the region to the mean (theory,
+/// section 13).
 const REACH_RATIO: f64 = 10.0;
+/// Where tails of distributions are cut off.
+const CUTOFFS: Cutoffs = Cutoffs { turn: FISHER_TURN_MAX, reach: REACH_RATIO };
+
+/// Where tails of distributions are cut off: [`FISHER_TURN_MAX`] and [`REACH_RATIO`], or others to compare with.
+#[derive(Clone, Copy)]
+struct Cutoffs {
+    turn: f64,
+    reach: f64,
+}
 
 /// How spacings and lengths scatter about their mean.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -102,6 +112,15 @@ pub struct JointSetParameters {
 /// assert_eq!(traces.len(), 10); // horizontal lines, one per metre of height
 /// ```
 pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point; 2]>, GeometryError> {
+    generate_within(set, region, CUTOFFS)
+}
+
+/// As [`generate`], with other cutoffs.
+fn generate_within(
+    set: &JointSetParameters,
+    region: &[Point],
+    cutoffs: Cutoffs,
+) -> Result<Vec<[Point; 2]>, GeometryError> {
     check(set)?;
     let region = validate_loop(region, "region of a joint set")?;
     let (low, high) = bounds(&region);
@@ -118,8 +137,8 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
     let mut traces = Vec::new();
     let mut tried = 0;
     // A turned trace reaches across its line, so that lines just outside the region matter too.
-    let half = 0.5 * set.trace_length.map_or(end - start, |length| length * set.reach());
-    let margin = half * set.turn_max().sin();
+    let half = 0.5 * set.trace_length.map_or(end - start, |length| length * set.reach(cutoffs));
+    let margin = half * set.turn_max(cutoffs).sin();
     let mut waiting = match set.origin {
         None => vec![bottom - margin + set.spacing * random.uniform()],
         Some(origin) => lines_below(set, origin.dot(&normal), [bottom - margin, top + margin], &mut random)?,
@@ -136,7 +155,7 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
                 .trace_length
                 .map_or(end - start, |mean| random.spread(set.length_spread, mean, set.trace_length_sd));
             let middle = normal * line + along * (position + 0.5 * length);
-            let turn = random.turn(set);
+            let turn = random.turn(set, cutoffs);
             let stretch = if set.trace_length.is_none() { 1.0 / turn.x } else { 1.0 };
             let half = (along * turn.x + normal * turn.y) * (0.5 * length * stretch);
             clip_to(&region, middle - half, middle + half, piece_min, &mut traces);
@@ -152,19 +171,19 @@ pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point
 
 impl JointSetParameters {
     /// Greatest length of a trace over the mean that is looked for outside the region.
-    fn reach(&self) -> f64 {
+    fn reach(&self, cutoffs: Cutoffs) -> f64 {
         match self.length_spread {
             Spread::Normal | Spread::Uniform => 1.0 + SCATTER_RATIO_MAX,
-            Spread::Lognormal | Spread::Exponential => REACH_RATIO,
+            Spread::Lognormal | Spread::Exponential => cutoffs.reach,
         }
     }
 
     /// Greatest turn of a trace (rad).
-    fn turn_max(&self) -> f64 {
+    fn turn_max(&self, cutoffs: Cutoffs) -> f64 {
         match self.turn {
             Turn::Normal => DIP_DEVIATIONS_MAX * self.dip_sd,
             Turn::Uniform => 3f64.sqrt() * self.dip_sd,
-            Turn::Fisher { .. } => FISHER_TURN_MAX,
+            Turn::Fisher { .. } => cutoffs.turn,
         }
     }
 }
@@ -310,21 +329,21 @@ impl Random {
     }
 
     /// Draws cosine and sine of the turn of a trace.
-    fn turn(&mut self, set: &JointSetParameters) -> Vector {
+    fn turn(&mut self, set: &JointSetParameters, cutoffs: Cutoffs) -> Vector {
         match set.turn {
             Turn::Normal => self.direction(set.dip_sd),
             Turn::Uniform => {
                 let angle = 3f64.sqrt() * set.dip_sd * (2.0 * self.uniform() - 1.0);
                 Vector::new(angle.cos(), angle.sin())
             }
-            Turn::Fisher { concentration, out_of_plane } => self.fisher(concentration, out_of_plane),
+            Turn::Fisher { concentration, out_of_plane } => self.fisher(concentration, out_of_plane, cutoffs.turn),
         }
     }
 
     /// Draws the turn of the trace of a joint whose pole follows Fisher's distribution about a mean pole that lies
     /// `out_of_plane` out of the plane of the traces. The angle θ off the mean has, by its inverse distribution
     /// function, cos θ = 1 + ln(u + (1 − u)·exp(−2κ))/κ (Fisher, Lewis and Embleton 1987, section 3.6.2).
-    fn fisher(&mut self, concentration: f64, out_of_plane: f64) -> Vector {
+    fn fisher(&mut self, concentration: f64, out_of_plane: f64, turn_max: f64) -> Vector {
         let (out, within) = out_of_plane.sin_cos();
         loop {
             let u = 1.0 - self.uniform();
@@ -334,7 +353,7 @@ impl Random {
             // The pole in the plane of the traces: along the mean trace and normal to it; joints have no sign.
             let (along, normal) = (sin * around_cos, cos * within - sin * around_sin * out);
             let turn = (-along / normal).atan();
-            if turn.abs() <= FISHER_TURN_MAX {
+            if turn.abs() <= turn_max {
                 return Vector::new(turn.cos(), turn.sin());
             }
         }
@@ -360,5 +379,65 @@ mod tests {
         // The test values for seed 1234567 that go round with the reference implementation (splitmix64.c).
         let mut random = Random::new(1234567);
         assert_eq!([random.bits(), random.bits()], [6457827717110365317, 3203168211198807973]);
+    }
+    /// Share of the draws from Fisher's distribution that the limit of 60° leaves and `other` (rad) would not, or the
+    /// other way round.
+    fn share_beyond(concentration: f64, other: f64) -> f64 {
+        let draws = 100_000;
+        let mut random = Random::new(5);
+        let [low, high] = [FISHER_TURN_MAX.min(other), FISHER_TURN_MAX.max(other)];
+        let turns = (0..draws).map(|_| random.fisher(concentration, 0.0, high));
+        turns.filter(|turn| turn.y.atan2(turn.x).abs() > low).count() as f64 / f64::from(draws)
+    }
+
+    /// A joint that turns by more than 60° belongs to another set. A limit of 120°, which is none, draws the same
+    /// traces unless the set scatters widely; one of 30° would cut off what belongs to it.
+    #[test]
+    fn the_limit_of_fishers_turns_cuts_off_little() {
+        use std::f64::consts::PI;
+        assert!(share_beyond(20.0, 2.0 * PI / 3.0) < 1e-4);
+        assert!(share_beyond(8.0, 2.0 * PI / 3.0) < 0.03);
+        assert!(share_beyond(5.0, 2.0 * PI / 3.0) < 0.08);
+        assert!(share_beyond(8.0, PI / 6.0) > 0.1);
+    }
+
+    /// Mean length of joints per area (1/m) of sets with many seeds, and its standard error.
+    fn density(length_spread: Spread, reach: f64) -> [f64; 2] {
+        let side = 20.0;
+        let region = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]].map(Point::from);
+        let seeds = 1600;
+        let of_seed = |seed| {
+            let set = JointSetParameters {
+                turn: Turn::Fisher { concentration: 5.0, out_of_plane: 0.0 },
+                spacing: 1.0,
+                trace_length: Some(3.0),
+                trace_length_sd: 3.0,
+                length_spread,
+                gap: 3.0,
+                seed,
+                ..JointSetParameters::default()
+            };
+            let traces = generate_within(&set, &region, Cutoffs { reach, ..CUTOFFS }).expect("a set");
+            traces.iter().map(|[a, b]| (b - a).norm()).sum::<f64>() / (side * side)
+        };
+        let all: Vec<f64> = (0..seeds).map(of_seed).collect();
+        let mean = all.iter().sum::<f64>() / seeds as f64;
+        let variance = all.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / (seeds - 1) as f64;
+        [mean, (variance / seeds as f64).sqrt()]
+    }
+
+    /// Lines so far outside that half a trace of ten mean lengths does not reach the region are left out: with half or
+    /// twice that reach the density of joints is the same within 4 standard errors; without any it falls.
+    #[test]
+    fn the_reach_beyond_the_region_loses_no_joints() {
+        for spread in [Spread::Exponential, Spread::Lognormal] {
+            let [usual, error] = density(spread, REACH_RATIO);
+            for other in [0.5 * REACH_RATIO, 2.0 * REACH_RATIO] {
+                let [found, other_error] = density(spread, other);
+                assert!((found - usual).abs() < 4.0 * error.hypot(other_error), "{spread:?} {other}: {found} {usual}");
+            }
+            let [none, other_error] = density(spread, 0.0);
+            assert!(none < usual - 4.0 * error.hypot(other_error), "{spread:?}: {none} {usual} {error}");
+        }
     }
 }

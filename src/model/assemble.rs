@@ -60,7 +60,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     implicit::know(case)?;
     let geometry::Plane { mesh, mut arrangement, joints } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
-    let mut warnings = warnings::of_geometry(&noding, case, &joints.traces);
+    let mut warnings = warnings::of_geometry(&noding, case, &joints);
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);

@@ -20,6 +20,7 @@ use enmm::model::case::{Case, Invalid};
 
 pub use judge::{Reason, Verdict};
 pub use mechanism::{MechanismOptions, mechanisms};
+pub use slip::slide;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];

@@ -1,17 +1,23 @@
 //! The site of the documents, and what of it the program writes.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::formulas::rendered;
 use crate::repository::{self, Repository};
 
 /// The version of mdBook that builds the site.
 const MDBOOK: &str = "0.5.4";
 /// Folders outside the documents that pages link to.
-const LINKED: [&str; 5] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include"];
+const LINKED: [&str; 6] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include", "python_tests"];
+/// A run that draws contours.
+const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
 /// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
-const PICTURES: [[&str; 4]; 8] = [
+const PICTURES: [[&str; 4]; 10] = [
     ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
+    [CONTOURS, "road_cut", "stage1_displacement_contours.png", "road_cut_displacement.png"],
+    [CONTOURS, "road_cut", "stage2_mean_stress_contours.png", "road_cut_mean_stress.png"],
     ["fos", "road_cut", "fos.png", "road_cut_fos.png"],
     ["fos", "road_cut", "failure.png", "road_cut_failure.png"],
     ["run", "toppling", "stage1_joints.png", "toppling_joints.png"],
@@ -26,15 +32,58 @@ const PICTURES: [[&str; 4]; 8] = [
 /// # Errors
 /// When mdBook cannot be installed, or does not build the site.
 pub fn build(repository: &Repository) -> Result<(), String> {
-    let site = repository.target.join("book");
+    let [site, source] = ["book", "book-source"].map(|name| repository.target.join(name));
     repository::remove(&site)?;
-    repository::run(repository.command(mdbook(repository)?).args(["build", "--dest-dir"]).arg(site.join("docs")))?;
+    write_source(repository, &source)?;
+    let mut build = repository.command(mdbook(repository)?);
+    repository::run(build.arg("build").arg(&source).arg("--dest-dir").arg(site.join("docs")))?;
     for folder in LINKED {
         for (name, bytes) in repository::files_of(&repository.root.join(folder))? {
             write(&site.join(folder).join(name), &bytes)?;
         }
     }
+    write_indices(&site)?;
     println!("wrote {}", site.join("docs/index.html").display());
+    Ok(())
+}
+
+/// Writes what mdBook reads into a folder: the documents, with their formulas as MathML.
+fn write_source(repository: &Repository, source: &Path) -> Result<(), String> {
+    repository::remove(source)?;
+    let settings = repository.root.join("book.toml");
+    write(&source.join("book.toml"), &fs::read(&settings).map_err(|e| format!("{}: {e}", settings.display()))?)?;
+    for (name, bytes) in repository::files_of(&repository.root.join("docs"))? {
+        let bytes = if name.ends_with(".md") {
+            let page = String::from_utf8(bytes).map_err(|error| format!("docs/{name}: {error}"))?;
+            rendered(&page).map_err(|error| format!("docs/{name}: {error}"))?.into_bytes()
+        } else {
+            bytes
+        };
+        write(&source.join("docs").join(name), &bytes)?;
+    }
+    Ok(())
+}
+
+/// Writes a list of its files into every folder of the site without a page, since pages link to folders.
+fn write_indices(site: &Path) -> Result<(), String> {
+    let mut lists: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let names: Vec<String> = repository::files_of(site)?.into_keys().collect();
+    for name in &names {
+        let mut entry = name.as_str();
+        while let Some((folder, last)) = entry.rsplit_once('/') {
+            let mark = if entry == name { "" } else { "/index.html" };
+            lists.entry(folder.to_owned()).or_default().insert(format!("{last}{mark}"));
+            entry = folder;
+        }
+    }
+    for (folder, entries) in lists.into_iter().filter(|(folder, _)| !names.contains(&format!("{folder}/index.html"))) {
+        let line =
+            |entry: &String| format!("<li><a href=\"{entry}\">{}</a></li>\n", entry.trim_end_matches("/index.html"));
+        let list: String = entries.iter().map(line).collect();
+        let head = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
+        let page = format!("{head}<title>{folder}</title>\n<h1>{folder}</h1>\n<ul>\n{list}</ul>\n</html>\n");
+        write(&site.join(&folder).join("index.html"), page.as_bytes())?;
+    }
     Ok(())
 }
 
@@ -66,14 +115,13 @@ pub fn write_reference(repository: &Repository) -> Result<(), String> {
 /// When a case does not run or a picture is missing.
 pub fn write_pictures(repository: &Repository) -> Result<(), String> {
     let results = repository.target.join("picture-results");
-    let folder = |command: &str, case: &str| results.join(format!("{command}_{case}"));
-    let mut done: Vec<PathBuf> = Vec::new();
-    for [command, case, picture, shown] in PICTURES {
-        let from = folder(command, case);
-        if !done.contains(&from) {
+    for (k, [command, case, picture, shown]) in PICTURES.into_iter().enumerate() {
+        let first = PICTURES.iter().position(|other| other[..2] == [command, case]).unwrap_or(k);
+        let from = results.join(format!("{case}_{first}"));
+        if first == k {
             let mut run = repository.command(repository.enmm());
-            repository::run(run.arg(command).arg(format!("examples/cases/{case}.toml")).arg("-o").arg(&from))?;
-            done.push(from.clone());
+            run.args(command.split(' ')).arg(format!("examples/cases/{case}.toml"));
+            repository::run(run.arg("-o").arg(&from))?;
         }
         let bytes = fs::read(from.join(picture)).map_err(|error| format!("{}: {error}", from.display()))?;
         write(&repository.root.join("docs/book/pictures").join(shown), &bytes)?;

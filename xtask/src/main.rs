@@ -7,6 +7,7 @@ mod book;
 mod counts;
 mod faults;
 mod figures;
+mod formulas;
 mod install;
 mod parts;
 mod python;

@@ -15,6 +15,8 @@ const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 
 /// Test of the pages of results, which needs a browser.
 const BROWSER_TEST: &str = "python_tests/test_report.py";
+/// Test of a drawing by pyvista, which needs a library that draws without a screen.
+const DRAWING_TEST: &str = "python_tests/test_pyvista.py";
 /// Chromium by the names that systems give it, as `python_tests/browser.py` looks for it.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
@@ -45,6 +47,10 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = venv::command(repository)?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places).envs(extent);
+    // Without it the test says that it was left out.
+    let library = "import ctypes; ctypes.CDLL('libEGL.so.1')";
+    let draws = || venv::command(repository).is_ok_and(|mut python| venv::succeeds(python.args(["-c", library])));
+    has(&draws, &["libegl1", "libgl1-mesa-dri"], DRAWING_TEST);
     if !has_browser() {
         println!("SKIPPED {BROWSER_TEST}: there is no Chromium on this machine (Debian: apt-get install chromium)");
         pytest.args(["--ignore", BROWSER_TEST]);
@@ -62,14 +68,19 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
 /// Whether there is a Chromium; where Debian's packages can be installed it is installed first.
 fn has_browser() -> bool {
     let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
+    has(&found, &["chromium"], BROWSER_TEST)
+}
+
+/// Whether something that a test needs is found; where Debian's packages can be installed they are installed first.
+fn has(found: &dyn Fn() -> bool, packages: &[&str], test: &str) -> bool {
     let is_root = || Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout.trim_ascii() == b"0");
     if found() || !is_root() {
         return found();
     }
-    println!("installing Chromium for {BROWSER_TEST}");
+    println!("installing {} for {test}", packages.join(" and "));
     let apt =
         |args: &[&str]| venv::succeeds(Command::new("apt-get").args(args).env("DEBIAN_FRONTEND", "noninteractive"));
-    let install = ["install", "--yes", "--no-install-recommends", "chromium"];
+    let install = [&["install", "--yes", "--no-install-recommends"], packages].concat();
     (apt(&install) || (apt(&["update"]) && apt(&install))) && found()
 }
 

@@ -7,6 +7,9 @@ use crate::{AngleDistribution, Case, Distribution, JointSet};
 /// Greatest standard deviation of a uniform distribution of positive values, relative to the mean: 1/√3.
 const UNIFORM_RATIO: f64 = 0.577_350_269_189_625_8;
 
+/// Greatest standard deviation of directions (degrees): three of them are a right angle.
+const ANGLE_SD_MAX: f64 = 30.0;
+
 /// Checks the values of a joint set.
 ///
 /// # Errors
@@ -16,7 +19,8 @@ pub fn validate_set(key: &Key, set: &JointSet) -> Check {
     let spread = Range::from(0.0).to(COORDINATE_MAX);
     let hint = "counter-clockwise from the x axis";
     optional(key, "angle_deg", set.angle_deg, Range::within(360.0), "degrees", hint)?;
-    number(key, "dip_sd_deg", set.dip_sd_deg, Range::from(0.0).to(90.0), "degrees", "0 for parallel joints")?;
+    let hint = "0 for parallel joints; directions that scatter more are more than one set";
+    number(key, "dip_sd_deg", set.dip_sd_deg, Range::from(0.0).to(ANGLE_SD_MAX), "degrees", hint)?;
     number(key, "spacing", set.spacing, length, "m", "the mean distance between joints")?;
     number(key, "spacing_sd", set.spacing_sd, spread, "m", "0 for equal distances")?;
     optional(key, "trace_length", set.trace_length, length, "m", "leave it out for joints through the whole region")?;
@@ -69,6 +73,12 @@ fn validate_angles(key: &Key, set: &JointSet) -> Check {
 fn validate_spread(key: &Key, name: &str, kind: Distribution, mean: f64, sd: f64) -> Check {
     let place = key.field(&format!("{name}_sd"));
     match kind {
+        Distribution::Normal if sd > mean => fail(
+            &place,
+            format!(
+                "is {sd} m, must be at most the mean, {mean} m; lower it or add `{name}_distribution = \"lognormal\"`"
+            ),
+        ),
         Distribution::Exponential if sd != 0.0 && sd != mean => {
             fail(&place, format!("is {sd} m, but that of an exponential distribution is its mean, {mean} m; remove it"))
         }

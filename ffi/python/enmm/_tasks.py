@@ -38,6 +38,17 @@ class _Directory(Closing):
         else:
             self.directory, self._close = Path(directory), weakref.finalize(self, lambda: None)
 
+    @property
+    def pictures(self) -> list[Path]:
+        """The pictures that the program drew."""
+        return sorted(self.directory.glob("*.png"))
+
+    @property
+    def report(self) -> Path | None:
+        """`report.html`, which opens in a browser; None when this version of the program writes none."""
+        path = self.directory / "report.html"
+        return path if path.is_file() else None
+
     def close(self) -> None:
         """Removes the directory if it is a temporary one. What has been read stays."""
         self._close()
@@ -72,17 +83,6 @@ class Result(_Directory):
         """The state at the end, from which `run(case, resume=...)` continues."""
         return self.directory / "checkpoint.enmm"
 
-    @property
-    def pictures(self) -> list[Path]:
-        """The pictures that the program drew."""
-        return sorted(self.directory.glob("*.png"))
-
-    @property
-    def report(self) -> Path | None:
-        """`report.html`, which opens in a browser; None when this version of the program writes none."""
-        path = self.directory / "report.html"
-        return path if path.is_file() else None
-
     def plot(self, field: str = "displacement", frame: int = -1, ax: Any = None) -> Any:
         """Draws the elements of a frame, coloured by a field, by matplotlib; returns the axes.
 
@@ -109,7 +109,7 @@ class Result(_Directory):
 
 
 class Fos(_Directory):
-    """A factor of safety: what `fos` found."""
+    """A factor of safety: what `fos` found, or any directory that `enmm fos` wrote: `Fos("plane_slide/fos")`."""
 
     record: dict[str, Any]
     """`fos.json`."""
@@ -257,14 +257,15 @@ def fos(
     return found
 
 
-def bound(case: CaseLike) -> dict[str, Any]:
+def bound(case: CaseLike, output: str | os.PathLike[str] | None = None) -> dict[str, Any]:
     """Bounds of the factor of safety by limit analysis of rigid blocks, the object of `enmm bound --json`.
 
-    `associated`, `level_tops` and `catching` have `factor`, `end` and `mechanism` each. Raises CaseError for a case
-    that limit analysis cannot treat.
+    `associated`, `level_tops` and `catching` have `factor`, `end` and `mechanism` each. `output` is a directory for
+    `report.html`, which shows the mechanism; without it no page is left. Raises CaseError for a case that limit
+    analysis cannot treat.
     """
     with case_file(case) as path, tempfile.TemporaryDirectory() as page:
-        return record(["bound", path, "-o", page])
+        return record(["bound", path, "-o", page if output is None else output])
 
 
 def check(case: CaseLike) -> dict[str, Any]:

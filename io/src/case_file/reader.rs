@@ -61,6 +61,7 @@ impl Reader<'_> {
     }
 
     fn value(&mut self, value: &DeValue, schema: &Schema, key: &Key) -> Result<Value, CaseError> {
+        let any = schema;
         let schema = &schema.fitting(matches!(value, DeValue::Array(_)));
         match (schema.expected(), value) {
             (Expected::Table(fields), DeValue::Table(table)) => self.table(table, &fields, key),
@@ -79,7 +80,7 @@ impl Reader<'_> {
             (expected, found) => {
                 let remedy =
                     meant(&expected, found).map_or_else(|| example(key, schema), |value| assigned(key, &value));
-                self.fail(key, format!("is {}, must be {expected}; write {remedy}", shown(found)))
+                self.fail(key, format!("is {}, must be {}; write {remedy}", shown(found), any.words()))
             }
         }
     }
@@ -100,7 +101,11 @@ impl Reader<'_> {
             let child = key.field(name);
             let Some(schema) = fields.get(name) else { continue };
             let meaning = schema.description().unwrap_or_default();
-            return self.fail(&child, format!("is missing ({meaning}); add {}", example(&child, &schema)));
+            let others: Vec<&str> =
+                fields.required().filter(|other| *other != name && !table.contains_key(*other)).collect();
+            let others =
+                if others.is_empty() { String::new() } else { format!("; also missing: {}", others.join(", ")) };
+            return self.fail(&child, format!("is missing ({meaning}); add {}{others}", example(&child, &schema)));
         }
         Ok(Value::Object(values))
     }

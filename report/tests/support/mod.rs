@@ -6,12 +6,15 @@
 use std::path::Path;
 
 use enmm_report::{
-    Axis, BlockFrame, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace, Outline, Quantity,
+    Axis, BlockFrame, BoltFrame, BoltPlace, BoltState, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame,
+    MonitorPlace, Outline, Quantity, Structures, SupportFrame,
 };
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
 /// Points on each side of a quadrilateral, where lines of the mesh cross it: some twelve corners a block.
 const PER_SIDE: usize = 3;
+/// Supports: as many as the main example has.
+const SUPPORTS: usize = 230;
 /// Spacing of the joints (m).
 const SPACING: f64 = 3.0;
 
@@ -94,6 +97,13 @@ impl Slope {
             }
             moment.blocks.push(state);
         }
+        moment.wet = (0..moment.edges.len()).map(|corner| corner % 3 == 0).collect();
+        let support = |k: usize| SupportFrame {
+            place: [0.7 * k as f64, 0.1 * time],
+            axes: [k.is_multiple_of(2), true],
+            absorbs: k.is_multiple_of(5),
+        };
+        moment.supports = (0..SUPPORTS).map(support).collect();
         moment
     }
 
@@ -131,7 +141,14 @@ pub struct Moment {
     pub blocks: Vec<BlockFrame>,
     pub corners: Vec<[f64; 2]>,
     pub edges: Vec<EdgeState>,
+    pub wet: Vec<bool>,
+    pub supports: Vec<SupportFrame>,
 }
+
+/// Surface of the water (m).
+pub const SURFACE: [[f64; 2]; 2] = [[0.0, 4.0], [20.0, 9.0]];
+pub const BOLT: BoltFrame =
+    BoltFrame { state: BoltState::Yielded, displacement: [[0.5, -0.25], [0.125, -1.0]], force: 112_345.0 };
 
 pub const MONITOR: MonitorFrame = MonitorFrame { displacement: [0.25, -0.5], velocity: [1.5, 2.5] };
 
@@ -144,6 +161,13 @@ impl Moment {
             corners: &self.corners,
             edges: &self.edges,
             monitors: &[MONITOR],
+            structures: Structures {
+                bolts: &[BOLT],
+                supports: &self.supports,
+                water_weight: 9810.0,
+                water_surface: &SURFACE,
+                wet: &self.wet,
+            },
         }
     }
 }
@@ -164,6 +188,7 @@ pub fn head() -> Head {
         quantities: vec![Quantity::Velocity, Quantity::Stress],
         columns: vec![column("time", "time", "s"), column("wave", "Displacement", "m")],
         monitors: vec![MonitorPlace { name: "crest".to_owned(), place: [1.0, 2.0] }],
+        bolts: vec![BoltPlace { name: "row".to_owned(), ends: [[0.5, 1.0], [6.0, 2.0]] }],
         rocks: vec!["gneiss".to_owned()],
     }
 }
@@ -173,7 +198,7 @@ pub type Chunk = (String, f64, Vec<u8>);
 
 /// All chunks, read by what `format.md` says alone.
 pub fn chunks(film: &[u8]) -> Vec<Chunk> {
-    assert_eq!(&film[..8], b"enmmfil1");
+    assert_eq!(&film[..8], b"enmmfil2");
     let (mut rest, mut chunks) = (&film[8..], Vec::new());
     while !rest.is_empty() {
         let kind = String::from_utf8(rest[..4].to_vec()).unwrap();

@@ -24,6 +24,7 @@ use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
 use enmm_picture::joints::Joints;
 use enmm_report::{Axis, FILM, Note, Quantity};
+use enmm_stability::strength_reduction::slide;
 
 use super::outlook::Outlook;
 use super::results::Past;
@@ -204,7 +205,8 @@ impl<'a> Driver<'a> {
         self.progress.penetration_max = 0.0;
         let (state, pictures) = (self.simulation.state(), &self.simulation.case().output.pictures);
         self.progress.started.clear();
-        if pictures.include(PictureKind::Displacement) && state.stage_displacement.is_empty() {
+        let since = [PictureKind::Displacement, PictureKind::DisplacementContours];
+        if since.into_iter().any(|kind| pictures.include(kind)) && state.stage_displacement.is_empty() {
             self.progress.started.clone_from(&state.displacement);
         }
         self.note_stage(None, "")
@@ -372,8 +374,22 @@ impl<'a> Driver<'a> {
                 "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}): \
                  the slope moves, or the stage needs a longer duration"
             ))?;
+        } else if self.has_only_settled()
+            && let Some(slip) = slide(&self.simulation)
+        {
+            let name = &stage.name;
+            self.warn(format!(
+                "stage {name:?} is at rest after joints have slipped by up to {slip:.3} m, farther than elasticity \
+                 explains: rock slid until other rock stopped it; `enmm fos` counts that as a failure"
+            ))?;
         }
         Ok(())
+    }
+
+    /// Whether this stage and all before it are static, so that every slip so far belongs to settling.
+    fn has_only_settled(&self) -> bool {
+        let mut stages = self.simulation.case().stages.iter().take(self.simulation.state().stage as usize + 1);
+        stages.all(|stage| stage.kind == StageKind::Static)
     }
 
     fn warn(&mut self, message: String) -> Result<(), RunError> {

@@ -1,9 +1,12 @@
-//! How much simulated time a run still needs. A static stage ends when its unbalanced ratio has fallen to the target,
-//! and the fall is exponential once the ramp is over: a line through its logarithm shows when that will be.
+//! How much simulated time a run still needs. A static stage ends when its unbalanced ratio has fallen to the target.
+//! The fall is exponential once the ramp is over: a line through its logarithm shows when that will be. Without a ramp
+//! it begins slowly and follows a curve of its own.
 
 use enmm::model::Simulation;
 use enmm::model::case::StageKind;
 use enmm::step::StepReport;
+
+use super::load_at_once;
 
 /// Reports after the ramp from which on a line is drawn through them.
 const FEWEST: usize = 6;
@@ -37,7 +40,7 @@ impl Outlook {
         let Some((ramp, target)) = simulation.rest_target() else { return };
         if now > ramp && report.unbalanced > 0.0 {
             self.fall.push([now, report.unbalanced.ln()]);
-            self.rest = self.rest_time(target);
+            self.rest = self.rest_time(ramp, target);
         }
     }
 
@@ -75,7 +78,7 @@ impl Outlook {
     }
 
     /// Time (s) since the start of the stage at which the ratio will have reached the target.
-    fn rest_time(&self, target: f64) -> Option<f64> {
+    fn rest_time(&self, ramp: f64, target: f64) -> Option<f64> {
         if self.fall.len() < FEWEST {
             return None;
         }
@@ -86,7 +89,9 @@ impl Outlook {
         let square: f64 = last.iter().map(|point| (point[0] - time).powi(2)).sum();
         let product: f64 = last.iter().map(|point| (point[0] - time) * (point[1] - ratio)).sum();
         let slope = product / square;
-        (slope < 0.0).then(|| time + (target.ln() - ratio) / slope)
+        let line = (slope < 0.0).then(|| time + (target.ln() - ratio) / slope)?;
+        let at_once = if ramp > 0.0 { None } else { load_at_once::rest_time(time, ratio, slope, target.ln()) };
+        Some(at_once.unwrap_or(line))
     }
 }
 
@@ -98,13 +103,13 @@ mod tests {
     fn an_exponential_fall_ends_where_it_meets_the_target() {
         let fall = (1..20).map(|k| 0.1 * f64::from(k)).map(|t| [t, 2.0 - 5.0 * t]).collect();
         let outlook = Outlook { fall, ..Outlook::default() };
-        let end = outlook.rest_time((-18.0f64).exp()).expect("a line");
+        let end = outlook.rest_time(0.1, (-18.0f64).exp()).expect("a line");
         assert!((end - 4.0).abs() < 1e-12, "{end}");
     }
 
     #[test]
     fn a_ratio_that_grows_gives_no_time() {
         let fall = (1..20).map(f64::from).map(|t| [t, t]).collect();
-        assert_eq!(Outlook { fall, ..Outlook::default() }.rest_time(1e-5), None);
+        assert_eq!(Outlook { fall, ..Outlook::default() }.rest_time(0.1, 1e-5), None);
     }
 }

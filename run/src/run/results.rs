@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use enmm::cover::ElementId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::case::PictureKind;
 use enmm::model::snapshot::Polygons;
@@ -12,9 +13,9 @@ use enmm_io::files::{at_path, sweep_temporaries};
 use enmm_picture::joints::Joints;
 use enmm_picture::structures::water_surface;
 use enmm_picture::{
-    Picture, StageEnd, bolt_marks, covers_picture, displacement_picture, history_picture, joint_stress_pictures,
-    joints_picture, model_annotations, model_picture, number_text, stage_displacement_picture, stars, stress_picture,
-    velocity_picture,
+    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, history_picture,
+    joint_stress_pictures, joints_picture, mean_stress_contours, model_annotations, model_picture, number_text,
+    stage_displacement_picture, stars, stress_picture, velocity_picture,
 };
 use enmm_report::FILM;
 
@@ -22,12 +23,14 @@ use super::rows;
 use crate::vtu::PARTS;
 
 /// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
-const STAGE_PICTURES: [(PictureKind, &[&str]); 5] = [
+const STAGE_PICTURES: [(PictureKind, &[&str]); 7] = [
     (PictureKind::Displacement, &["displacement"]),
     (PictureKind::Joints, &["joints"]),
     (PictureKind::JointStress, &["normal_stress", "shear_stress"]),
     (PictureKind::Stress, &["stress"]),
     (PictureKind::Velocity, &["velocity"]),
+    (PictureKind::DisplacementContours, &["displacement_contours"]),
+    (PictureKind::MeanStressContours, &["mean_stress_contours"]),
 ];
 
 /// What tells that a run has written into a directory.
@@ -168,8 +171,7 @@ pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
 /// covers (m) at the start of the stage.
 pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], directory: &Path) -> io::Result<()> {
     let pictures = &simulation.case().output.pictures;
-    let [displacement, states, on_joints, stress, velocity] = STAGE_PICTURES.map(|(kind, _)| pictures.include(kind));
-    if ![displacement, states, on_joints, stress, velocity].contains(&true) {
+    if !STAGE_PICTURES.iter().any(|(kind, _)| pictures.include(*kind)) {
         return Ok(());
     }
     let snapshot = simulation.snapshot();
@@ -178,36 +180,45 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
     let caption = format!("stage {number}, {}, t = {} s", simulation.stage().name, number_text(snapshot.time));
     let stage =
         StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
-    let write = |picture: Picture, name: &str| picture.write_png(&directory.join(format!("stage{number}_{name}.png")));
-    if displacement && !started.is_empty() {
-        write(stage_displacement_picture(&stage, &moved_since(simulation, &snapshot, started)), "displacement")?;
-    }
-    if states || on_joints {
-        let joints = joints.now(simulation);
-        if states {
-            write(joints_picture(&stage, &joints), "joints")?;
+    for (kind, names) in STAGE_PICTURES.into_iter().filter(|(kind, _)| pictures.include(*kind)) {
+        let pictures = match kind {
+            PictureKind::Displacement | PictureKind::DisplacementContours if started.is_empty() => Vec::new(),
+            PictureKind::Displacement => {
+                vec![stage_displacement_picture(&stage, &moved_since(simulation, &snapshot, started))]
+            }
+            PictureKind::DisplacementContours => {
+                vec![displacement_contours(&stage, &moved_since(simulation, &snapshot, started))]
+            }
+            PictureKind::MeanStressContours => vec![mean_stress_contours(&stage, &references(simulation))],
+            PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
+            PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
+            PictureKind::Stress => vec![stress_picture(&stage)],
+            PictureKind::Velocity => vec![velocity_picture(&stage)],
+            PictureKind::Model | PictureKind::Deformed | PictureKind::History | PictureKind::Covers => Vec::new(),
+        };
+        for (picture, name) in pictures.iter().zip(names) {
+            picture.write_png(&directory.join(format!("stage{number}_{name}.png")))?;
         }
-        if on_joints {
-            let [normal, shear] = joint_stress_pictures(&stage, &joints);
-            write(normal, "normal_stress")?;
-            write(shear, "shear_stress")?;
-        }
-    }
-    if stress {
-        write(stress_picture(&stage), "stress")?;
-    }
-    if velocity {
-        write(velocity_picture(&stage), "velocity")?;
     }
     Ok(())
 }
 
+/// Elements of the blocks that are there, in the order of a snapshot.
+fn elements_there(simulation: &Simulation) -> impl Iterator<Item = ElementId> {
+    let (covers, removed) = (&simulation.model().covers, &simulation.state().removed);
+    covers.elements().filter(|&e| !removed[covers.element_block[e]])
+}
+
+/// Each point of the elements of a snapshot before it moved (m).
+fn references(simulation: &Simulation) -> Vec<Point> {
+    elements_there(simulation).flat_map(|e| simulation.model().covers.polygon(e).iter().copied()).collect()
+}
+
 /// Displacement (m) of each point of the elements of a snapshot since the covers had the displacements `started` (m).
 fn moved_since(simulation: &Simulation, snapshot: &Snapshot, started: &[Vector]) -> Vec<Vector> {
-    let (model, removed) = (simulation.model(), &simulation.state().removed);
-    let covers = &model.covers;
-    let there = covers.elements().filter(|&e| !removed[covers.element_block[e]]);
-    let before = there.flat_map(|e| covers.polygon(e).iter().map(move |&p| model.sample(e, p, started)));
+    let model = simulation.model();
+    let of_element = |e| model.covers.polygon(e).iter().map(move |&p| model.sample(e, p, started));
+    let before = elements_there(simulation).flat_map(of_element);
     snapshot.displacement.iter().zip(before).map(|(now, before)| now - before).collect()
 }
 

@@ -4,6 +4,7 @@ use crate::contact::LawId;
 use crate::cover::RegularMesh;
 use crate::geometry::joint_set::{JointSetParameters, Spread, Turn, generate};
 use crate::geometry::loops::{validate_holes, validate_loop};
+use crate::geometry::trace::Stops;
 use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon, trace};
 use crate::model::case::{AngleDistribution, CUT_LAW, Case, Distribution, Invalid, JointSet, LawRegion};
 
@@ -125,11 +126,14 @@ fn traces(case: &Case, low: Point, high: Point, default_law: LawId) -> Result<(T
         let mut made = generate(&parameters(set), &region).map_err(invalid(&format!("joint_set[{k}]")))?;
         if let Some(end) = &set.ends_on {
             let range = case.joint_sets[..k].iter().position(|set| set.name.as_ref() == Some(end));
-            let others: Vec<&[Point]> = match range {
-                Some(other) => traces[set_start[other]..set_start[other + 1]].iter().map(|t| t.0.as_slice()).collect(),
-                None => traces.iter().filter(|t| Some(t.1) == law_of(case, end)).map(|t| t.0.as_slice()).collect(),
+            let others = match range {
+                Some(other) => &traces[set_start[other]..set_start[other + 1]],
+                None => &traces[..],
             };
-            made.iter_mut().for_each(|t| *t = trace::end_on(*t, others.iter().copied()));
+            let stopping = law_of(case, end).filter(|_| range.is_none());
+            let lines = others.iter().filter(|(_, law)| stopping.is_none_or(|stopping| stopping == *law));
+            let stops = Stops::new(lines.map(|(line, _)| line.as_slice()));
+            made.iter_mut().for_each(|t| *t = stops.end(*t));
         }
         traces.extend(made.into_iter().map(|t| (t.to_vec(), law(&set.law))));
         set_start.push(traces.len());

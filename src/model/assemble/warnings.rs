@@ -7,6 +7,7 @@ use crate::model::case::key::Key;
 use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
 
+use super::geometry::Joints;
 use super::law_of;
 use super::locator::Locator;
 use super::points;
@@ -24,27 +25,16 @@ const TENSION_SHARE: f64 = 0.01;
 /// Ignored traces that are named.
 const NAMED: usize = 5;
 
-/// What the noder did; `traces` are the joints, those of the case first.
-pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Point>, LawId)]) -> Vec<String> {
+/// What the noder did.
+pub(super) fn of_geometry(noding: &NodingReport, case: &Case, joints: &Joints) -> Vec<String> {
+    let traces = &joints.traces;
     let mut warnings = Vec::new();
     if noding.merged_vertices > 0 {
-        warnings.push(format!(
-            "{} trace ends or vertices were merged within the snap tolerance {:.3e} m",
-            noding.merged_vertices, noding.tolerance
-        ));
+        let count = noding.merged_vertices;
+        let what = if count == 1 { "trace end or vertex was" } else { "trace ends or vertices were" };
+        warnings.push(format!("{count} {what} merged within the snap tolerance {:.3e} m", noding.tolerance));
     }
-    let ignored = ignored_traces(noding);
-    if !ignored.is_empty() {
-        let name = |&t: &usize| name_of_trace(t, case, &traces[t].0);
-        let names: Vec<String> = ignored.iter().take(NAMED).map(name).collect();
-        let more = ignored.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        warnings.push(format!(
-            "{} joint traces cut no rock (outside the outline, or dead ends within one triangle): {}{more}",
-            ignored.len(),
-            names.join(", ")
-        ));
-    }
+    warnings.extend(lost_joints(noding, case, joints));
     if !noding.overlapping_traces.is_empty() {
         warnings.push(format!(
             "{} pairs of joint traces coincide along an edge; the first of each pair gives its law",
@@ -52,6 +42,32 @@ pub(super) fn of_geometry(noding: &NodingReport, case: &Case, traces: &[(Vec<Poi
         ));
     }
     warnings.extend(idle_regions(case, traces));
+    warnings
+}
+
+/// Joints of the case that cut no rock, and sets of which no trace does. Some traces of a set always miss the rock.
+fn lost_joints(noding: &NodingReport, case: &Case, Joints { traces, set_start, .. }: &Joints) -> Vec<String> {
+    let ignored = ignored_traces(noding);
+    let lost: Vec<usize> = ignored.iter().copied().filter(|&t| t < case.joints.len()).collect();
+    let mut warnings = Vec::new();
+    if !lost.is_empty() {
+        let names: Vec<String> = lost.iter().take(NAMED).map(|&t| name_of_trace(t, &traces[t].0)).collect();
+        let more = lost.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let traces = if lost.len() == 1 { "joint trace cuts" } else { "joint traces cut" };
+        warnings.push(format!(
+            "{} {traces} no rock (outside the outline, or dead ends within one triangle): {}{more}",
+            lost.len(),
+            names.join(", ")
+        ));
+    }
+    // A region with another law divides traces, and the pieces are no longer with their set.
+    let sets = set_start.windows(2).enumerate().filter(|_| case.law_regions.is_empty());
+    let is_lost = |range: &[usize]| (range[0]..range[1]).all(|t| ignored.binary_search(&t).is_ok());
+    warnings.extend(sets.filter(|(_, range)| is_lost(range)).map(|(k, range)| {
+        let count = range[1] - range[0];
+        format!("joint_set[{k}]: none of its {count} traces cuts rock; correct its region, origin or spacing")
+    }));
     warnings
 }
 
@@ -69,11 +85,9 @@ fn idle_regions(case: &Case, traces: &[(Vec<Point>, LawId)]) -> Vec<String> {
     .collect()
 }
 
-fn name_of_trace(trace: usize, case: &Case, points: &[Point]) -> String {
-    let others = if case.law_regions.is_empty() { "one of a joint set" } else { "one of a joint set or a law region" };
-    let name = if trace < case.joints.len() { format!("joint[{trace}]") } else { others.to_owned() };
+fn name_of_trace(trace: usize, points: &[Point]) -> String {
     let position = |p: Option<&Point>| p.map_or_else(String::new, |p| format!("({:.6}, {:.6})", p.x, p.y));
-    format!("{name} from {} to {} m", position(points.first()), position(points.last()))
+    format!("joint[{trace}] from {} to {} m", position(points.first()), position(points.last()))
 }
 
 /// Traces of which nothing cuts rock.

@@ -21,6 +21,10 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     }
     let mut warnings = Vec::from_iter(left_out_stages(&case));
     case.stages.truncate(count);
+    if !case.base_motions.is_empty() {
+        warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());
+        case.base_motions.clear();
+    }
     refuse_yielding(&case)?;
     refuse_motion(&case)?;
     refuse_curves(&case)?;
@@ -53,7 +57,6 @@ fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
 fn refuse_motion(case: &Case) -> Result<(), Invalid> {
     let root = Key::root();
     let lists = [
-        ("base_motion", case.base_motions.len(), "the base moves"),
         ("quiet", case.quiets.len(), "a quiet boundary answers to motion"),
         ("free_field", case.free_fields.len(), "a free field answers to motion"),
     ];

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::slip::{largest_slip, settling_slip};
+use super::slip::slide;
 use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
 use crate::left_out_stages;
 use enmm::model::Simulation;
@@ -140,6 +140,7 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
     let mut simulation = Simulation::new(case.clone())?;
     let drive = simulation.drive();
     (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
+    let mut caught: Option<f64> = None;
     while simulation.stage().kind == StageKind::Static {
         let outcome = simulation.run_stage_with(REST_STEPS, interrupt);
         let (time, stage) = (simulation.time(), simulation.stage().name.clone());
@@ -151,10 +152,13 @@ fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Resu
             }
             Err(error) => return Ok(Settled::NotAtRest { stage, time, unbalanced: f64::NAN, failure: Some(error) }),
         }
+        // A later stage may install bolts across a joint that has slipped before.
+        caught = slide(&simulation).map(|slip| slip.max(caught.unwrap_or(slip))).or(caught);
         simulation.next_stage()?;
     }
-    let slip = largest_slip(&simulation, &[]);
-    let is_caught = !simulation.case().yields() && slip > settling_slip(&simulation);
     let simulation = Box::new(simulation);
-    Ok(if is_caught { Settled::Caught(simulation, slip) } else { Settled::AtRest(simulation) })
+    Ok(match caught {
+        Some(slip) => Settled::Caught(simulation, slip),
+        None => Settled::AtRest(simulation),
+    })
 }

@@ -32,9 +32,16 @@ pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
     slipped.fold(0.0, f64::max)
 }
 
+/// Slip (m) of a slope at rest that is a failure: blocks slid until others caught them. None where settling explains
+/// it, and in rock that yields.
+pub fn slide(simulation: &Simulation) -> Option<f64> {
+    let slip = largest_slip(simulation, &[]);
+    (!simulation.case().yields() && slip > settling_slip(simulation)).then_some(slip)
+}
+
 /// Largest slip (m) of a slope that takes up its weight and does not fail: twice the settlement ρgH²/2(λ+2μ) of its
 /// softest rock, and at least the displacement that elasticity of stiff rock cannot explain (Eq. 63).
-pub fn settling_slip(simulation: &Simulation) -> f64 {
+fn settling_slip(simulation: &Simulation) -> f64 {
     let (height, gravity) = height_and_gravity(simulation);
     let settlement = |density: f64, modulus: f64| density * gravity * height * height / modulus;
     let softest = simulation.model().rocks.iter().map(|rock| settlement(rock.density, rock.lambda + 2.0 * rock.mu));

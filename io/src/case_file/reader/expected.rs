@@ -85,6 +85,14 @@ impl<'a> Schema<'a> {
         all.into_iter().find(|schema| (schema.kind() == "array") == is_list).unwrap_or(self)
     }
 
+    /// Returns all alternatives in words, such as `true or false, or a list of …`.
+    pub fn words(self) -> String {
+        let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
+        let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
+        let words: Vec<String> = all.map(|schema| schema.expected().to_string()).collect();
+        if words.is_empty() { self.expected().to_string() } else { words.join(", or ") }
+    }
+
     fn at(&self, node: &'a Value) -> Self {
         Self { root: self.root, node }
     }
@@ -142,7 +150,10 @@ impl fmt::Display for Expected<'_> {
             Self::Table(_) => f.write_str("a table"),
             Self::Array { items, .. } if items.kind() == "object" => f.write_str("an array of tables"),
             Self::Array { length: Some(length), .. } => write!(f, "an array of {length} values"),
-            Self::Array { length: None, .. } => f.write_str("an array"),
+            Self::Array { items, length: None } => match items.expected() {
+                Self::Choice(names) => write!(f, "an array of some of the strings {}", names.join(", ")),
+                _ => f.write_str("an array"),
+            },
             Self::Number => f.write_str("a number"),
             Self::Integer(_) => f.write_str("a whole number"),
             Self::Text => f.write_str("a string"),
