@@ -121,7 +121,7 @@ impl Film {
             let block = boundary.block[point].index();
             let (displacement, rotation) = motion(block);
             let arm = boundary.reference[point] - (states[block].centroid - states[block].displacement);
-            let (sine, less) = (rotation.sin(), rotation.cos() - 1.0);
+            let (sine, less) = (libm::sin(rotation), libm::cos(rotation) - 1.0);
             [displacement.x + arm.x * less - arm.y * sine, displacement.y + arm.x * sine + arm.y * less]
         };
         self.writer

@@ -199,7 +199,7 @@ fn internal_step(case: &Case, critical: f64) -> f64 {
 
 /// The largest number of two decimal digits that is not above `value`.
 fn two_digits_below(value: f64) -> f64 {
-    let power = value.log10().floor() as i32 - 1;
+    let power = libm::log10(value).floor() as i32 - 1;
     let digits = (value / 10f64.powi(power) + 1e-9).floor();
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
@@ -212,7 +212,7 @@ fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
 }
 
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
-    let tangent = |degrees: f64| degrees.to_radians().tan();
+    let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
     JointLaw {
         normal_stiffness,

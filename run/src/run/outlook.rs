@@ -36,7 +36,7 @@ impl Outlook {
         let now = report.time - state.stage_start;
         let Some((ramp, target)) = simulation.rest_target() else { return };
         if now > ramp && report.unbalanced > 0.0 {
-            self.fall.push([now, report.unbalanced.ln()]);
+            self.fall.push([now, libm::log(report.unbalanced)]);
             self.rest = self.rest_time(target);
         }
     }
@@ -86,7 +86,7 @@ impl Outlook {
         let square: f64 = last.iter().map(|point| (point[0] - time).powi(2)).sum();
         let product: f64 = last.iter().map(|point| (point[0] - time) * (point[1] - ratio)).sum();
         let slope = product / square;
-        (slope < 0.0).then(|| time + (target.ln() - ratio) / slope)
+        (slope < 0.0).then(|| time + (libm::log(target) - ratio) / slope)
     }
 }
 
