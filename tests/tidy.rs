@@ -19,6 +19,8 @@ const OF_THE_SYSTEM: [&str; 22] = [
     "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
     "ln", "ln_1p", "log2", "log10", "powf", "cbrt", "hypot", "mul_add",
 ];
+/// Folders of packages that are no part of a release.
+const TOOLS: [&str; 4] = ["xtask/", "ffi/fuzz/", "ffi/header/", "ffi/overhead/"];
 const THEORY: &str = "docs/theory.md";
 /// Documents that send the reader to files of the repository.
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
@@ -85,6 +87,11 @@ fn nothing_is_unfinished_switched_off_unsafe_or_printed() {
 #[test]
 fn results_use_no_mathematical_functions_of_the_system() {
     hold(each(&[".rs"], &SAME_BITS, system_problems));
+}
+
+#[test]
+fn packages_contain_the_files_that_they_include() {
+    hold(each(&[".rs"], &[""], include_problems));
 }
 
 #[test]
@@ -245,6 +252,19 @@ fn system_problems(file: &File) -> Vec<String> {
         numbered(code).filter_map(|(k, line)| OF_THE_SYSTEM.iter().find(|name| called(line, name)).map(|n| (k, n)));
     let of_results = file.name() != "tests.rs";
     named.filter(|_| of_results).map(|(k, name)| format!("{}:{k}: `{name}`: call libm", file.path)).collect()
+}
+
+/// Files that the library of a package includes from folders of others, which its archive lacks.
+fn include_problems(file: &File) -> Vec<String> {
+    let Some((package, _)) = file.path.split_once("src/").filter(|_| !file.within(&TOOLS)) else { return Vec::new() };
+    let code = file.text.split("#[cfg(test)]").next().unwrap_or_default();
+    let included = |line: &str| {
+        let (_, rest) = line.split_once("include_str!(\"").or_else(|| line.split_once("include_bytes!(\""))?;
+        Some(join(&file.path, rest.split('"').next()?))
+    };
+    let foreign = numbered(code).filter_map(|(k, line)| Some((k, included(line)?)));
+    let foreign = foreign.filter(|(_, path)| !path.starts_with(package));
+    foreign.map(|(k, path)| format!("{}:{k}: includes {path} of another package", file.path)).collect()
 }
 
 fn mark_problems(file: &File) -> Vec<String> {
@@ -719,6 +739,15 @@ fn system_functions_rule_is_seen_failing() {
     assert_eq!(rule("let a = x.sin();\nlet b = f64::exp;\nlet c = (x + y).powf(0.3);"), 3);
     assert_eq!(rule("let a = libm::sin(x); // x.sin()\nlet b = x.powi(2);\n#[cfg(test)]\nx.sin()"), 0);
     assert_eq!(count(system_problems, "src/a/tests.rs", "x.sin()"), 0);
+}
+
+#[test]
+fn includes_rule_is_seen_failing() {
+    let rule = |path, text| count(include_problems, path, text);
+    assert_eq!(rule("a/b/src/c/d.rs", "const A: &str = include_str!(\"../../../x.toml\");"), 1);
+    assert_eq!(rule("a/b/src/c/d.rs", "const A: &[u8] = include_bytes!(\"../../x.toml\");"), 0);
+    assert_eq!(rule("a/b/src/d.rs", "#[cfg(test)]\nconst A: &str = include_str!(\"../../x.toml\");"), 0);
+    assert_eq!(rule("xtask/src/a.rs", "include_str!(\"../../x.toml\")"), 0);
 }
 
 #[test]
