@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::counts::{self, Counts};
+use crate::debian;
+use crate::platform::HERE;
 use crate::repository::{self, Repository};
 use crate::venv;
 use crate::wheel;
@@ -50,7 +52,7 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
         pytest.args(["--ignore", BROWSER_TEST]);
     }
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
-    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository)?);
+    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -61,16 +63,9 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
 
 /// Whether there is a Chromium; where Debian's packages can be installed it is installed first.
 fn has_browser() -> bool {
-    let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
-    let is_root = || Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout.trim_ascii() == b"0");
-    if found() || !is_root() {
-        return found();
-    }
-    println!("installing Chromium for {BROWSER_TEST}");
-    let apt =
-        |args: &[&str]| venv::succeeds(Command::new("apt-get").args(args).env("DEBIAN_FRONTEND", "noninteractive"));
-    let install = ["install", "--yes", "--no-install-recommends", "chromium"];
-    (apt(&install) || (apt(&["update"]) && apt(&install))) && found()
+    debian::provide(BROWSER_TEST, "chromium", || {
+        BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")))
+    })
 }
 
 /// Packs the FMUs of the tests; returns their folder.
