@@ -2,7 +2,6 @@
 
 import ctypes
 import itertools
-import platform
 import shutil
 import struct
 import zipfile
@@ -29,7 +28,6 @@ import fmpy
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 CO_SIMULATION = 1
 
-ENDINGS = {"Linux": ".so", "Darwin": ".dylib", "Windows": ".dll"}
 TYPES = {
     2: {"Real": "Real", "Integer": "Integer", "Boolean": "Boolean"},
     3: {"Float64": "Float64", "Int32": "Int32", "Boolean": "Boolean"},
@@ -97,8 +95,9 @@ class Fmu:
 
     @property
     def library(self) -> Path:
-        """The one library inside."""
-        (library,) = (self.folder / "binaries").glob(f"*/*{ENDINGS[platform.system()]}")
+        """The library for this platform."""
+        place = fmpy.platform if self.version == 2 else fmpy.platform_tuple
+        (library,) = (self.folder / "binaries" / place).iterdir()
         return library
 
     @property

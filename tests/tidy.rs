@@ -12,6 +12,15 @@ const ENGINE_LINES_MAX: usize = 22_500;
 const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];
 /// Rooms whose results must not depend on the order of a hash.
 const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
+/// Folders whose results have the same bits on every platform.
+const SAME_BITS: [&str; 6] = ["src/", "case/src/", "stability/src/", "run/src/", "report/src/", "picture/src/"];
+/// Functions whose last bits differ from system to system; those of `libm` do not.
+const OF_THE_SYSTEM: [&str; 22] = [
+    "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
+    "ln", "ln_1p", "log2", "log10", "powf", "cbrt", "hypot", "mul_add",
+];
+/// Folders of packages that are no part of a release.
+const TOOLS: [&str; 4] = ["xtask/", "ffi/fuzz/", "ffi/header/", "ffi/overhead/"];
 const THEORY: &str = "docs/theory.md";
 /// Documents that send the reader to files of the repository.
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
@@ -73,6 +82,16 @@ fn functions_fit_a_screen() {
 #[test]
 fn nothing_is_unfinished_switched_off_unsafe_or_printed() {
     hold(each(&[".rs"], &[""], word_problems));
+}
+
+#[test]
+fn results_use_no_mathematical_functions_of_the_system() {
+    hold(each(&[".rs"], &SAME_BITS, system_problems));
+}
+
+#[test]
+fn packages_contain_the_files_that_they_include() {
+    hold(each(&[".rs"], &[""], include_problems));
 }
 
 #[test]
@@ -221,6 +240,31 @@ fn word_problems(file: &File) -> Vec<String> {
     let ignored = numbered(&code).filter(|(_, line)| line.replace(' ', "").contains("#[ignore"));
     problems.extend(ignored.map(|(line, _)| format!("{}:{line}: a test that is switched off", file.path)));
     problems
+}
+
+/// Calls of mathematical functions of the system, in front of the tests of a file.
+fn system_problems(file: &File) -> Vec<String> {
+    let code = code_only(&file.text);
+    let code = code.split("#[cfg(test)]").next().unwrap_or_default();
+    let called =
+        |line: &str, name: &&str| line.contains(&format!(".{name}(")) || line.contains(&format!("f64::{name}"));
+    let named =
+        numbered(code).filter_map(|(k, line)| OF_THE_SYSTEM.iter().find(|name| called(line, name)).map(|n| (k, n)));
+    let of_results = file.name() != "tests.rs";
+    named.filter(|_| of_results).map(|(k, name)| format!("{}:{k}: `{name}`: call libm", file.path)).collect()
+}
+
+/// Files that the library of a package includes from folders of others, which its archive lacks.
+fn include_problems(file: &File) -> Vec<String> {
+    let Some((package, _)) = file.path.split_once("src/").filter(|_| !file.within(&TOOLS)) else { return Vec::new() };
+    let code = file.text.split("#[cfg(test)]").next().unwrap_or_default();
+    let included = |line: &str| {
+        let (_, rest) = line.split_once("include_str!(\"").or_else(|| line.split_once("include_bytes!(\""))?;
+        Some(join(&file.path, rest.split('"').next()?))
+    };
+    let foreign = numbered(code).filter_map(|(k, line)| Some((k, included(line)?)));
+    let foreign = foreign.filter(|(_, path)| !path.starts_with(package));
+    foreign.map(|(k, path)| format!("{}:{k}: includes {path} of another package", file.path)).collect()
 }
 
 fn mark_problems(file: &File) -> Vec<String> {
@@ -687,6 +731,23 @@ fn words_rule_is_seen_failing() {
     assert_eq!(rule("src/contact/a.rs", "use std::collections::HashMap; fn f(x: HashSet<u8>) {}"), 2);
     assert_eq!(rule("src/io/a.rs", "use std::collections::HashMap;"), 0);
     assert_eq!(rule("src/step/a.rs", "// unsafe HashMap println!\nlet s = \"todo!() // \\\" dbg!\";"), 0);
+}
+
+#[test]
+fn system_functions_rule_is_seen_failing() {
+    let rule = |text| count(system_problems, "src/a.rs", text);
+    assert_eq!(rule("let a = x.sin();\nlet b = f64::exp;\nlet c = (x + y).powf(0.3);"), 3);
+    assert_eq!(rule("let a = libm::sin(x); // x.sin()\nlet b = x.powi(2);\n#[cfg(test)]\nx.sin()"), 0);
+    assert_eq!(count(system_problems, "src/a/tests.rs", "x.sin()"), 0);
+}
+
+#[test]
+fn includes_rule_is_seen_failing() {
+    let rule = |path, text| count(include_problems, path, text);
+    assert_eq!(rule("a/b/src/c/d.rs", "const A: &str = include_str!(\"../../../x.toml\");"), 1);
+    assert_eq!(rule("a/b/src/c/d.rs", "const A: &[u8] = include_bytes!(\"../../x.toml\");"), 0);
+    assert_eq!(rule("a/b/src/d.rs", "#[cfg(test)]\nconst A: &str = include_str!(\"../../x.toml\");"), 0);
+    assert_eq!(rule("xtask/src/a.rs", "include_str!(\"../../x.toml\")"), 0);
 }
 
 #[test]

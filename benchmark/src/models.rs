@@ -7,8 +7,8 @@ use super::slope::{continuum_case, slope_case};
 use enmm::model::Simulation;
 use enmm_io::parse_case;
 
-/// The example that rests under strong joints and then fails.
-const FRACTURED: &str = include_str!("../../examples/cases/fractured_slope.toml");
+/// The example that rests under strong joints and then fails: a copy, since packages hold no files of other folders.
+const FRACTURED: &str = include_str!("fractured_slope.toml");
 /// Simulated time (s) after the loss of strength at which the failing slope is timed.
 const FAILING_FOR: f64 = 0.4;
 /// Steps before the clock runs of models that need no state of their own.
@@ -123,6 +123,11 @@ impl fmt::Display for Model {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_failing_slope_is_that_of_the_examples() {
+        assert_eq!(FRACTURED, include_str!("../../examples/cases/fractured_slope.toml"));
+    }
 
     #[test]
     fn names_are_read_back() {

@@ -33,13 +33,13 @@ const MOTION: &str = "[[stage]]\nname = \"motion\"\nkind = \"dynamic\"\nduration
 ///
 /// About `blocks` blocks, each cut into about `elements_a_block` elements by the mesh, lie on a thin slab of held rock.
 pub fn slope_case(blocks: usize, elements_a_block: usize) -> String {
-    let (sin, cos) = DIP_DEG.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(DIP_DEG.to_radians());
     let length = HEIGHT / sin;
-    let crest = [HEIGHT / FACE_DEG.to_radians().tan(), HEIGHT];
+    let crest = [HEIGHT / libm::tan(FACE_DEG.to_radians()), HEIGHT];
     let thickness = crest[1] * cos - crest[0] * sin;
     let area = 0.5 * length * thickness;
     let spacing = root(area, length + thickness, blocks as f64 - 1.0);
-    let perimeter = length + (length * cos - crest[0]) + HEIGHT / FACE_DEG.to_radians().sin();
+    let perimeter = length + (length * cos - crest[0]) + HEIGHT / libm::sin(FACE_DEG.to_radians());
     let faces = 2.0 * (2.0 * area / spacing) + perimeter;
     let size = mesh_size(area / blocks as f64, faces / blocks as f64, elements_a_block as f64);
     let along = |position: f64, depth: f64| {

@@ -225,7 +225,7 @@ fn strength(key: &Key, rock: &Rock) -> Check {
     }
     let hint = "more than friction_deg would make energy; leave it out for friction_deg";
     optional(key, "dilation_deg", rock.dilation_deg, Range::from(0.0).to(friction), "degrees", hint)?;
-    let apex = if friction > 0.0 { cohesion / friction.to_radians().tan() } else { Law::STRENGTH_MAX };
+    let apex = if friction > 0.0 { cohesion / libm::tan(friction.to_radians()) } else { Law::STRENGTH_MAX };
     let hint = "the shear planes end at cohesion/tan(friction_deg); leave it out for that";
     optional(key, "tension", rock.tension, Range::from(0.0).to(apex), "Pa", hint)
 }

@@ -1,14 +1,13 @@
 """Puts the library, the program and the libraries of FMUs into the wheel, and names the platform it is for.
 
-`cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them. The library lies in the package, the program
-among the scripts, and the libraries that `enmm fmu` packs in `lib`, where the program looks for them. Licences and the
-list of all parts are in the metadata. The package calls the library by ctypes, so one wheel serves every Python of a
-platform.
+`cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them; cross builds set ENMM_PLATFORM to their platform
+as well, such as win-amd64. The library lies in the package, the program among the scripts, and the libraries that
+`enmm fmu` packs in `lib`, where the program looks for them. Licences and the list of all parts are in the metadata. The
+package calls the library by ctypes, so one wheel serves every Python of a platform.
 """
 
 import os
 import re
-import sys
 import sysconfig
 from pathlib import Path
 from typing import Any
@@ -17,8 +16,8 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 NAMES = {
     "linux": ("libenmm.so", "enmm", ("libenmm_fmi2.so", "libenmm_fmi3.so")),
-    "darwin": ("libenmm.dylib", "enmm", ("libenmm_fmi2.dylib", "libenmm_fmi3.dylib")),
-    "win32": ("enmm.dll", "enmm.exe", ("enmm_fmi2.dll", "enmm_fmi3.dll")),
+    "macosx": ("libenmm.dylib", "enmm", ("libenmm_fmi2.dylib", "libenmm_fmi3.dylib")),
+    "win": ("enmm.dll", "enmm.exe", ("enmm_fmi2.dll", "enmm_fmi3.dll")),
 }
 
 
@@ -31,13 +30,15 @@ class WheelHook(BuildHookInterface):
         given = os.environ.get("ENMM_BINARIES")
         if not given:
             return
-        library, program, of_fmus = NAMES[sys.platform]
+        platform = os.environ.get("ENMM_PLATFORM") or sysconfig.get_platform()
+        library, program, of_fmus = NAMES[platform.split("-")[0]]
         folder = Path(given)
         missing = [name for name in (library, program, *of_fmus) if not (folder / name).is_file()]
         if missing:
             raise FileNotFoundError(f"{folder} lacks {', '.join(missing)}: run `cargo xtask wheel`")
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform([folder / name for name in (library, program, *of_fmus)])}"
+        binaries = [folder / name for name in (library, program, *of_fmus)]
+        build_data["tag"] = f"py3-none-{tag(platform, binaries)}"
         build_data["force_include"][str(folder / library)] = f"enmm/{library}"
         build_data["shared_scripts"][str(folder / program)] = program
         metadata = f"enmm-{self.metadata.version}.dist-info"
@@ -48,10 +49,10 @@ class WheelHook(BuildHookInterface):
         build_data["shared_data"] |= {str(folder / name): f"lib/{name}" for name in of_fmus}
 
 
-def platform(binaries: list[Path]) -> str:
-    """The tag of the platform: on Linux with the oldest C library that has all functions which the binaries use."""
-    name = re.sub(r"\W", "_", sysconfig.get_platform())
-    if sys.platform != "linux":
+def tag(platform: str, binaries: list[Path]) -> str:
+    """The tag of a platform: on Linux with the oldest C library that has all functions which the binaries use."""
+    name = re.sub(r"\W", "_", platform)
+    if not name.startswith("linux_"):
         return name
     versions = [int(found) for path in binaries for found in re.findall(rb"GLIBC_2\.(\d+)", path.read_bytes())]
     return f"manylinux_2_{max(versions)}_{name.removeprefix('linux_')}"

@@ -215,7 +215,7 @@ fn sets(simulation: &Simulation) -> Vec<SetMark> {
     }
     let mark = |(k, (set, middles)): (usize, (&enmm::model::case::JointSet, Vec<Point>))| {
         let centre = middles.iter().sum::<Vector>() / middles.len().max(1) as f64;
-        let (sin, cos) = set.angle().sin_cos();
+        let (sin, cos) = libm::sincos(set.angle());
         let direction = Vector::new(cos, sin);
         let reach = middles.iter().map(|p| (p - centre).dot(&direction)).fold(0.0, f64::max);
         let wanted = centre + direction * (0.6 * reach);

@@ -176,7 +176,7 @@ impl Ticks {
             return Self { values: Vec::new(), decimals: 0 };
         }
         let values = (first as i64..=last as i64).map(|k| k as f64 * step).collect();
-        Self { values, decimals: (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize }
+        Self { values, decimals: (-(libm::log10(step) + 1e-9).floor()).clamp(0.0, 12.0) as usize }
     }
 
     /// A value in as many decimals as the step needs.
@@ -188,7 +188,7 @@ impl Ticks {
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `value`.
 pub fn round_above(value: f64) -> f64 {
-    let power = 10.0_f64.powf(value.log10().floor());
+    let power = libm::pow(10.0, libm::log10(value).floor());
     [1.0, 2.0, 5.0]
         .map(|digit| digit * power)
         .into_iter()
@@ -202,7 +202,7 @@ pub fn number_text(value: f64) -> String {
     if size == 0.0 || !value.is_finite() {
         return with_minus(format!("{}", value + 0.0));
     }
-    let exponent = size.log10().floor() as i32;
+    let exponent = libm::log10(size).floor() as i32;
     if !(-4..7).contains(&exponent) {
         let mantissa = trimmed(format!("{:.3}", value / 10.0_f64.powi(exponent)));
         return with_minus(format!("{mantissa} × 10{}", superscript(exponent)));
@@ -216,7 +216,7 @@ pub fn si_text(value: f64, unit: &str) -> String {
     let fits = PREFIXES.into_iter().find(|(size, _)| value.abs() >= 0.9995 * size);
     let (size, prefix) = fits.filter(|_| value.is_finite()).unwrap_or((1.0, ""));
     let scaled = value / size;
-    let decimals = 2 - scaled.abs().max(1.0).log10().floor().clamp(0.0, 2.0) as usize;
+    let decimals = 2 - libm::log10(scaled.abs().max(1.0)).floor().clamp(0.0, 2.0) as usize;
     with_minus(format!("{} {prefix}{unit}", trimmed(format!("{:.decimals$}", scaled + 0.0))))
 }
 

@@ -108,7 +108,7 @@ impl Scale {
 
     fn round_values(&self, most: f64) -> Vec<(f64, String)> {
         let size = self.min.abs().max(self.max.abs());
-        let exponent = if (1e-2..1e5).contains(&size) { 0 } else { 3 * (size.log10() / 3.0).floor() as i32 };
+        let exponent = if (1e-2..1e5).contains(&size) { 0 } else { 3 * (libm::log10(size) / 3.0).floor() as i32 };
         let unit = 10f64.powi(exponent);
         let ticks = Ticks::new(self.min / unit, self.max / unit, most);
         let power = if exponent == 0 { String::new() } else { format!("·10{}", superscript(exponent)) };
@@ -121,7 +121,7 @@ impl Scale {
         let (first, last) = (self.min.floor() as i32, self.max.ceil() as i32);
         let step = 1 + (last - first) / DECADES_MAX;
         let digits: &[f64] = if self.max - self.min < 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let within = |value: &f64| (self.min..=self.max).contains(&value.log10());
+        let within = |value: &f64| (self.min..=self.max).contains(&libm::log10(*value));
         let power = |k: i32, digit: f64| {
             let times = if digit == 1.0 { String::new() } else { format!("{digit}·") };
             (digit * 10f64.powi(k), format!("{times}10{}", superscript(k)))
@@ -132,7 +132,7 @@ impl Scale {
 }
 
 fn placed(value: f64, logarithmic: bool) -> f64 {
-    if logarithmic { value.log10() } else { value }
+    if logarithmic { libm::log10(value) } else { value }
 }
 
 fn is_drawable(chart: &Chart, point: &[f64; 2]) -> bool {

@@ -154,7 +154,7 @@ fn cut(places: &[Point], values: &[f64], level: f64, view: &View) -> (Vec<Pixel>
     }
     // A polygon that is not convex may cross a contour more than twice: pieces follow each other along the contour.
     if line.len() > 2 {
-        let apart = |from: &Pixel, to: &Pixel| (to[0] - from[0]).hypot(to[1] - from[1]);
+        let apart = |from: &Pixel, to: &Pixel| libm::hypot(to[0] - from[0], to[1] - from[1]);
         let first = line[0];
         let end = line.iter().copied().max_by(|a, b| apart(&first, a).total_cmp(&apart(&first, b))).unwrap_or(first);
         let along = |p: &Pixel| (p[0] - end[0]) * (first[0] - end[0]) + (p[1] - end[1]) * (first[1] - end[1]);

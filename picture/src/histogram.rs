@@ -54,8 +54,8 @@ impl Bins {
         let n = sorted.len();
         let quarter = |k: usize| sorted[(k * (n - 1)) / 4];
         let span = last - first;
-        let by_spread = 2.0 * (quarter(3) - quarter(1)) / (n as f64).cbrt();
-        let by_count = span / ((n as f64).log2() + 1.0).ceil();
+        let by_spread = 2.0 * (quarter(3) - quarter(1)) / libm::cbrt(n as f64);
+        let by_count = span / (libm::log2(n as f64) + 1.0).ceil();
         let least = (span / BINS_MAX).max(1e-9 * first.abs().max(last.abs())).max(f64::MIN_POSITIVE);
         let width = if by_spread > 0.0 { by_spread.min(by_count) } else { by_count }.max(least);
         let from = if (first..=last).contains(&limit) { limit } else { first };

@@ -134,7 +134,7 @@ impl Range {
     /// The power of a thousand by which numbers of this size are divided to be short.
     fn exponent(&self) -> i32 {
         let size = self.min.abs().max(self.max.abs());
-        if (0.02..2e4).contains(&size) { 0 } else { 3 * (size.log10() / 3.0).floor() as i32 }
+        if (0.02..2e4).contains(&size) { 0 } else { 3 * (libm::log10(size) / 3.0).floor() as i32 }
     }
 }
 

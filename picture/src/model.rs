@@ -365,7 +365,7 @@ impl Model<'_> {
         for (name, position) in self.annotations.monitors.iter().filter(|(_, position)| is_drawable(position)) {
             signs::draw_monitor(sheet, view.pixel(position));
             let mark = view.pixel(position);
-            let near = |other: &Pixel| (other[0] - mark[0]).hypot(other[1] - mark[1]) < 12.0;
+            let near = |other: &Pixel| libm::hypot(other[0] - mark[0], other[1] - mark[1]) < 12.0;
             if !named.iter().any(|(other, place)| *other == name && near(place)) {
                 named.push((name, mark));
             }
@@ -490,7 +490,7 @@ fn tail(tip: Pixel, force: Vector, length: f64) -> Pixel {
 fn draw_row_of_arrows(sheet: &mut Svg, view: &View, edge: &[Point; 2], force: Vector, style: Style) -> Pixel {
     let [a, b] = edge.map(|end| view.pixel(&end));
     let at = |share: f64| [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
-    let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / ARROW_DISTANCE).clamp(1.0, 60.0).round();
+    let count = (libm::hypot(b[0] - a[0], b[1] - a[1]) / ARROW_DISTANCE).clamp(1.0, 60.0).round();
     let mut path = Path::default();
     for k in 0..=count as usize {
         let tip = at(k as f64 / count);

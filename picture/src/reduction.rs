@@ -99,9 +99,9 @@ impl Chart {
         let margin = 0.05 * (high - low).max(0.02 * high);
         let [least, most] = range(&mut reduction.trials.iter().map(of).filter(|v| *v > 0.0 && v.is_finite()));
         let (least, most) = if least <= most { (least, most) } else { (0.1, 1.0) };
-        let top = most.log10() + 0.3;
+        let top = libm::log10(most) + 0.3;
         let factors = if low <= high { [low - margin, high + margin] } else { [0.0, 1.0] };
-        Self { frame, factors, decades: [(least.log10() - 0.3).max(top - DECADES_MAX), top] }
+        Self { frame, factors, decades: [(libm::log10(least) - 0.3).max(top - DECADES_MAX), top] }
     }
 
     fn x(&self, factor: f64) -> f64 {
@@ -111,7 +111,7 @@ impl Chart {
 
     fn y(&self, value: f64) -> f64 {
         let [low, high] = self.decades;
-        let decade = if value > 0.0 { value.log10().clamp(low, high) } else { low };
+        let decade = if value > 0.0 { libm::log10(value).clamp(low, high) } else { low };
         self.frame.bottom() - (decade - low) / (high - low) * self.frame.height
     }
 

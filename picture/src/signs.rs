@@ -76,7 +76,7 @@ pub fn draw_arrow(sheet: &mut Svg, from: Pixel, to: Pixel, style: Style) {
 /// Adds an arrow with its head, at most `head` px long, at `to`.
 pub fn push_arrow(path: &mut Path, from: Pixel, to: Pixel, head: f64) {
     let way = [to[0] - from[0], to[1] - from[1]];
-    let length = way[0].hypot(way[1]);
+    let length = libm::hypot(way[0], way[1]);
     if length > 0.5 {
         let head = head.min(0.6 * length);
         let unit = way.map(|part| part / length);
@@ -96,7 +96,7 @@ pub fn draw_moment(sheet: &mut Svg, centre: Pixel, counter_clockwise: bool, styl
     let turn = if counter_clockwise { -1.0 } else { 1.0 };
     let at = |k: i32| {
         let angle = turn * f64::from(k) * 15f64.to_radians();
-        [centre[0] + 16.0 * angle.cos(), centre[1] + 16.0 * angle.sin()]
+        [centre[0] + 16.0 * libm::cos(angle), centre[1] + 16.0 * libm::sin(angle)]
     };
     let mut path = Path::default();
     path.line((0..=17).map(at));
@@ -106,7 +106,7 @@ pub fn draw_moment(sheet: &mut Svg, centre: Pixel, counter_clockwise: bool, styl
 
 /// Draws a bolt with a plate at its head, the first end.
 pub fn draw_bolt(sheet: &mut Svg, [[x, y], [u, v]]: [Pixel; 2], style: Style) {
-    let length = (u - x).hypot(v - y).max(f64::MIN_POSITIVE);
+    let length = libm::hypot(u - x, v - y).max(f64::MIN_POSITIVE);
     let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
     let mut path = Path::default();
     path.line([[x, y], [u, v]]);

@@ -202,7 +202,7 @@ fn vectors_picture(
     let fraction = |size: f64| match (largest > 0.0, logarithmic) {
         (false, _) => 0.0,
         (true, false) => size / largest,
-        (true, true) => 1.0 + (size / largest).log10().max(-DECADES) / DECADES,
+        (true, true) => 1.0 + libm::log10(size / largest).max(-DECADES) / DECADES,
     };
     let mut sheet = Sheet::new(stage, BAR_ROOM, what);
     sheet.fill(|k| scale_step(fraction(sizes[k])));
@@ -239,16 +239,16 @@ fn linear_ticks(largest: f64) -> Vec<(f64, String)> {
 
 /// Ticks of a logarithmic scale that ends at `largest`.
 fn decade_ticks(largest: f64) -> Vec<(f64, String)> {
-    let top = largest.log10();
-    decades(largest).map(|value| (1.0 + (value.log10() - top) / DECADES, number_text(value))).collect()
+    let top = libm::log10(largest);
+    decades(largest).map(|value| (1.0 + (libm::log10(value) - top) / DECADES, number_text(value))).collect()
 }
 
 /// 1, 2 and 5 times the powers of ten in the decades below `largest`.
 pub fn decades(largest: f64) -> impl Iterator<Item = f64> {
-    let top = largest.log10();
+    let top = libm::log10(largest);
     let powers = (top - DECADES).floor() as i32..=top.floor() as i32;
     let values = powers.flat_map(|k| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(k)));
-    values.filter(move |value| (0.0..=1.0).contains(&(1.0 + (value.log10() - top) / DECADES)))
+    values.filter(move |value| (0.0..=1.0).contains(&(1.0 + (libm::log10(*value) - top) / DECADES)))
 }
 
 /// Name and size of the first unit whose least value a value reaches.
@@ -273,7 +273,7 @@ fn samples(snapshot: &Snapshot, view: &View, distance: f64) -> Vec<(Pixel, usize
         let centre = view.pixel(&(corners.iter().sum::<Point>() / corners.len() as f64));
         let cell = centre.map(|part| (part / distance).floor());
         let off = [0, 1].map(|k| centre[k] - (cell[k] + 0.5) * distance);
-        let off = off[0].hypot(off[1]);
+        let off = libm::hypot(off[0], off[1]);
         let best = nearest.entry(cell.map(|part| part as i64)).or_insert((off, centre, k));
         if off < best.0 {
             *best = (off, centre, k);
@@ -292,9 +292,9 @@ struct Principal {
 
 impl Principal {
     fn of(&[xx, yy, xy]: &[f64; 3]) -> Self {
-        let (mean, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
-        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-        Self { values: [mean + radius, mean - radius], direction: Vector::new(angle.cos(), angle.sin()) }
+        let (mean, radius) = (0.5 * (xx + yy), libm::hypot(0.5 * (xx - yy), xy));
+        let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+        Self { values: [mean + radius, mean - radius], direction: Vector::new(libm::cos(angle), libm::sin(angle)) }
     }
 }
 

@@ -134,7 +134,7 @@ impl Shape {
         }
         let wanted = if most > 0.0 { most * QUANTUM_OF_MOTION } else { f64::INFINITY };
         let least = (self.size * QUANTUM_LEAST).max(f64::MIN_POSITIVE);
-        Ok(wanted.min(self.size * QUANTUM).max(least).log2().floor().exp2())
+        Ok(libm::exp2(libm::log2(wanted.min(self.size * QUANTUM).max(least)).floor()))
     }
 
     /// Appends what the rigid motion of its block leaves of each corner's displacement, in quanta.
@@ -142,7 +142,7 @@ impl Shape {
         let mut rest: [Vec<u8>; 2] = [Vec::new(), Vec::new()];
         let mut corner = 0;
         for (&[x, y, turn], &end) in motion.iter().zip(&self.ends) {
-            let (sine, cosine) = f64::from(turn).sin_cos();
+            let (sine, cosine) = libm::sincos(f64::from(turn));
             while corner < end {
                 let [a, b] = self.arms[corner];
                 let rigid =

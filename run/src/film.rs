@@ -128,7 +128,7 @@ impl Film {
             let block = block.index();
             let (displacement, rotation) = motion(block);
             let arm = place - (states[block].centroid - states[block].displacement);
-            let (sine, less) = (rotation.sin(), rotation.cos() - 1.0);
+            let (sine, less) = (libm::sin(rotation), libm::cos(rotation) - 1.0);
             displacement + Vector::new(arm.x * less - arm.y * sine, arm.x * sine + arm.y * less)
         };
         let corner = |&point: &EdgeId| {

@@ -264,7 +264,7 @@ fn ring<I>(previous: &mut Vec<I>, next: &mut Vec<I>, indices: Range<usize>, id: 
 /// Turn (rad) from one direction to the next; half a turn back is a crack tip, hence negative.
 fn turn(before: &BoundaryPiece, after: &BoundaryPiece) -> f64 {
     let (d, e) = (before.b - before.a, after.b - after.a);
-    let angle = d.perp(&e).atan2(d.dot(&e));
+    let angle = libm::atan2(d.perp(&e), d.dot(&e));
     if angle.abs() > std::f64::consts::PI - 1e-6 { -std::f64::consts::PI } else { angle }
 }
 

@@ -44,8 +44,8 @@ impl RegularMesh {
         let mut mesh = Self {
             size,
             origin,
-            a1: Vector::new(angle.cos(), angle.sin()) * size,
-            a2: Vector::new(turn.cos(), turn.sin()) * size,
+            a1: Vector::new(libm::cos(angle), libm::sin(angle)) * size,
+            a2: Vector::new(libm::cos(turn), libm::sin(turn)) * size,
             first: [0, 0],
             count: [0, 0],
         };

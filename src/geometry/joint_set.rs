@@ -124,7 +124,8 @@ fn generate_within(
     check(set)?;
     let region = validate_loop(region, "region of a joint set")?;
     let (low, high) = bounds(&region);
-    let (along, normal) = (Vector::new(set.dip.cos(), set.dip.sin()), Vector::new(-set.dip.sin(), set.dip.cos()));
+    let (sin, cos) = libm::sincos(set.dip);
+    let (along, normal) = (Vector::new(cos, sin), Vector::new(-sin, cos));
     let range = |axis: Vector| {
         let positions = region.iter().map(|p| p.dot(&axis));
         positions
@@ -138,7 +139,7 @@ fn generate_within(
     let mut tried = 0;
     // A turned trace reaches across its line, so that lines just outside the region matter too.
     let half = 0.5 * set.trace_length.map_or(end - start, |length| length * set.reach(cutoffs));
-    let margin = half * set.turn_max(cutoffs).sin();
+    let margin = half * libm::sin(set.turn_max(cutoffs));
     let mut waiting = match set.origin {
         None => vec![bottom - margin + set.spacing * random.uniform()],
         Some(origin) => lines_below(set, origin.dot(&normal), [bottom - margin, top + margin], &mut random)?,
@@ -301,8 +302,8 @@ impl Random {
 
     /// Draws from the standard normal distribution (Box and Muller).
     fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
+        let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
+        radius * libm::cos(std::f64::consts::TAU * self.uniform())
     }
 
     /// Draws from a normal distribution cut off at 0.1 and 1.9 of its mean; with `sd` ≤ mean two of three draws count.
@@ -319,11 +320,11 @@ impl Random {
     fn spread(&mut self, kind: Spread, mean: f64, sd: f64) -> f64 {
         match kind {
             Spread::Normal => self.near(mean, sd),
-            Spread::Exponential => -mean * (1.0 - self.uniform()).ln(),
+            Spread::Exponential => -mean * libm::log(1.0 - self.uniform()),
             Spread::Uniform => mean + 3f64.sqrt() * sd * (2.0 * self.uniform() - 1.0),
             Spread::Lognormal => {
-                let variance = (sd / mean).powi(2).ln_1p();
-                mean * (variance.sqrt() * self.normal() - 0.5 * variance).exp()
+                let variance = libm::log1p((sd / mean).powi(2));
+                mean * libm::exp(variance.sqrt() * self.normal() - 0.5 * variance)
             }
         }
     }
@@ -334,7 +335,7 @@ impl Random {
             Turn::Normal => self.direction(set.dip_sd),
             Turn::Uniform => {
                 let angle = 3f64.sqrt() * set.dip_sd * (2.0 * self.uniform() - 1.0);
-                Vector::new(angle.cos(), angle.sin())
+                Vector::new(libm::cos(angle), libm::sin(angle))
             }
             Turn::Fisher { concentration, out_of_plane } => self.fisher(concentration, out_of_plane, cutoffs.turn),
         }
@@ -344,17 +345,17 @@ impl Random {
     /// `out_of_plane` out of the plane of the traces. The angle θ off the mean has, by its inverse distribution
     /// function, cos θ = 1 + ln(u + (1 − u)·exp(−2κ))/κ (Fisher, Lewis and Embleton 1987, section 3.6.2).
     fn fisher(&mut self, concentration: f64, out_of_plane: f64, turn_max: f64) -> Vector {
-        let (out, within) = out_of_plane.sin_cos();
+        let (out, within) = libm::sincos(out_of_plane);
         loop {
             let u = 1.0 - self.uniform();
-            let cos = 1.0 + (u + (1.0 - u) * (-2.0 * concentration).exp()).ln() / concentration;
+            let cos = 1.0 + libm::log(u + (1.0 - u) * libm::exp(-2.0 * concentration)) / concentration;
             let sin = (1.0 - cos * cos).max(0.0).sqrt();
-            let (around_sin, around_cos) = (std::f64::consts::TAU * self.uniform()).sin_cos();
+            let (around_sin, around_cos) = libm::sincos(std::f64::consts::TAU * self.uniform());
             // The pole in the plane of the traces: along the mean trace and normal to it; joints have no sign.
             let (along, normal) = (sin * around_cos, cos * within - sin * around_sin * out);
-            let turn = (-along / normal).atan();
+            let turn = libm::atan(-along / normal);
             if turn.abs() <= turn_max {
-                return Vector::new(turn.cos(), turn.sin());
+                return Vector::new(libm::cos(turn), libm::sin(turn));
             }
         }
     }
@@ -364,7 +365,7 @@ impl Random {
         loop {
             let off = self.normal();
             if off.abs() <= DIP_DEVIATIONS_MAX {
-                return Vector::new((sd * off).cos(), (sd * off).sin());
+                return Vector::new(libm::cos(sd * off), libm::sin(sd * off));
             }
         }
     }

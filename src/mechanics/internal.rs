@@ -150,7 +150,7 @@ impl Deformation {
 
     /// Rotation (rad), counter-clockwise.
     pub fn rotation(&self) -> f64 {
-        self.sin.atan2(self.cos)
+        libm::atan2(self.sin, self.cos)
     }
 }
 

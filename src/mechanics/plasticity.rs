@@ -214,7 +214,7 @@ struct Principal {
 impl Principal {
     fn of([xx, yy, xy, zz]: [f64; 4], plane_stress: bool) -> Self {
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = half.hypot(xy);
+        let radius = libm::hypot(half, xy);
         let double_angle = if radius > 0.0 { [half / radius, xy / radius] } else { [1.0, 0.0] };
         let (a, b) = (mean + radius, mean - radius);
         let (sorted, axis) = match () {

@@ -171,12 +171,10 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     Ok((fixities, supports, of_case, quiets))
 }
 
-/// Loads, ports and water, which act on faces of the rock.
-fn on_faces(
-    case: &Case,
-    positions: &Locator,
-    boundary: &Boundary,
-) -> Result<(Vec<Load>, Vec<Port>, Option<Water>), Invalid> {
+/// What acts on faces of the rock.
+type OnFaces = (Vec<Load>, Vec<Port>, Option<Water>);
+
+fn on_faces(case: &Case, positions: &Locator, boundary: &Boundary) -> Result<OnFaces, Invalid> {
     let faces = ports::Faces { boundary, tolerance: positions.tolerance };
     Ok((loads(case, positions, &faces)?, ports::ports(case, positions, &faces)?, ports::water(case, &faces)?))
 }
@@ -216,7 +214,7 @@ fn step_below(limit: f64, case: &Case) -> f64 {
 
 /// The largest number of two decimal digits that is not above `value`.
 fn two_digits_below(value: f64) -> f64 {
-    let power = value.log10().floor() as i32 - 1;
+    let power = libm::log10(value).floor() as i32 - 1;
     let digits = (value / 10f64.powi(power) + 1e-9).floor();
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
@@ -229,7 +227,7 @@ fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
 }
 
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
-    let tangent = |degrees: f64| degrees.to_radians().tan();
+    let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
     JointLaw {
         normal_stiffness,

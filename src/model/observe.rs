@@ -296,7 +296,7 @@ fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
         cosine += model.mass_matrix.row_sum[i] * before.dot(&after);
         sine += model.mass_matrix.row_sum[i] * before.perp(&after);
     }
-    sine.atan2(cosine)
+    libm::atan2(sine, cosine)
 }
 
 /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.

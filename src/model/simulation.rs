@@ -406,7 +406,7 @@ fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [L
         let Some(k) = law_of(case, &change.law) else { continue };
         let law = &mut laws[k];
         if let Some(degrees) = change.friction_deg {
-            law.friction = degrees.to_radians().tan();
+            law.friction = libm::tan(degrees.to_radians());
             law.residual_friction = law.friction;
             if let Some(roughness) = &mut law.roughness {
                 roughness.angle = degrees.to_radians();

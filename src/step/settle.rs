@@ -86,7 +86,7 @@ impl Step<'_> {
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
         let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
-        let fade = (-dt / OFFSET_FADE).exp();
+        let fade = libm::exp(-dt / OFFSET_FADE);
         let settle = |((contacts, histories), outcome)| {
             dispatch(Settle { contacts, histories, outcome, laws, velocities, dt, kick, fade });
         };

@@ -189,7 +189,7 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
 fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse {
     let model = simulation.model();
     let motions = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.motions);
-    let speed = |b: BlockId| motions[b].0.norm().hypot(motions[b].1 * bodies[b].radius);
+    let speed = |b: BlockId| libm::hypot(motions[b].0.norm(), motions[b].1 * bodies[b].radius);
     let fastest = BlockId::all(motions.len()).map(speed).fold(0.0, f64::max);
     let moving = BlockId::all(motions.len()).filter(|&b| fastest > 0.0 && speed(b) >= MOVES * fastest);
     let mut mechanism: Vec<MovingBlock> = moving

@@ -5,11 +5,15 @@ mod ab;
 mod bits;
 mod book;
 mod counts;
+mod cross;
+mod debian;
+mod emulator;
 mod faults;
 mod figures;
 mod formulas;
 mod install;
 mod parts;
+mod platform;
 mod python;
 mod repository;
 mod sanitize;
@@ -48,6 +52,9 @@ usage: cargo xtask TASK
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
+  windows [--test] builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
+                   folder; --test runs them under Wine and compares their bits with the golden table
+  aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
   ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench
                    such as --models all
@@ -80,7 +87,9 @@ fn main() -> ExitCode {
         ["ratio"] => tasks::verification(&repository, "ratio").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
         ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
-        ["wheel"] => wheel::build(&repository).map(|_| ExitCode::SUCCESS),
+        ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
+        ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
+        ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
         ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(tasks::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),

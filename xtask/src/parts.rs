@@ -11,12 +11,20 @@ use crate::repository::{self, Repository};
 /// Packages whose libraries and programs leave the repository.
 const SHIPPED: [&str; 4] = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
 /// Platforms that they are built for.
-const TARGETS: [&str; 4] =
-    ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-msvc", "x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
+const TARGETS: [&str; 5] = [
+    "x86_64-unknown-linux-gnu",
+    "aarch64-unknown-linux-gnu",
+    "x86_64-pc-windows-gnu",
+    "x86_64-pc-windows-msvc",
+    "aarch64-apple-darwin",
+];
 /// The list of crates.
 pub const LIST: &str = "ffi/fmi/parts/sbom.cdx.json";
 /// Licences of enmm and of these.
 pub const LICENSES: &str = "ffi/fmi/parts/LICENSES";
+
+/// Licences of what the linker of mingw-w64 adds.
+const WINDOWS: &str = "ffi/fmi/parts/windows";
 
 /// Licences of what a crate contains beside its own code: crate, file.
 const CONTENTS: [(&str, &str); 1] = [("dejavu", "assets/dejavu-fonts-ttf-2.37/LICENSE")];
@@ -74,7 +82,8 @@ fn files(repository: &Repository) -> Result<[(&'static str, String); 2], String>
          crates under the licences behind these two; each begins with the crates that it is for. The Rust standard\n\
          library is there as well, under MIT or Apache-2.0.\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}"
     );
-    Ok([(LIST, list), (LICENSES, head + &licenses(&parts, &mit)?)])
+    let windows = read(&repository.root.join(WINDOWS))?;
+    Ok([(LIST, list), (LICENSES, head + &licenses(&parts, &mit)? + &windows)])
 }
 
 fn read(path: &Path) -> Result<String, String> {

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::counts::{self, Counts};
+use crate::debian;
+use crate::platform::HERE;
 use crate::repository::{self, Repository};
 use crate::venv;
 use crate::wheel;
@@ -50,13 +52,13 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
     // Without it the test says that it was left out.
     let library = "import ctypes; ctypes.CDLL('libEGL.so.1')";
     let draws = || venv::command(repository).is_ok_and(|mut python| venv::succeeds(python.args(["-c", library])));
-    has(&draws, &["libegl1", "libgl1-mesa-dri"], DRAWING_TEST);
+    debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
     if !has_browser() {
         println!("SKIPPED {BROWSER_TEST}: there is no Chromium on this machine (Debian: apt-get install chromium)");
         pytest.args(["--ignore", BROWSER_TEST]);
     }
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
-    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository)?);
+    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -68,20 +70,7 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
 /// Whether there is a Chromium; where Debian's packages can be installed it is installed first.
 fn has_browser() -> bool {
     let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
-    has(&found, &["chromium"], BROWSER_TEST)
-}
-
-/// Whether something that a test needs is found; where Debian's packages can be installed they are installed first.
-fn has(found: &dyn Fn() -> bool, packages: &[&str], test: &str) -> bool {
-    let is_root = || Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout.trim_ascii() == b"0");
-    if found() || !is_root() {
-        return found();
-    }
-    println!("installing {} for {test}", packages.join(" and "));
-    let apt =
-        |args: &[&str]| venv::succeeds(Command::new("apt-get").args(args).env("DEBIAN_FRONTEND", "noninteractive"));
-    let install = [&["install", "--yes", "--no-install-recommends"], packages].concat();
-    (apt(&install) || (apt(&["update"]) && apt(&install))) && found()
+    debian::provide(BROWSER_TEST, "chromium", found)
 }
 
 /// Packs the FMUs of the tests; returns their folder.

@@ -27,6 +27,10 @@ pub fn deny(repository: &Repository) -> Result<(), String> {
         println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny`)");
         return Ok(());
     }
+    if !succeeds(&mut repository.cargo(&["fetch", "--locked"])) {
+        println!("SKIPPED dependencies: sources of crates for other platforms are missing and cannot be fetched");
+        return Ok(());
+    }
     repository::run(&mut repository.cargo(&["deny", "--offline", "check", "bans", "licenses", "sources"]))?;
     if succeeds(&mut repository.cargo(&["deny", "fetch", "db"])) {
         repository::run(&mut repository.cargo(&["deny", "check", "advisories"]))

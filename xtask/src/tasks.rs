@@ -7,6 +7,7 @@ use std::time::Instant;
 use crate::bits;
 use crate::book;
 use crate::counts::{self, Counts};
+use crate::cross;
 use crate::faults;
 use crate::figures;
 use crate::python;
@@ -59,6 +60,7 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
         steps.take("parts", || supply::parts(repository).map(|()| Counts::default()));
         steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
         steps.take("oldest compiler", || supply::oldest_compiler(repository).map(|()| Counts::default()));
+        steps.take("windows", || cross::check(repository).map(|()| Counts::default()));
         steps.take("python", || python::test(repository, &[python::ALL]));
         steps.take("figures", || figures::compare(repository));
         steps.take("bits", || bits::quick(repository));

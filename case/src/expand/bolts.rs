@@ -67,7 +67,7 @@ fn stations(key: &Key, pattern: &BoltPattern) -> Result<Vec<[f64; 2]>, Invalid> 
         (Some(1), None) => vec![0.5],
         (Some(count), None) => (0..count).map(|k| f64::from(k) / f64::from(count - 1)).collect(),
         (None, Some(distance)) => {
-            let step = distance / (b[0] - a[0]).hypot(b[1] - a[1]);
+            let step = distance / libm::hypot(b[0] - a[0], b[1] - a[1]);
             let count = (1.0 / step * (1.0 + 1e-12)).floor() + 1.0;
             whole(key, "distance", count as u64, (1, BOLTS_MAX), "that many bolts would follow; raise it")?;
             (0..count as u32).map(|k| f64::from(k) * step).collect()
@@ -100,7 +100,7 @@ fn bar(pattern: &BoltPattern) -> Bolt {
 /// The bolt through a point of the head line: its head is the nearest point at which the rock begins along its
 /// direction.
 fn bolt(key: &Key, case: &Case, pattern: &BoltPattern, number: usize, station: [f64; 2]) -> Result<Bolt, Invalid> {
-    let (sin, cos) = pattern.angle_deg.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(pattern.angle_deg.to_radians());
     let entries = entries(case, station, [cos, sin]);
     let nearest = entries.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs()));
     let Some(along) = nearest else {

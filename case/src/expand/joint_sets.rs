@@ -103,19 +103,19 @@ fn needless(key: &Key, set: &JointSet) -> Check {
 /// The trace in the section of joints that dip by `dip_deg` towards `off_deg` clockwise from the x axis, seen on a map:
 /// tan(apparent dip) = tan(dip)·cos(off). The pole leaves the section by asin(sin(dip)·sin(off)).
 fn apparent(key: &Key, set: &mut JointSet, dip_deg: f64, off_deg: f64) -> Check {
-    let ((sin, cos), off) = (dip_deg.to_radians().sin_cos(), off_deg.to_radians());
-    let out = sin * off.sin();
+    let ((sin, cos), off) = (libm::sincos(dip_deg.to_radians()), off_deg.to_radians());
+    let out = sin * libm::sin(off);
     let within = (1.0 - out * out).max(0.0).sqrt();
     if within < TRACE_SHARE {
         let message = format!(
             "the joints lie within {:.1}° of the section and have no usable trace in it; give the trace by \
              `angle_deg`, or choose another section",
-            within.asin().to_degrees()
+            libm::asin(within).to_degrees()
         );
         return fail(key, message);
     }
-    set.angle_deg = Some(-(sin * off.cos()).atan2(cos).to_degrees());
-    set.out_of_section_deg = out.asin().to_degrees();
+    set.angle_deg = Some(-libm::atan2(sin * libm::cos(off), cos).to_degrees());
+    set.out_of_section_deg = libm::asin(out).to_degrees();
     set.spacing /= within;
     set.spacing_sd /= within;
     Ok(())

@@ -64,7 +64,7 @@ fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
         let hint = "the particle velocity of the incident wave";
         number(&key.field("wave").index(i), "", value, Range::within(VELOCITY_MAX), "m/s", hint)?;
     }
-    rows_within(key, rows, quiet.scale * wave[0].hypot(wave[1]), VELOCITY_MAX, "m/s")?;
+    rows_within(key, rows, quiet.scale * libm::hypot(wave[0], wave[1]), VELOCITY_MAX, "m/s")?;
     number(key, "scale", quiet.scale, Range::within(1e12), "", "1 is the default")?;
     stage_is_dynamic(key, quiet.stage.as_deref(), case)
 }

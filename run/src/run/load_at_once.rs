@@ -22,7 +22,7 @@ static CURVE: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     let (mut tau, mut state) = (FIRST, [START * FIRST * FIRST, 2.0 * START * FIRST]);
     let mut curve = Vec::new();
     while 1.0 - state[0] > LEAST {
-        curve.push([tau, (1.0 - state[0]).ln(), tau * state[1] / (1.0 - state[0])]);
+        curve.push([tau, libm::log(1.0 - state[0]), tau * state[1] / (1.0 - state[0])]);
         // Runge and Kutta, fourth order.
         let first = rate(state);
         let second = rate(along(state, 0.5 * STEP, first));

@@ -39,7 +39,7 @@ impl Outlook {
         let now = report.time - state.stage_start;
         let Some((ramp, target)) = simulation.rest_target() else { return };
         if now > ramp && report.unbalanced > 0.0 {
-            self.fall.push([now, report.unbalanced.ln()]);
+            self.fall.push([now, libm::log(report.unbalanced)]);
             self.rest = self.rest_time(ramp, target);
         }
     }
@@ -89,8 +89,8 @@ impl Outlook {
         let square: f64 = last.iter().map(|point| (point[0] - time).powi(2)).sum();
         let product: f64 = last.iter().map(|point| (point[0] - time) * (point[1] - ratio)).sum();
         let slope = product / square;
-        let line = (slope < 0.0).then(|| time + (target.ln() - ratio) / slope)?;
-        let at_once = if ramp > 0.0 { None } else { load_at_once::rest_time(time, ratio, slope, target.ln()) };
+        let line = (slope < 0.0).then(|| time + (libm::log(target) - ratio) / slope)?;
+        let at_once = if ramp > 0.0 { None } else { load_at_once::rest_time(time, ratio, slope, libm::log(target)) };
         Some(at_once.unwrap_or(line))
     }
 }

@@ -19,8 +19,8 @@ pub struct Roughness {
 impl Roughness {
     /// tan(min(φr + JRC·log10(JCS/σn), 70°)) under the normal stress σn > 0 (Pa); above JCS it is tan φr (Eq. 33).
     pub fn friction(&self, stress: f64) -> f64 {
-        let dilation = (self.jrc * (self.jcs / stress).log10()).max(0.0).to_radians();
-        (self.angle + dilation).min(ANGLE_MAX).tan()
+        let dilation = (self.jrc * libm::log10(self.jcs / stress)).max(0.0).to_radians();
+        libm::tan((self.angle + dilation).min(ANGLE_MAX))
     }
 }
 
@@ -63,7 +63,7 @@ impl Closure {
         let share = (closure / self.most).min(1.0 - f64::EPSILON);
         // −ln(1 − x) − x loses its digits where x is small.
         let series = share * share * (0.5 + share * (1.0 / 3.0 + share * (0.25 + share * 0.2)));
-        let term = if share < 1e-3 { series } else { -(-share).ln_1p() - share };
+        let term = if share < 1e-3 { series } else { -libm::log1p(-share) - share };
         self.stiffness * self.most * self.most * term
     }
 }

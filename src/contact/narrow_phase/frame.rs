@@ -57,7 +57,7 @@ pub struct Frames {
 impl Over {
     /// Distance from the edge (m).
     pub fn distance(&self) -> f64 {
-        if self.beyond > 0.0 { self.beyond.hypot(self.gap) } else { self.gap.abs() }
+        if self.beyond > 0.0 { libm::hypot(self.beyond, self.gap) } else { self.gap.abs() }
     }
 
     /// Whether this edge is the nearer one. Equal to the comparison of both distances, which costs more.

@@ -211,9 +211,9 @@ impl Demand<'_> {
         };
         let in_line = set
             .trace_length
-            .map_or(1.0, |length| (across(Vector::new(dip.cos(), dip.sin())) / (length + set.gap)).max(1.0));
+            .map_or(1.0, |length| (across(Vector::new(libm::cos(dip), libm::sin(dip))) / (length + set.gap)).max(1.0));
         let filled = set.trace_length.map_or(1.0, |length| length / (length + set.gap));
-        let traces = across(Vector::new(-dip.sin(), dip.cos())) / set.spacing * in_line;
+        let traces = across(Vector::new(-libm::sin(dip), libm::cos(dip))) / set.spacing * in_line;
         SetDemand { low, high, area: area * share, density: filled / set.spacing, dip, traces }
     }
 
@@ -226,7 +226,7 @@ impl Demand<'_> {
             for other in &sets[..k] {
                 let common = extent(set.low.sup(&other.low), set.high.inf(&other.high));
                 let common = common.min(set.area).min(other.area);
-                sum.mutual += common * set.density * other.density * (set.dip - other.dip).sin().abs();
+                sum.mutual += common * set.density * other.density * libm::sin(set.dip - other.dip).abs();
             }
         }
         (sum, sets.iter().map(|set| set.area).sum::<f64>().min(extent(self.low, self.high)))

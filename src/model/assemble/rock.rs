@@ -22,7 +22,7 @@ pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
     if !rock.yields() {
         return None;
     }
-    let tangent = |degrees: f64| degrees.to_radians().tan();
+    let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let friction = rock.friction_deg.unwrap_or(0.0);
     Some(MohrCoulomb {
         elasticity: elasticity(rock),

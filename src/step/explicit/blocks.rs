@@ -44,11 +44,11 @@ pub(super) fn is_damping(damping: Damping) -> bool {
 pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Damping, block: BlockId) -> Damping {
     match damping {
         Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
-            Damping::Deformation((-(ratio_dt * model.block_frequency[block]).min(DECAY_MAX)).exp())
+            Damping::Deformation(libm::exp(-(ratio_dt * model.block_frequency[block]).min(DECAY_MAX)))
         }
         Damping::Deformation(_) => Damping::Deformation(1.0),
         Damping::Mass(factor) if mass_matrix.lightness > 1.0 && mass_matrix.is_free(block) => {
-            Damping::Mass(factor.powf(mass_matrix.lightness.sqrt()).max((-DECAY_MAX).exp()))
+            Damping::Mass(libm::pow(factor, mass_matrix.lightness.sqrt()).max(libm::exp(-DECAY_MAX)))
         }
         mass => mass,
     }

@@ -20,7 +20,7 @@ impl Step<'_> {
                 Foot::Quiet(quiet) => records::wave(model, self.regime, state, window, quiet),
             };
             let drive = ColumnDrive { acceleration, wave, kick };
-            let decay = |block: BlockId| (-(damping * dt * model.block_frequency[block]).min(DECAY_MAX)).exp();
+            let decay = |block: BlockId| libm::exp(-(damping * dt * model.block_frequency[block]).min(DECAY_MAX));
             column.kick(&state.columns[k], &drive, decay, &mut self.workspace.columns[k]);
         }
     }

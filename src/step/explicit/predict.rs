@@ -97,7 +97,7 @@ impl Step<'_> {
                     inertia += self.model.mass_matrix.mass[i] * moved.norm_squared();
                 }
                 let rate = 2.0 * (self.ramp() * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
-                Damping::Mass((-(rate * dt).min(DECAY_MAX)).exp())
+                Damping::Mass(libm::exp(-(rate * dt).min(DECAY_MAX)))
             }
         }
     }

@@ -66,7 +66,7 @@ impl Step<'_> {
                 continue;
             }
             let before = block_energy(model, implicit, &self.state.velocity, block);
-            let factor = (-ratio * inertia.dt * model.block_frequency[block]).exp();
+            let factor = libm::exp(-ratio * inertia.dt * model.block_frequency[block]);
             self.damp_block(implicit, block, factor);
             taken += before - block_energy(model, implicit, &self.state.velocity, block);
         }

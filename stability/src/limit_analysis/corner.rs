@@ -77,7 +77,7 @@ fn sectors(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths
 
 /// Angle (rad) from one direction counter-clockwise to another, a full turn when they are the same.
 fn angle(from: Vector, to: Vector) -> f64 {
-    let angle = from.perp(&to).atan2(from.dot(&to));
+    let angle = libm::atan2(from.perp(&to), from.dot(&to));
     if angle <= 0.0 { angle + 2.0 * PI } else { angle }
 }
 

@@ -181,7 +181,7 @@ impl Search<'_> {
         let (Some(solution), Some(strength)) = (&limit.mechanism, limit.low) else { return Vec::new() };
         let bodies = &self.program.bodies;
         let speed = |(body, (velocity, spin)): (&super::model::Body, &super::program::Motion)| {
-            velocity.norm().hypot(spin * body.radius)
+            libm::hypot(velocity.norm(), spin * body.radius)
         };
         let fastest = bodies.iter().zip(&solution.motions).map(speed).fold(0.0, f64::max);
         let into = |contact: &Contact| {

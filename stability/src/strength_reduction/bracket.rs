@@ -48,7 +48,7 @@ impl Search {
             [Some(low), Some(high)] => high / low,
             _ => STRIDE,
         };
-        let thirds = (width.ln() / self.tolerance.ln_1p()).max(1.0).ln() / 3f64.ln();
+        let thirds = libm::log((libm::log(width) / libm::log1p(self.tolerance)).max(1.0)) / libm::log(3.0);
         let pair = if self.tried.is_empty() { 2 } else { 0 };
         self.tried.len() + pair + 2 * (thirds - 1e-9).ceil().max(0.0) as usize
     }
@@ -83,7 +83,7 @@ fn thirds(low: f64, high: f64, tolerance: f64) -> (f64, Option<f64>) {
     if ratio.sqrt() - 1.0 <= tolerance {
         return (low * ratio.sqrt(), None);
     }
-    (low * ratio.cbrt(), Some(low * ratio.cbrt().powi(2)))
+    (low * libm::cbrt(ratio), Some(low * libm::cbrt(ratio).powi(2)))
 }
 
 /// Two factors further on; none at the limit.

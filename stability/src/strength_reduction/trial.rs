@@ -164,7 +164,7 @@ impl Base {
                     mass: model.mass_matrix.total[b],
                     displacement: self.moved(simulation, b),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
-                    speed: velocity.norm().hypot(spin * radius),
+                    speed: libm::hypot(velocity.norm(), spin * radius),
                 }
             })
             .collect()

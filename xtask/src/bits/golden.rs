@@ -1,4 +1,4 @@
-//! The golden table: a hash for every result of every item, and the platform that it holds for.
+//! The golden table: a hash for every result of every item, and the platform that verification problems were solved on.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -72,12 +72,12 @@ impl Golden {
         std::fs::write(root.join(PLACE), self.text()).map_err(|error| format!("{PLACE}: {error}"))
     }
 
-    /// Why the table does not hold here; none where it does.
+    /// Why verification problems have other bits here; none where they have those of the table.
     pub fn other_platform(&self) -> Option<String> {
         let [name, functions] = &self.platform;
         let here = platform::name();
         if *name != here {
-            return Some(format!("it holds for {name}, this is {here}"));
+            return Some(format!("those of the table are of {name}, this is {here}"));
         }
         let other = *functions != platform::functions();
         other.then(|| format!("the mathematical functions (sin, exp, …) of this {here} end in other bits"))

@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 
 use super::{Results, read};
+use crate::emulator::Emulator;
+use crate::platform::Platform;
 use crate::repository::{self, Repository};
 use crate::venv;
 
@@ -72,10 +74,48 @@ pub const ITEMS: [Item; 20] = [
 /// Time (s) without end of the models of `enmm bench`.
 const ENDLESS: &str = "duration = 1e6\n";
 
+impl Item {
+    /// Version of FMI of an item that is an FMU.
+    pub fn version(&self) -> Option<&'static str> {
+        if let Act::Fmu(_, version) = self.act { Some(version) } else { None }
+    }
+
+    /// Whether it uses the mathematical functions of the system, as the cases of verification problems do.
+    pub fn asks_system(&self) -> bool {
+        matches!(self.act, Act::Verify(_))
+    }
+}
+
+/// Whether an FMU of this version has a folder for a platform beside that of this machine: FMI 2 names no processor.
+pub fn has_folder(platform: &Platform, version: &str) -> bool {
+    version == "3" || platform.name == "windows"
+}
+
+/// The library of a platform as `enmm fmu --library` takes it.
+pub fn library(repository: &Repository, platform: &Platform, version: &str) -> String {
+    let path = platform.shipped(repository).join(platform.library(&format!("enmm_fmi{version}")));
+    let name = platform.cross.as_ref().map_or("", |cross| cross.fmi);
+    format!("{name}={}", path.display())
+}
+
+/// Options of `python_tests/fmu_bits.py` that have the library of a platform called by a host.
+pub fn host_words(platform: &Platform, emulator: &Emulator, version: &str, host: &Path) -> Vec<String> {
+    let name = platform.cross.as_ref().map_or("", |cross| cross.fmi);
+    let folder = if version == "2" { "win64" } else { name };
+    let words = ["--platform", folder, "--host"].into_iter().chain(emulator.words().iter().copied());
+    words.map(str::to_owned).chain([host.display().to_string()]).collect()
+}
+
 /// Makes results by one build.
 pub struct Maker<'a> {
     /// The repository.
     pub repository: &'a Repository,
+    /// The platform of the build.
+    pub platform: &'a Platform,
+    /// What runs its programs.
+    pub emulator: &'a Emulator,
+    /// Host of FMUs for another platform.
+    pub host: Option<&'a Path>,
     /// The program.
     pub program: &'a Path,
     /// The program that writes the cases of models.
@@ -113,7 +153,7 @@ impl Maker<'_> {
     }
 
     fn command(&self, words: &[&str]) -> Command {
-        let mut command = self.repository.command(self.program);
+        let mut command = self.emulator.command(self.repository, self.program);
         command.args(words);
         command
     }
@@ -159,13 +199,22 @@ impl Maker<'_> {
         Ok(results)
     }
 
-    /// Packs a case and steps it through its C functions, with a rollback.
+    /// Packs a case and steps it through its C functions, with a rollback. For another platform the FMU has the library
+    /// of this machine as well, and is packed here.
     fn fmu(&self, name: &str, version: &str, place: &Path) -> Result<Results, String> {
         let packed = place.join(format!("{name}.fmu"));
-        repository::capture(self.command(&["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed))?;
-        let mut steps = venv::command(self.repository)?;
+        let mut pack = self.repository.command(self.host.map_or(self.program, |_| self.writer));
+        pack.args(["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed);
         let run = place.join("run");
-        repository::run(steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run))?;
+        let mut steps = venv::command(self.repository)?;
+        steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run);
+        if let Some(host) = self.host {
+            pack.args(["--library", &library(self.repository, self.platform, version)]);
+            steps.args(host_words(self.platform, self.emulator, version, host));
+            self.emulator.prepare(&mut steps);
+        }
+        repository::capture(&mut pack)?;
+        repository::run(&mut steps)?;
         repository::files_of(&run)
     }
 

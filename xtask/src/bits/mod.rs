@@ -9,9 +9,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::counts::Counts;
+use crate::emulator::Emulator;
+use crate::platform::{HERE, Platform};
 use crate::repository::{self, Repository};
 use golden::Golden;
 use item::{ITEMS, Item, Maker};
+pub use item::{has_folder, host_words, library};
 
 /// Contents by name.
 type Results = BTreeMap<String, Vec<u8>>;
@@ -58,8 +61,12 @@ pub fn quick(repository: &Repository) -> Result<Counts, String> {
 fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bool) -> Result<(), String> {
     let folder = fresh_folder(repository)?;
     // Cases of models are written by one of the two, so that both compute the same ones.
+    let here = Emulator::default();
     let makers = [(&old, "old"), (&new, "new")].map(|(program, name)| Maker {
         repository,
+        platform: &HERE,
+        emulator: &here,
+        host: None,
         program,
         writer: &new,
         folder: folder.join(name),
@@ -82,17 +89,48 @@ fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&I
     Ok(())
 }
 
-/// Runs items by this build and compares with the golden table; compares nothing on another platform, and says so.
+/// Compares the quick items by the build for another platform with the golden table. `host` runs its FMUs.
+///
+/// # Errors
+/// As [`quick`].
+pub fn elsewhere(
+    repository: &Repository,
+    platform: &Platform,
+    emulator: &Emulator,
+    host: &Path,
+) -> Result<Counts, String> {
+    let program = platform.shipped(repository).join(platform.program());
+    let (folder, writer) = (fresh_folder(repository)?, repository.enmm());
+    let maker = Maker { repository, platform, emulator, host: Some(host), program: &program, writer: &writer, folder };
+    let chosen = |item: &&Item| item.quick && item.version().is_none_or(|version| has_folder(platform, version));
+    beside_golden(&Golden::read(&repository.root)?, &maker, ITEMS.iter().filter(chosen))
+}
+
+/// Runs items by this build and compares with the golden table. Verification problems are left out, with a message,
+/// where the mathematical functions of the system, which they use, are others.
 fn against_golden(repository: &Repository, chosen: impl Fn(&Item) -> bool) -> Result<Counts, String> {
     let golden = Golden::read(&repository.root)?;
-    let mut counts = Counts::default();
-    if let Some(reason) = golden.other_platform() {
-        println!("nothing compared with {}: {reason}; `cargo xtask bits OLD NEW` holds anywhere", golden::PLACE);
-        return Ok(counts);
+    let other = golden.other_platform();
+    let is_left_out = |item: &Item| other.is_some() && item.asks_system();
+    if let Some(reason) = &other
+        && ITEMS.iter().any(|item| chosen(item) && is_left_out(item))
+    {
+        println!("verification problems are not compared: {reason}; `cargo xtask bits OLD NEW` holds anywhere");
     }
     let (folder, program) = (fresh_folder(repository)?, repository.enmm());
-    let maker = Maker { repository, program: &program, writer: &program, folder };
-    for item in ITEMS.iter().filter(|item| item.golden && chosen(item)) {
+    let here = Emulator::default();
+    let maker = own(repository, &program, folder, &here);
+    beside_golden(&golden, &maker, ITEMS.iter().filter(|item| item.golden && chosen(item) && !is_left_out(item)))
+}
+
+/// Makes results by this build.
+fn own<'a>(repository: &'a Repository, program: &'a Path, folder: PathBuf, emulator: &'a Emulator) -> Maker<'a> {
+    Maker { repository, platform: &HERE, emulator, host: None, program, writer: program, folder }
+}
+
+fn beside_golden<'a>(golden: &Golden, maker: &Maker, items: impl Iterator<Item = &'a Item>) -> Result<Counts, String> {
+    let mut counts = Counts::default();
+    for item in items {
         let start = Instant::now();
         let found = golden::hashes(&maker.make(item)?);
         maker.forget(item)?;
@@ -116,7 +154,8 @@ fn against_golden(repository: &Repository, chosen: impl Fn(&Item) -> bool) -> Re
 /// Writes the golden table anew.
 fn renew(repository: &Repository) -> Result<(), String> {
     let (folder, program) = (fresh_folder(repository)?, repository.enmm());
-    let maker = Maker { repository, program: &program, writer: &program, folder };
+    let here = Emulator::default();
+    let maker = own(repository, &program, folder, &here);
     let mut golden = Golden::here();
     for item in ITEMS.iter().filter(|item| item.golden) {
         println!("{} …", item.name);

@@ -1,8 +1,8 @@
-//! What the bits of results depend on beside the program: the mathematical functions of the platform.
+//! The mathematical functions of the system, which verification problems use for their cases.
 //!
-//! Sums, products, quotients and roots are the same everywhere by IEEE 754, and no operation is fused. Sines and
-//! exponentials come from the library of the system, whose last bits differ from version to version, and from
-//! processor to processor where it picks among versions of its own.
+//! Sums, products, quotients and roots are the same everywhere by IEEE 754, no operation is fused, and the sines and
+//! exponentials of results come from `libm`. Those of the system differ in their last bits from version to version, and
+//! from processor to processor where it picks among versions of its own.
 
 use std::hint::black_box;
 
@@ -11,7 +11,7 @@ use sha1_smol::Sha1;
 /// Arguments at which functions are evaluated.
 const ARGUMENTS: u32 = 4096;
 
-/// Functions of one argument that the engine takes from the system, with how an argument from −10 to 10 comes to them.
+/// Functions of one argument, with how an argument from −10 to 10 comes to them.
 type Function = (fn(f64) -> f64, fn(f64) -> f64);
 
 const ONE: [Function; 14] = [

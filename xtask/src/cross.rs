@@ -1,0 +1,195 @@
+//! Program, libraries and wheel for other platforms, and their tests on emulators.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::bits;
+use crate::counts::Counts;
+use crate::debian;
+use crate::emulator::Emulator;
+use crate::parts;
+use crate::platform::{Cross, Platform, WINDOWS};
+use crate::repository::{self, Repository};
+use crate::venv::{self, succeeds};
+use crate::wheel;
+
+/// Header that C programs need.
+const HEADER: &str = "include/enmm.h";
+/// Host of the C library whose checks call every function, and its case.
+const C_CHECKS: [&str; 2] = ["ffi/capi/tests/c/checks.c", "ffi/capi/tests/cases/small.toml"];
+/// Host of FMUs.
+const FMU_HOST: &str = "ffi/fmi/tests/c/host.c";
+/// Installs a Python for Windows with the wheel, and runs it.
+const PYTHON: &str = "python_tests/windows/run.py";
+/// Case of the FMU that takes many steps.
+const FMU_CASE: &str = "examples/cases/coupled_slope.toml";
+/// Steps before its rollback.
+const FMU_STEPS: &str = "50";
+/// What an FMU may have for each platform (bytes).
+const FMU_SIZE_MAX: u64 = 8_000_000;
+
+/// Builds for a platform; with `--test` in `words` it then tests what it has built.
+///
+/// # Errors
+/// When the words are others, the machine lacks something, something does not build, or a test fails.
+pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Result<(), String> {
+    let cross = platform.cross.as_ref().ok_or("no cross build is needed for this machine")?;
+    match words {
+        [] => build(repository, platform, cross).map(|_| ()),
+        ["--test"] => test(repository, platform, cross),
+        _ => Err(format!("usage: cargo xtask {} [--test]", platform.name)),
+    }
+}
+
+/// Checks that everything that is shipped compiles for Windows, where the standard library is there or can be had.
+///
+/// # Errors
+/// When something does not compile.
+pub fn check(repository: &Repository) -> Result<(), String> {
+    let Some(cross) = &WINDOWS.cross else { return Ok(()) };
+    if !provide_standard_library(cross) {
+        println!("SKIPPED: Rust for {0} is not installed (`rustup target add {0}`)", cross.triple);
+        return Ok(());
+    }
+    repository::run(repository.cargo(&["check", "--release", "--target", cross.triple]).args(wheel::packages()))
+}
+
+/// Whether the standard library is there; where rustup can fetch it, it is installed first.
+fn provide_standard_library(cross: &Cross) -> bool {
+    cross.has_standard_library()
+        || (succeeds(Command::new("rustup").args(["target", "add", cross.triple])) && cross.has_standard_library())
+}
+
+/// Builds all that is shipped, and lists it; returns the path of the wheel.
+fn build(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<PathBuf, String> {
+    let wheel = wheel::build(repository, platform)?;
+    let shipped = platform.shipped(repository);
+    let copy = |from: &Path| {
+        let to = shipped.join(from.file_name().unwrap_or_default());
+        std::fs::copy(from, to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
+    };
+    cross.import_library.map_or(Ok(()), |name| copy(&platform.built(repository).join(name)))?;
+    [HEADER, parts::LICENSES].iter().try_for_each(|path| copy(&repository.root.join(path)))?;
+    for (name, bytes) in repository::files_of(&shipped)? {
+        println!("{:>6.1} MB  {}", bytes.len() as f64 / 1e6, shipped.join(name).display());
+    }
+    Ok(wheel)
+}
+
+/// Builds and tests; says what it leaves out where the machine lacks something that cannot be installed.
+fn test(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<(), String> {
+    let purpose = format!("cargo xtask {} --test", platform.name);
+    provide_standard_library(cross);
+    debian::provide(&purpose, cross.compiler_package, || cross.has_compiler());
+    if let Some(missing) = cross.missing() {
+        println!("SKIPPED {purpose}: {missing}");
+        return Ok(());
+    }
+    let wheel = build(repository, platform, cross)?;
+    if !debian::provide(&purpose, cross.emulator_packages, || cross.has_emulator()) {
+        let [emulator, packages] = [cross.emulator[0], cross.emulator_packages];
+        println!("SKIPPED all tests of what was built: {emulator} is missing (Debian: `apt-get install {packages}`)");
+        return Ok(());
+    }
+    repository::run(repository.cargo(&["build", "--release"]).args(wheel::packages()))?;
+    let emulator = Emulator::of(repository, cross)?;
+    let place = Place { repository, platform, cross, emulator, folder: platform.shipped(repository).join("tests") };
+    repository::remove(&place.folder)?;
+    std::fs::create_dir_all(&place.folder).map_err(|error| format!("{}: {error}", place.folder.display()))?;
+    place.c_library()?;
+    let host = place.compile(FMU_HOST, &[])?;
+    for version in place.versions() {
+        place.fmu(version, &host)?;
+    }
+    if platform.name == "windows" {
+        place.python(&wheel)?;
+    }
+    let Counts { passed, failed, .. } = bits::elsewhere(repository, platform, &place.emulator, &host)?;
+    println!("{passed} results have the bits of the golden table, {failed} have others");
+    if failed == 0 { Ok(()) } else { Err(format!("{failed} results have other bits: see above")) }
+}
+
+/// Where the tests of a platform run.
+struct Place<'a> {
+    repository: &'a Repository,
+    platform: &'a Platform,
+    cross: &'a Cross,
+    emulator: Emulator,
+    folder: PathBuf,
+}
+
+impl Place<'_> {
+    /// Compiles a program in C99 for the platform.
+    fn compile(&self, source: &str, libraries: &[&str]) -> Result<PathBuf, String> {
+        let name = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
+        let program = self.folder.join(format!("{name}.exe"));
+        let mut compile = self.repository.command(self.cross.compiler);
+        compile.args(["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-Iinclude", source, "-o"]).arg(&program);
+        compile.arg("-L").arg(self.platform.shipped(self.repository)).args(libraries);
+        repository::run(&mut compile)?;
+        Ok(program)
+    }
+
+    /// Calls every function of the C library.
+    fn c_library(&self) -> Result<(), String> {
+        let shipped = self.platform.shipped(self.repository);
+        let [source, case] = C_CHECKS;
+        let checks = self.compile(source, &["-lenmm", "-lm", &format!("-Wl,-rpath,{}", shipped.display())])?;
+        let library = self.platform.library("enmm");
+        // Windows looks beside the program.
+        std::fs::copy(shipped.join(&library), self.folder.join(&library))
+            .map_err(|error| format!("{library}: {error}"))?;
+        repository::run(self.emulator.command(self.repository, checks).arg(case))?;
+        println!("the C library does what {source} checks");
+        Ok(())
+    }
+
+    /// Compares what the wheel does in a Python for Windows with the package on this machine.
+    fn python(&self, wheel: &Path) -> Result<(), String> {
+        let mut python = venv::command(self.repository)?;
+        python.arg(PYTHON).arg(wheel).arg(&self.folder).arg(self.cross.compiler).args(self.emulator.words());
+        self.emulator.prepare(&mut python);
+        repository::run(&mut python)
+    }
+
+    /// Versions of FMI whose FMUs have a folder for the platform beside that of this machine.
+    fn versions(&self) -> impl Iterator<Item = &'static str> {
+        ["2", "3"].into_iter().filter(|version| bits::has_folder(self.platform, version))
+    }
+
+    /// Packs an FMU for both platforms, has FMPy check and run it here, and compares its steps on both platforms.
+    fn fmu(&self, version: &str, host: &Path) -> Result<(), String> {
+        let packed = self.folder.join(format!("coupled_slope_fmi{version}.fmu"));
+        let mut pack = self.repository.command(self.repository.enmm());
+        pack.args(["fmu", FMU_CASE, "--fmi", version, "--library"]);
+        repository::run(pack.arg(bits::library(self.repository, self.platform, version)).arg("-o").arg(&packed))?;
+        let size = packed.metadata().map_err(|error| format!("{}: {error}", packed.display()))?.len();
+        if size > 2 * FMU_SIZE_MAX {
+            return Err(format!("{}: has {size} bytes, must have at most {}", packed.display(), 2 * FMU_SIZE_MAX));
+        }
+        for words in [&["validate"] as &[&str], &["simulate", "--stop-time", "0.1"]] {
+            let mut fmpy = venv::command(self.repository)?;
+            fmpy.args(["-m", "fmpy", words[0]]).arg(&packed).args(&words[1..]);
+            repository::capture(&mut fmpy)?;
+        }
+        let steps = |name: &str, words: &[&str]| -> Result<_, String> {
+            let folder = self.folder.join(format!("{name}_fmi{version}"));
+            let mut steps = venv::command(self.repository)?;
+            steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&folder).args(["--before", FMU_STEPS]).args(words);
+            self.emulator.prepare(&mut steps);
+            repository::run(&mut steps)?;
+            repository::files_of(&folder)
+        };
+        let here = steps("here", &[])?;
+        let words = bits::host_words(self.platform, &self.emulator, version, host);
+        let there = steps("there", &words.iter().map(String::as_str).collect::<Vec<_>>())?;
+        if here != there {
+            return Err(format!(
+                "FMI {version}: {FMU_STEPS} steps and a rollback have other bits: {}",
+                self.folder.display()
+            ));
+        }
+        println!("FMI {version}: {FMU_STEPS} steps and a rollback have the same bits, {:.1} MB", size as f64 / 1e6);
+        Ok(())
+    }
+}
