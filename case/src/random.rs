@@ -92,7 +92,7 @@ pub struct RandomVariable {
     /// Upper end at which the distribution is cut off and rescaled.
     #[serde(default)]
     pub high: Option<f64>,
-    /// First of the seeds, at most 4.6e18; default: `1`.
+    /// First of the seeds, no more than 2⁶²; default: `1`.
     #[serde(default)]
     pub first: Option<u64>,
 }
