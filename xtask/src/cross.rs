@@ -51,6 +51,14 @@ pub fn check(repository: &Repository) -> Result<(), String> {
         println!("SKIPPED: Rust for {0} is not installed (`rustup target add {0}`)", cross.triple);
         return Ok(());
     }
+    // For SQLite, which is C.
+    if !debian::provide("the check for Windows", cross.compiler_package, || cross.has_compiler()) {
+        println!(
+            "SKIPPED: there is no C compiler for {} (Debian: apt-get install {})",
+            cross.triple, cross.compiler_package
+        );
+        return Ok(());
+    }
     repository::run(repository.cargo(&["check", "--release", "--target", cross.triple]).args(wheel::packages()))
 }
 
