@@ -54,7 +54,7 @@ pub fn write(repository: &Repository) -> Result<(), String> {
 /// Compares both files with what the dependencies are today.
 ///
 /// # Errors
-/// As [`write`], and when a file differs.
+/// As [`write()`], and when a file differs.
 pub fn compare(repository: &Repository) -> Result<(), String> {
     for (path, text) in files(repository)? {
         if read(&repository.root.join(path))? != text {
