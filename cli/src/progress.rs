@@ -17,6 +17,13 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// Steps of the bar.
 const BAR: u64 = 1000;
 
+/// A bar of some length on a terminal; none elsewhere, or when it is to be quiet.
+fn terminal_bar(quiet: bool, length: u64, template: &str) -> Option<ProgressBar> {
+    let style = || ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let terminal = std::io::stderr().is_terminal() && !quiet;
+    terminal.then(|| ProgressBar::new(length).with_style(style()))
+}
+
 /// Shows how a build and a run go.
 pub struct Screen {
     bar: Option<ProgressBar>,
@@ -30,11 +37,7 @@ pub struct Screen {
 impl Screen {
     /// A bar on a terminal, plain lines elsewhere.
     pub fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal() && !quiet;
-        let bar = terminal.then(|| {
-            let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}");
-            ProgressBar::new(BAR).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        });
+        let bar = terminal_bar(quiet, BAR, "{wide_bar} {percent:>3} %  {msg}");
         Self { bar, quiet, start: Instant::now(), start_time: None, shown: None, stage: 0 }
     }
 
@@ -123,13 +126,9 @@ pub struct Search {
 impl Search {
     /// A bar on a terminal; nothing elsewhere, or when it is to be quiet.
     pub fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal() && !quiet;
-        let bar = terminal.then(|| {
-            let style = ProgressStyle::with_template("{spinner} {bar:30} {msg}  ({elapsed})");
-            let bar = ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let bar = terminal_bar(quiet, 0, "{spinner} {bar:30} {msg}  ({elapsed})").inspect(|bar| {
             bar.set_message("the slope comes to rest before the first trial");
             bar.enable_steady_tick(REDRAW);
-            bar
         });
         Self { bar, start: Instant::now() }
     }
@@ -164,11 +163,7 @@ pub struct Count {
 impl Count {
     /// Nothing when it is to be quiet.
     pub fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal() && !quiet;
-        let bar = terminal.then(|| {
-            let style = ProgressStyle::with_template("{wide_bar} {msg}");
-            ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        });
+        let bar = terminal_bar(quiet, 0, "{wide_bar} {msg}");
         Self { bar, quiet, start: Instant::now(), told: Cell::default() }
     }
 

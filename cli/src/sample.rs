@@ -6,10 +6,8 @@ use std::process::{Command, ExitCode, Stdio};
 
 use clap::Args;
 use enmm_io::LoadedCase;
-use enmm_run::fos::FosOptions;
 use enmm_run::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
 use enmm_sample::{Interval, Row, beta, medians};
-use enmm_stability::strength_reduction::MechanismOptions;
 use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;
@@ -72,15 +70,7 @@ impl Arguments {
 
     /// Refuses options with which no search can be made.
     fn check(&self) -> Result<(), String> {
-        let mut options = FosOptions::into_directory(PathBuf::new());
-        options = FosOptions {
-            low: self.low,
-            high: self.high,
-            tolerance: self.tolerance.unwrap_or(options.tolerance),
-            mechanisms: MechanismOptions { least_area: self.least_area.unwrap_or(0.0), count: 1 },
-            ..options
-        };
-        options.check()
+        self.search().fos().check()
     }
 }
 

@@ -14,6 +14,9 @@ use std::time::Instant;
 use enmm::engine_version;
 use enmm_io::{CaseError, LoadedCase};
 use enmm_sample::{Identity, Row, Samples, Store, StoreError, draw, sample_key, work};
+use enmm_stability::strength_reduction::MechanismOptions;
+
+use crate::fos::FosOptions;
 
 pub use answer::{answer, columns};
 pub use record::EnsembleResult;
@@ -32,6 +35,19 @@ pub struct SearchOptions {
 }
 
 impl SearchOptions {
+    /// As options of one search, on one thread.
+    pub fn fos(&self) -> FosOptions<'static> {
+        let whole = FosOptions::into_directory(PathBuf::new());
+        FosOptions {
+            low: self.low,
+            high: self.high,
+            tolerance: self.tolerance.unwrap_or(whole.tolerance),
+            mechanisms: MechanismOptions { least_area: self.least_area.unwrap_or(0.0), count: 1 },
+            threads: Some(1),
+            ..whole
+        }
+    }
+
     /// The options that are given, by name.
     pub fn given(&self) -> BTreeMap<String, f64> {
         let all =

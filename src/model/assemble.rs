@@ -27,9 +27,6 @@ use locator::Locator;
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
-/// `dt_safety` of the step for which θ is stated.
-const THETA_SAFETY: f64 = 0.9;
-
 /// A model as built: what is fixed, the state at its start, and what the build has to tell.
 #[derive(Debug, Clone)]
 pub struct Built {
@@ -147,7 +144,7 @@ fn model(
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
         dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
-        theta_step: step_below(THETA_SAFETY * shortest_critical_dt(&covers, &rocks), case),
+        theta_step: step_below(case::Solver::default().dt_safety * shortest_critical_dt(&covers, &rocks), case),
         critical_dt: shortest_critical_dt(&covers, &rocks),
         theta: case.solver.contact_theta,
         mass_scaling: case.solver.mass_scaling,

@@ -48,6 +48,7 @@ impl Step<'_> {
         let (model, state) = (self.model, &*self.state);
         let regime = self.regime;
         let workspace = &mut *self.workspace;
+        let theta = model.theta_in(dt);
         let mut wave = (u32::MAX, Vector::zeros());
         let mut beside = model.free_field.iter().peekable();
         for row in &mut workspace.rows {
@@ -59,7 +60,7 @@ impl Step<'_> {
             let quiet = match support.resistance {
                 Resistance::Spring => {
                     row.target = support.preload - support.stiffness * row.displacement;
-                    row.viscosity = support.stiffness * model.theta_in(dt) * dt;
+                    row.viscosity = support.stiffness * theta * dt;
                     continue;
                 }
                 Resistance::Dashpot(quiet) => quiet,

@@ -47,25 +47,21 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
 /// When something does not compile.
 pub fn check(repository: &Repository) -> Result<(), String> {
     let Some(cross) = &WINDOWS.cross else { return Ok(()) };
-    if !provide_standard_library(cross) {
-        println!("SKIPPED: Rust for {0} is not installed (`rustup target add {0}`)", cross.triple);
-        return Ok(());
-    }
-    // For SQLite, which is C.
-    if !debian::provide("the check for Windows", cross.compiler_package, || cross.has_compiler()) {
-        println!(
-            "SKIPPED: there is no C compiler for {} (Debian: apt-get install {})",
-            cross.triple, cross.compiler_package
-        );
+    // SQLite needs a C compiler.
+    if !is_ready(cross, "the check for Windows") {
         return Ok(());
     }
     repository::run(repository.cargo(&["check", "--release", "--target", cross.triple]).args(wheel::packages()))
 }
 
-/// Whether the standard library is there; where rustup can fetch it, it is installed first.
-fn provide_standard_library(cross: &Cross) -> bool {
-    cross.has_standard_library()
-        || (succeeds(Command::new("rustup").args(["target", "add", cross.triple])) && cross.has_standard_library())
+/// Whether standard library and compiler are there; where rustup and Debian's packages can provide them, they are
+/// installed first. Says what is missing.
+fn is_ready(cross: &Cross, purpose: &str) -> bool {
+    if !cross.has_standard_library() {
+        succeeds(Command::new("rustup").args(["target", "add", cross.triple]));
+    }
+    debian::provide(purpose, cross.compiler_package, || cross.has_compiler());
+    cross.missing().map(|missing| println!("SKIPPED {purpose}: {missing}")).is_none()
 }
 
 /// Builds all that is shipped, and lists it; returns the path of the wheel.
@@ -87,10 +83,7 @@ fn build(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<
 /// Builds and tests; says what it leaves out where the machine lacks something that cannot be installed.
 fn test(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<(), String> {
     let purpose = format!("cargo xtask {} --test", platform.name);
-    provide_standard_library(cross);
-    debian::provide(&purpose, cross.compiler_package, || cross.has_compiler());
-    if let Some(missing) = cross.missing() {
-        println!("SKIPPED {purpose}: {missing}");
+    if !is_ready(cross, &purpose) {
         return Ok(());
     }
     let wheel = build(repository, platform, cross)?;

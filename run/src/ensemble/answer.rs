@@ -1,19 +1,14 @@
 //! What is worked out of one sample.
 
-use std::path::PathBuf;
-
 use enmm::model::case::EnsembleOutput;
 use enmm_io::LoadedCase;
 use enmm_sample::Row;
 use enmm_stability::limit_analysis::{Collapse, Factor};
-use enmm_stability::strength_reduction::{End, MechanismOptions};
+use enmm_stability::strength_reduction::End;
 use serde_json::{Value, json};
 
 use super::SearchOptions;
-use crate::fos::{FosError, FosOptions, Found, end_name, remedy, search};
-
-/// Words of the warning that a factor is above the bound (`stability/src/strength_reduction/doubt.rs`).
-const DOUBT: &str = "above what limit analysis";
+use crate::fos::{FosError, Found, end_name, remedy, search};
 
 /// Names of the outputs of a sample, in their order; the first decides whether it fails.
 pub fn columns(output: EnsembleOutput) -> &'static [&'static str] {
@@ -54,16 +49,7 @@ fn bound(sample: &LoadedCase, of: fn(&enmm_stability::limit_analysis::Bound) -> 
 }
 
 fn factor(sample: &LoadedCase, options: &SearchOptions) -> Option<Values> {
-    let whole = FosOptions::into_directory(PathBuf::new());
-    let options = FosOptions {
-        low: options.low,
-        high: options.high,
-        tolerance: options.tolerance.unwrap_or(whole.tolerance),
-        mechanisms: MechanismOptions { least_area: options.least_area.unwrap_or(0.0), count: 1 },
-        threads: Some(1),
-        ..whole
-    };
-    match search(sample, &options, &mut |_, _| {}) {
+    match search(sample, &options.fos(), &mut |_, _| {}) {
         Ok(found) => Some(values(&found)),
         Err(FosError::Interrupted) => None,
         Err(error) => Some(Err(error.to_string())),
@@ -80,7 +66,6 @@ fn values(found: &Found) -> Values {
         return Err(format!("the search for the factor of safety ended {status}: {remedy}"));
     };
     let failing = main.first_unstable();
-    let doubt = main.warnings.iter().find(|warning| warning.contains(DOUBT));
     Ok(vec![
         json!(factor),
         json!(main.low),
@@ -88,6 +73,6 @@ fn values(found: &Found) -> Values {
         json!(status),
         json!(failing.map_or(0, |trial| trial.failing.len())),
         json!(failing.map_or(0.0, |trial| trial.failing_area())),
-        json!(doubt.map_or("", String::as_str)),
+        json!(main.warning_of_the_bound().unwrap_or_default()),
     ])
 }

@@ -5,7 +5,7 @@ use enmm_report::{BoltFrame, BoltPlace, BoltState, Structures, SupportFrame};
 use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm_picture::structures::{BoltKind, SupportKind, bolts, supports, water_surface};
+use enmm_picture::structures::{BoltKind, BoltLine, SupportKind, bolts, supports, water_surface};
 
 /// What acts on the rock at one instant beside its joints.
 #[derive(Debug)]
@@ -21,20 +21,19 @@ impl Beside {
     pub fn now(simulation: &Simulation) -> Self {
         let (lines, segments) = (bolts(simulation), &simulation.model().bolts);
         let ends = lines.iter().zip(segments).map(|(line, segment)| [0, 1].map(|k| line.ends[k] - segment.points[k]));
-        Self::with(simulation, ends)
+        Self::with(simulation, &lines, ends)
     }
 
     /// With ends of bolts that are displaced (m) as a reference position (m) of a block is.
     pub fn moved(simulation: &Simulation, displacement: impl Fn(Point, BlockId) -> Vector) -> Self {
         let segments = simulation.model().bolts.iter();
         let ends = segments.map(|segment| [0, 1].map(|k| displacement(segment.points[k], segment.blocks[k])));
-        Self::with(simulation, ends)
+        Self::with(simulation, &bolts(simulation), ends)
     }
 
     /// With displacements (m) of both ends of each bolt.
-    fn with(simulation: &Simulation, ends: impl Iterator<Item = [Vector; 2]>) -> Self {
-        let lines = bolts(simulation);
-        let bolt = |(line, ends): (&enmm_picture::structures::BoltLine, [Vector; 2])| BoltFrame {
+    fn with(simulation: &Simulation, lines: &[BoltLine], ends: impl Iterator<Item = [Vector; 2]>) -> Self {
+        let bolt = |(line, ends): (&BoltLine, [Vector; 2])| BoltFrame {
             state: match line.kind {
                 BoltKind::Absent => BoltState::Absent,
                 BoltKind::Whole => BoltState::Whole,

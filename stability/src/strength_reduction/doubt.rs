@@ -8,6 +8,16 @@ const RESIDUAL: f64 = 1e-3;
 /// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
 const ABOVE: f64 = 1.02;
 
+/// Words of the warning that a factor is above the bound.
+const ABOVE_BOUND: &str = "above what limit analysis";
+
+impl Reduction {
+    /// The warning that the factor is above the bound of limit analysis.
+    pub fn warning_of_the_bound(&self) -> Option<&str> {
+        self.warnings.iter().map(String::as_str).find(|warning| warning.contains(ABOVE_BOUND))
+    }
+}
+
 /// What speaks against taking the result as it is.
 pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     let trials = &reduction.trials;
@@ -69,7 +79,7 @@ fn above_the_bound(reduction: &Reduction) -> Option<String> {
     let (stable, limit) = (reduction.low?, bound.level_tops.factor.value());
     (stable > ABOVE * limit).then(|| {
         format!(
-            "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
+            "F = {stable:.4} was stable, {:.1} % {ABOVE_BOUND} of rigid blocks allows ({limit:.4}): \
              something other than strength holds a block; look at those that `enmm bound` names, and try a finer mesh",
             100.0 * (stable / limit - 1.0)
         )
