@@ -8,8 +8,8 @@ use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
 use crate::parts;
-use crate::platform::{Cross, Platform, WINDOWS};
-use crate::repository::{self, Repository};
+use crate::platform::{Cross, Platform, WINDOWS_QUICK};
+use crate::repository::{self, Beside, Repository};
 use crate::venv::{self, succeeds};
 use crate::wheel;
 
@@ -25,10 +25,37 @@ const PYTHON: &str = "python_tests/windows/run.py";
 const FMU_CASE: &str = "examples/cases/coupled_slope.toml";
 /// Steps before its rollback.
 const FMU_STEPS: &str = "50";
+/// Settings of a build that takes a quarter of the time. They move no bit.
+const QUICK: [&str; 3] =
+    ["profile.release.opt-level=1", "profile.release.debug=false", "profile.release.codegen-units=64"];
+/// Packages that take long to optimize, and do little or nothing in quick results.
+const COLD: [&str; 19] = [
+    "clap_builder",
+    "faer",
+    "gemm-c32",
+    "gemm-c64",
+    "gemm-f32",
+    "gemm-f64",
+    "harfrust",
+    "libsqlite3-sys",
+    "nano-gemm-c32",
+    "nano-gemm-c64",
+    "nano-gemm-f32",
+    "nano-gemm-f64",
+    "object",
+    "private-gemm-x86",
+    "read-fonts",
+    "skrifa",
+    "svgtypes",
+    "usvg",
+    "zip",
+];
+
 /// What an FMU may have for each platform (bytes).
 const FMU_SIZE_MAX: u64 = 8_000_000;
 
-/// Builds for a platform; with `--test` in `words` it then tests what it has built.
+/// Builds for a platform; with `--test` in `words` it then tests what it has built. `--quick` is the share of
+/// `cargo xtask test`.
 ///
 /// # Errors
 /// When the words are others, the machine lacks something, something does not build, or a test fails.
@@ -37,21 +64,65 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
     match words {
         [] => build(repository, platform, cross).map(|_| ()),
         ["--test"] => test(repository, platform, cross),
-        _ => Err(format!("usage: cargo xtask {} [--test]", platform.name)),
+        ["--quick"] if platform.is_windows() => {
+            repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+            bits::all_good(quick(repository, start_quick(repository)?)?)
+        }
+        _ => {
+            let quick = if platform.is_windows() { " or --quick" } else { "" };
+            Err(format!("usage: cargo xtask {} [--test{quick}]", platform.name))
+        }
     }
 }
 
-/// Checks that everything that is shipped compiles for Windows, where the standard library is there or can be had.
+/// The build for Windows of `cargo xtask test`, and whether there is an emulator to run it.
+pub struct Quick {
+    build: Beside,
+    runs: bool,
+}
+
+/// Starts to build what is shipped for Windows, hardly optimized, or to check it where there is no Wine. None, with a
+/// message, where standard library or compiler are missing.
 ///
 /// # Errors
-/// When something does not compile.
-pub fn check(repository: &Repository) -> Result<(), String> {
-    let Some(cross) = &WINDOWS.cross else { return Ok(()) };
-    // SQLite needs a C compiler.
-    if !is_ready(cross, "the check for Windows") {
-        return Ok(());
+/// When cargo does not start.
+pub fn start_quick(repository: &Repository) -> Result<Option<Quick>, String> {
+    const PURPOSE: &str = "tests for Windows";
+    let Some(cross) = WINDOWS_QUICK.cross.as_ref().filter(|cross| is_ready(cross, PURPOSE)) else { return Ok(None) };
+    let runs = has_emulator(cross, PURPOSE);
+    // It yields to the tests beside it.
+    let mut cargo = repository.command("nice");
+    cargo.arg(repository.cargo(&[]).get_program()).arg(if runs { "build" } else { "check" });
+    cargo.args(["--release", "--target", cross.triple]).args(wheel::packages());
+    let cold = COLD.into_iter().map(|name| format!("profile.release.package.{name}.opt-level=0"));
+    let settings = QUICK.into_iter().map(str::to_owned).chain(cold);
+    cargo.args(settings.flat_map(|setting| ["--config".to_owned(), setting]));
+    let build = repository::start(cargo, repository.target.join("windows-quick.txt"))?;
+    Ok(Some(Quick { build, runs }))
+}
+
+/// Compares quick results of that build, under Wine, with the golden table, those of FMUs with a rollback among them,
+/// and calls every function of the C library.
+///
+/// # Errors
+/// When something does not compile or does not run.
+pub fn quick(repository: &Repository, quick: Option<Quick>) -> Result<Counts, String> {
+    let (Some(Quick { build, runs }), Some(cross)) = (quick, &WINDOWS_QUICK.cross) else {
+        return Ok(Counts::default());
+    };
+    build.finish()?;
+    if !runs {
+        return Ok(Counts::default());
     }
-    repository::run(repository.cargo(&["check", "--release", "--target", cross.triple]).args(wheel::packages()))
+    let platform = &WINDOWS_QUICK;
+    let place = Place::new(repository, platform, cross)?;
+    let (built, shipped) = (platform.built(repository), platform.shipped(repository));
+    platform
+        .binaries()
+        .iter()
+        .try_for_each(|name| platform.strip(repository, &built.join(name), &shipped.join(name)))?;
+    place.c_library()?;
+    bits::elsewhere(repository, platform, &place.emulator, &place.compile(FMU_HOST, &[])?)
 }
 
 /// Whether standard library and compiler are there; where rustup and Debian's packages can provide them, they are
@@ -62,6 +133,19 @@ fn is_ready(cross: &Cross, purpose: &str) -> bool {
     }
     debian::provide(purpose, cross.compiler_package, || cross.has_compiler());
     cross.missing().map(|missing| println!("SKIPPED {purpose}: {missing}")).is_none()
+}
+
+/// Whether the emulator is there, installed where Debian's packages can be; says what is left out without it.
+fn has_emulator(cross: &Cross, purpose: &str) -> bool {
+    let is_there = debian::provide(purpose, cross.emulator_packages, || cross.has_emulator());
+    if !is_there {
+        let [emulator, packages] = [cross.emulator[0], cross.emulator_packages];
+        println!(
+            "SKIPPED {purpose}: nothing that is built can be run, because {emulator} is missing (Debian: `apt-get \
+             install {packages}`)"
+        );
+    }
+    is_there
 }
 
 /// Builds all that is shipped, and lists it; returns the path of the wheel.
@@ -87,27 +171,20 @@ fn test(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<(
         return Ok(());
     }
     let wheel = build(repository, platform, cross)?;
-    if !debian::provide(&purpose, cross.emulator_packages, || cross.has_emulator()) {
-        let [emulator, packages] = [cross.emulator[0], cross.emulator_packages];
-        println!("SKIPPED all tests of what was built: {emulator} is missing (Debian: `apt-get install {packages}`)");
+    if !has_emulator(cross, &purpose) {
         return Ok(());
     }
-    repository::run(repository.cargo(&["build", "--release"]).args(wheel::packages()))?;
-    let emulator = Emulator::of(repository, cross)?;
-    let place = Place { repository, platform, cross, emulator, folder: platform.shipped(repository).join("tests") };
-    repository::remove(&place.folder)?;
-    std::fs::create_dir_all(&place.folder).map_err(|error| format!("{}: {error}", place.folder.display()))?;
+    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    let place = Place::new(repository, platform, cross)?;
     place.c_library()?;
     let host = place.compile(FMU_HOST, &[])?;
     for version in place.versions() {
         place.fmu(version, &host)?;
     }
-    if platform.name == "windows" {
+    if platform.is_windows() {
         place.python(&wheel)?;
     }
-    let Counts { passed, failed, .. } = bits::elsewhere(repository, platform, &place.emulator, &host)?;
-    println!("{passed} results have the bits of the golden table, {failed} have others");
-    if failed == 0 { Ok(()) } else { Err(format!("{failed} results have other bits: see above")) }
+    bits::all_good(bits::elsewhere(repository, platform, &place.emulator, &host)?)
 }
 
 /// Where the tests of a platform run.
@@ -119,7 +196,15 @@ struct Place<'a> {
     folder: PathBuf,
 }
 
-impl Place<'_> {
+impl<'a> Place<'a> {
+    /// Sets up the emulator, and an empty folder.
+    fn new(repository: &'a Repository, platform: &'a Platform, cross: &'a Cross) -> Result<Self, String> {
+        let folder = platform.shipped(repository).join("tests");
+        repository::remove(&folder)?;
+        std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        Ok(Self { repository, platform, cross, emulator: Emulator::of(repository, cross)?, folder })
+    }
+
     /// Compiles a program in C99 for the platform.
     fn compile(&self, source: &str, libraries: &[&str]) -> Result<PathBuf, String> {
         let name = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();

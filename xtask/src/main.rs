@@ -52,8 +52,10 @@ usage: cargo xtask TASK
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
-  windows [--test] builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
-                   folder; --test runs them under Wine and compares their bits with the golden table
+  windows [--test | --quick]
+                   builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
+                   folder; --test runs them under Wine and compares their bits with the golden table; --quick
+                   does so with a build that is hardly optimized, as test does
   aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
   ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench

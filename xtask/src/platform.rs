@@ -77,6 +77,9 @@ pub const WINDOWS: Platform = Platform {
     strip: Some(&["x86_64-w64-mingw32-strip", "--strip-unneeded"]),
 };
 
+/// The same as `cargo xtask test` builds it: nothing is removed from its binaries.
+pub const WINDOWS_QUICK: Platform = Platform { name: "windows-quick", strip: None, ..WINDOWS };
+
 /// Linux on ARM.
 pub const AARCH64: Platform = Platform {
     name: "aarch64",
@@ -113,6 +116,11 @@ impl Platform {
     pub fn binaries(&self) -> Vec<String> {
         let libraries = ["enmm", "enmm_fmi2", "enmm_fmi3"].map(|name| self.library(name));
         libraries.into_iter().chain([self.program()]).collect()
+    }
+
+    /// Whether programs of the platform run on Windows.
+    pub fn is_windows(&self) -> bool {
+        self.cross.as_ref().map_or(cfg!(windows), |cross| cross.triple.contains("windows"))
     }
 
     /// Folder in which cargo leaves what it builds.

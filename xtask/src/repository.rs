@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 /// Paths of the repository.
 pub struct Repository {
@@ -92,6 +92,37 @@ impl Repository {
 pub fn run(command: &mut Command) -> Result<(), String> {
     let status = command.status().map_err(|error| cannot_start(command, &error))?;
     if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", name(command))) }
+}
+
+/// A command that runs beside others, and what it has printed so far.
+pub struct Beside {
+    command: Command,
+    child: Child,
+    printed: PathBuf,
+}
+
+/// Starts `command`, which prints into the file `printed`.
+///
+/// # Errors
+/// When it cannot start, or the file cannot be written.
+pub fn start(mut command: Command, printed: PathBuf) -> Result<Beside, String> {
+    let problem = |error: std::io::Error| format!("{}: {error}", printed.display());
+    let file = File::create(&printed).map_err(problem)?;
+    command.stdout(file.try_clone().map_err(problem)?).stderr(file);
+    let child = command.spawn().map_err(|error| cannot_start(&command, &error))?;
+    Ok(Beside { command, child, printed })
+}
+
+impl Beside {
+    /// Waits for its end and shows what it printed.
+    ///
+    /// # Errors
+    /// When it ended with another status than 0.
+    pub fn finish(mut self) -> Result<(), String> {
+        let status = self.child.wait().map_err(|error| cannot_start(&self.command, &error))?;
+        print!("{}", fs::read_to_string(&self.printed).unwrap_or_default());
+        if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", name(&self.command))) }
+    }
 }
 
 /// Runs `command`, shows its standard output and returns it by lines, with whether it succeeded.

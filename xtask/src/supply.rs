@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::parts;
-use crate::repository::{self, Repository};
+use crate::repository::{self, Beside, Repository};
 use crate::venv::{self, succeeds};
 
 /// Compares the lists of parts with the dependencies, where the sources of all platforms are here or can be fetched.
@@ -60,27 +60,30 @@ fn deny_program(repository: &Repository) -> Option<PathBuf> {
     of_environment.or_else(|| succeeds(Command::new(&of_machine).arg("--version")).then_some(of_machine))
 }
 
-/// Checks all crates with the oldest compiler that the manifest promises, where this toolchain is installed.
+/// Starts to check all crates with the oldest compiler that the manifest promises; none, with a message, where this
+/// toolchain is not installed.
 ///
 /// # Errors
-/// When the manifest states no version, or a crate does not compile.
-pub fn oldest_compiler(repository: &Repository) -> Result<(), String> {
+/// When the manifest states no version, or cargo does not start.
+pub fn start_oldest_compiler(repository: &Repository) -> Result<Option<Beside>, String> {
     let manifest = std::fs::read_to_string(repository.root.join("Cargo.toml"));
     let version = promised(&manifest.map_err(|error| format!("Cargo.toml: {error}"))?)?;
     let toolchain = format!("+{version}");
     // Cargo sets these for its children; they name the toolchain that runs this program, which would win.
-    let fresh = |args: &[&str]| {
-        let mut command = repository.command("cargo");
+    let fresh = |program: &str, args: &[&str]| {
+        let mut command = repository.command(program);
         command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").env_remove("RUSTC").env("RUSTUP_AUTO_INSTALL", "0");
-        command.arg(&toolchain).args(args);
+        command.args(args);
         command
     };
-    if !succeeds(&mut fresh(&["--version"])) {
+    if !succeeds(&mut fresh("cargo", &[&toolchain, "--version"])) {
         println!("SKIPPED Rust {version}: not installed (`rustup toolchain install {version} --profile minimal`)");
-        return Ok(());
+        return Ok(None);
     }
-    let target = repository.target.join("oldest-compiler");
-    repository::run(fresh(&["check", "--locked", "--workspace"]).env("CARGO_TARGET_DIR", target))
+    // It yields to the tests beside it.
+    let mut check = fresh("nice", &["cargo", &toolchain, "check", "--locked", "--workspace"]);
+    check.env("CARGO_TARGET_DIR", repository.target.join("oldest-compiler"));
+    repository::start(check, repository.target.join("oldest-compiler.txt")).map(Some)
 }
 
 /// `rust-version` of a manifest.

@@ -11,7 +11,7 @@ use crate::cross;
 use crate::faults;
 use crate::figures;
 use crate::python;
-use crate::repository::{self, Repository};
+use crate::repository::{self, Beside, Repository};
 use crate::supply;
 use crate::venv;
 
@@ -50,6 +50,8 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
     if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
         return steps.close();
     }
+    // Tests, most of all those in Python, leave a part of the processors idle: what else has to be compiled fills it.
+    let oldest = (extent == Extent::Full).then(|| supply::start_oldest_compiler(repository));
     steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
     if extent == Extent::Full {
         steps.take("documentation", || {
@@ -59,9 +61,10 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
         steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
         steps.take("parts", || supply::parts(repository).map(|()| Counts::default()));
         steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
-        steps.take("oldest compiler", || supply::oldest_compiler(repository).map(|()| Counts::default()));
-        steps.take("windows", || cross::check(repository).map(|()| Counts::default()));
+        steps.take("oldest compiler", || finish(oldest.transpose()?.flatten()));
+        let windows = cross::start_quick(repository);
         steps.take("python", || python::test(repository, &[python::ALL]));
+        steps.take("windows", || cross::quick(repository, windows?));
         steps.take("figures", || figures::compare(repository));
         steps.take("bits", || bits::quick(repository));
         steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
@@ -96,6 +99,11 @@ pub fn write_figures(repository: &Repository, long: bool) -> Result<(), String> 
 pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
     throw(repository, words)
+}
+
+/// Waits for a command that was started, if there is one.
+fn finish(started: Option<Beside>) -> Result<Counts, String> {
+    started.map_or(Ok(()), Beside::finish).map(|()| Counts::default())
 }
 
 fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {

@@ -88,7 +88,7 @@ impl Item {
 
 /// Whether an FMU of this version has a folder for a platform beside that of this machine: FMI 2 names no processor.
 pub fn has_folder(platform: &Platform, version: &str) -> bool {
-    version == "3" || platform.name == "windows"
+    version == "3" || platform.is_windows()
 }
 
 /// The library of a platform as `enmm fmu --library` takes it.

@@ -44,7 +44,11 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
     act(repository)
 }
 
-fn all_good(counts: Counts) -> Result<(), String> {
+/// Prints how many results are as in the golden table.
+///
+/// # Errors
+/// When one is not.
+pub fn all_good(counts: Counts) -> Result<(), String> {
     println!("{} as in the golden table, {} others", counts.passed, counts.failed);
     if counts.failed == 0 { Ok(()) } else { Err(format!("{} results have other bits: see above", counts.failed)) }
 }
