@@ -2,7 +2,7 @@
 
 use enmm::contact::{EdgeId, Resistance};
 use enmm::geometry::{Point, Vector};
-use enmm::model::Simulation;
+use enmm::model::{BoltSegment, BoltState, Simulation};
 
 /// What a bolt is at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,6 +16,18 @@ pub enum BoltKind {
     Yielded,
     /// It has broken.
     Broken,
+}
+
+impl BoltKind {
+    /// What a bolt is now. One that has yielded or broken and lost its rock is absent.
+    pub fn of(now: &BoltState) -> Self {
+        match now {
+            now if !now.active => Self::Absent,
+            now if now.broken => Self::Broken,
+            now if now.rest > now.natural => Self::Yielded,
+            _ => Self::Whole,
+        }
+    }
 }
 
 /// A free length of a bolt between two material points now.
@@ -73,20 +85,14 @@ pub struct WetEdge {
 pub fn bolts(simulation: &Simulation) -> Vec<BoltLine> {
     let (model, state) = (simulation.model(), simulation.state());
     let stars = &model.covers.star_position;
-    let line = |(segment, now): (&enmm::model::BoltSegment, &enmm::model::BoltState)| {
+    let line = |(segment, now): (&BoltSegment, &BoltState)| {
         let end = |k: usize| {
             let sample = |field: &[Vector]| -> Vector {
                 segment.covers[k].iter().zip(segment.weights[k]).map(|(&i, w)| field[i] * w).sum()
             };
             sample(stars) + sample(&state.displacement)
         };
-        let kind = match now {
-            now if !now.active => BoltKind::Absent,
-            now if now.broken => BoltKind::Broken,
-            now if now.rest > now.natural => BoltKind::Yielded,
-            _ => BoltKind::Whole,
-        };
-        BoltLine { ends: [end(0), end(1)], bolt: segment.bolt, force: now.force, kind }
+        BoltLine { ends: [end(0), end(1)], bolt: segment.bolt, force: now.force, kind: BoltKind::of(now) }
     };
     model.bolts.iter().zip(&state.bolts).map(line).collect()
 }
@@ -165,5 +171,22 @@ pub fn height_at(line: &[Point], x: f64) -> f64 {
         (Some(p), None) => p.y,
         (None, Some(q)) => q.y,
         (None, None) => f64::NEG_INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
+        let whole = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 1e5 };
+        let yielded = BoltState { rest: 2.1, ..whole };
+        let broken = BoltState { broken: true, force: 0.0, ..yielded };
+        let kinds = [whole, yielded, broken].map(|now| BoltKind::of(&now));
+        assert_eq!(kinds, [BoltKind::Whole, BoltKind::Yielded, BoltKind::Broken]);
+        for now in [whole, yielded, broken] {
+            assert_eq!(BoltKind::of(&BoltState { active: false, ..now }), BoltKind::Absent);
+        }
     }
 }

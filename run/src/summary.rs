@@ -13,6 +13,7 @@ use enmm::model::case::StageKind;
 use enmm::state::{ENERGIES, Ledger, Seconds};
 use enmm::step::StepError;
 use enmm_io::files::{at_path, write_atomic};
+use enmm_picture::structures::BoltKind;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -179,7 +180,7 @@ pub struct StageRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BarState {
-    /// It is not installed, or a block that held it is gone.
+    /// It is not installed, or a block that held it is gone, whatever the bar did before.
     Absent,
     /// It bears no force.
     Slack,
@@ -214,12 +215,12 @@ impl BoltRecord {
         let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
             let case = &simulation.case().bolts[segment.bolt as usize];
             let middle = (segment.points[0] + segment.points[1]) * 0.5;
-            let state = match bolt {
-                BoltState { broken: true, .. } => BarState::Broken,
-                BoltState { active: false, .. } => BarState::Absent,
-                _ if bolt.rest > bolt.natural => BarState::Yielded,
-                _ if bolt.force > 0.0 => BarState::Elastic,
-                _ => BarState::Slack,
+            let state = match BoltKind::of(bolt) {
+                BoltKind::Absent => BarState::Absent,
+                BoltKind::Whole if bolt.force > 0.0 => BarState::Elastic,
+                BoltKind::Whole => BarState::Slack,
+                BoltKind::Yielded => BarState::Yielded,
+                BoltKind::Broken => BarState::Broken,
             };
             Self {
                 name: case.name.clone(),
