@@ -62,6 +62,16 @@ fn the_factor_is_that_of_limit_equilibrium() {
     }
 }
 
+/// Trials of a block that stands at 1.1 times its factor, as one does that something other than strength holds.
+#[test]
+fn a_factor_above_limit_analysis_is_in_doubt() {
+    let mut reduction = reduce(&case(40.0, 0.0, ""), 1);
+    assert_eq!(reduction.doubt(), None);
+    reduction.low = reduction.low.map(|low| 1.1 * low);
+    let doubt = reduction.doubt().expect("a doubt");
+    assert!(doubt.contains("above what limit analysis of rigid blocks allows"), "{doubt}");
+}
+
 /// The friction of the first test, with a wall 20 mm below the block: it slides and is caught, which is no strength.
 #[test]
 fn a_block_that_a_wall_catches_is_not_stable() {

@@ -203,7 +203,7 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
 /// One search as an object.
 fn search_record(reduction: &Reduction) -> Value {
     let failing = reduction.first_unstable();
-    json!({
+    let mut record = json!({
         "status": end_name(&reduction.end),
         "factor_of_safety": reduction.factor(),
         "at_least": reduction.at_least(),
@@ -224,7 +224,11 @@ fn search_record(reduction: &Reduction) -> Value {
         },
         "remedy": remedy(reduction),
         "warnings": reduction.warnings,
-    })
+    });
+    if let Some(doubt) = reduction.doubt() {
+        record["doubt"] = json!(doubt);
+    }
+    record
 }
 
 fn block_record(block: &FailingBlock) -> Value {

@@ -173,6 +173,12 @@ class Fos(_Directory):
         """What the user should know of the case and the search."""
         return list(self.record["warnings"])
 
+    @property
+    def doubt(self) -> str | None:
+        """Why the factor is in doubt: it is above the bound of limit analysis. None when it is not."""
+        doubt: str | None = self.record.get("doubt")
+        return doubt
+
     def plot(self, ax: Any = None) -> Any:
         """Draws displacement over the factor of every trial by matplotlib; returns the axes."""
         return _plots.trials(self, ax)

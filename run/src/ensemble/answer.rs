@@ -73,6 +73,6 @@ fn values(found: &Found) -> Values {
         json!(status),
         json!(failing.map_or(0, |trial| trial.failing.len())),
         json!(failing.map_or(0.0, |trial| trial.failing_area())),
-        json!(main.warning_of_the_bound().unwrap_or_default()),
+        json!(main.doubt().unwrap_or_default()),
     ])
 }

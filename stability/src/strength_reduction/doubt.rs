@@ -8,13 +8,19 @@ const RESIDUAL: f64 = 1e-3;
 /// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
 const ABOVE: f64 = 1.02;
 
-/// Words of the warning that a factor is above the bound.
-const ABOVE_BOUND: &str = "above what limit analysis";
-
 impl Reduction {
-    /// The warning that the factor is above the bound of limit analysis.
-    pub fn warning_of_the_bound(&self) -> Option<&str> {
-        self.warnings.iter().map(String::as_str).find(|warning| warning.contains(ABOVE_BOUND))
+    /// Why the factor is in doubt: it is above the bound of limit analysis. The text is among the warnings, too.
+    pub fn doubt(&self) -> Option<String> {
+        let bound = self.bound.as_ref().ok()?;
+        let (stable, limit) = (self.low?, bound.level_tops.factor.value());
+        (stable > ABOVE * limit).then(|| {
+            format!(
+                "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
+                 something other than strength holds a block; look at those that `enmm bound` names, and try a finer \
+                 mesh",
+                100.0 * (stable / limit - 1.0)
+            )
+        })
     }
 }
 
@@ -24,7 +30,7 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     let mut doubts = Vec::new();
     doubts.extend(not_monotone(trials));
     doubts.extend(caught(trials));
-    doubts.extend(above_the_bound(reduction));
+    doubts.extend(reduction.doubt());
     doubts.extend(undecided(trials));
     let rubbing = case.joint_laws.values().any(|law| law.friction_deg > 0.0);
     if !rubbing && !case.joint_laws.is_empty() {
@@ -71,17 +77,4 @@ fn caught(trials: &[Trial]) -> Option<String> {
         "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and were \
          caught: that does not count as stable"
     ))
-}
-
-/// What stands although no forces between rigid blocks could hold it.
-fn above_the_bound(reduction: &Reduction) -> Option<String> {
-    let bound = reduction.bound.as_ref().ok()?;
-    let (stable, limit) = (reduction.low?, bound.level_tops.factor.value());
-    (stable > ABOVE * limit).then(|| {
-        format!(
-            "F = {stable:.4} was stable, {:.1} % {ABOVE_BOUND} of rigid blocks allows ({limit:.4}): \
-             something other than strength holds a block; look at those that `enmm bound` names, and try a finer mesh",
-            100.0 * (stable / limit - 1.0)
-        )
-    })
 }

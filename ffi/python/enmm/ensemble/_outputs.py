@@ -12,7 +12,6 @@ Output = str | Callable[[Case], float | Mapping[str, Any]]
 """`factor_of_safety`, `level_tops` or `associated` (limit analysis), or a function of a case that pickle can take."""
 
 NAMES = ("factor_of_safety", "level_tops", "associated")
-_DOUBT = "above what limit analysis"
 
 
 class Answer(NamedTuple):
@@ -55,7 +54,6 @@ def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
         message = f"the search for the factor of safety ended {found.status}: {found.record['remedy']}"
         raise StepError(message, Status.NUMERICAL_FAILURE)
     failing = found.failing or {"blocks": 0, "area": 0.0}
-    doubt = next((warning for warning in found.warnings if _DOUBT in warning), "")
     return {
         "factor_of_safety": float(factor),
         "stable": low,
@@ -63,5 +61,5 @@ def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
         "status": found.status,
         "failing_blocks": int(failing["blocks"]),
         "failing_area": float(failing["area"]),
-        "doubt": doubt,
+        "doubt": found.doubt or "",
     }
