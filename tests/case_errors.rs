@@ -134,8 +134,8 @@ fn wrong_brackets_of_a_section_say_which_to_write() {
     assert_refused(
         "[rock.granite]",
         "[rock]",
-        "37: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 1.0, young = 1.0, \
-         poisson = 1.0`",
+        "37: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 2700.0, young = \
+         1e10, poisson = 0.25`",
     );
 }
 
@@ -177,7 +177,8 @@ fn missing_section_says_what_to_add() {
         ),
         (
             "rock",
-            "1: rock: is missing (Rocks by name); add `[rock.NAME]` with `density = 1.0, young = 1.0, poisson = 1.0`",
+            "1: rock: is missing (Rocks by name); add `[rock.NAME]` with `density = 2700.0, young = 1e10, \
+             poisson = 0.25`",
         ),
         ("stage", "1: stage: is missing (Stages in order); add `[[stage]]` with `name = \"name\", kind = \"static\"`"),
         ("domain", "1: domain: is missing (Rock outline and joint traces from files); add `[domain]`"),

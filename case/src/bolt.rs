@@ -27,8 +27,10 @@ pub struct Bolt {
     #[serde(default)]
     pub anchorage: Anchorage,
     /// Young's modulus of the bar (Pa).
+    #[schemars(example = 200e9)]
     pub young: f64,
     /// Cross-section of one bar (m²).
+    #[schemars(example = 4.9e-4)]
     pub area: f64,
     /// Distance between bars out of the plane (m).
     #[serde(default = "one")]
@@ -69,16 +71,20 @@ pub struct BoltPattern {
     #[serde(default)]
     pub distance: Option<f64>,
     /// Length of a bolt from its head (m).
+    #[schemars(example = 6.0)]
     pub length: f64,
     /// Direction from the head into the rock, counter-clockwise from the x axis (degrees), at least -360 and at most
     /// 360: -15 dips to the right by 15°.
+    #[schemars(example = -15.0)]
     pub angle_deg: f64,
     /// Ends or grouted.
     #[serde(default)]
     pub anchorage: Anchorage,
     /// Young's modulus of the bar (Pa).
+    #[schemars(example = 200e9)]
     pub young: f64,
     /// Cross-section of one bar (m²).
+    #[schemars(example = 4.9e-4)]
     pub area: f64,
     /// Distance between bars out of the plane (m).
     #[serde(default = "one")]

@@ -10,6 +10,7 @@ use super::PointList;
 #[serde(deny_unknown_fields)]
 pub struct Section {
     /// Azimuth of the x axis, clockwise from north (degrees), at least -360 and at most 360.
+    #[schemars(example = 90.0)]
     pub azimuth_deg: f64,
 }
 

@@ -207,10 +207,13 @@ pub enum Plane {
 #[serde(deny_unknown_fields)]
 pub struct Rock {
     /// Density (kg/m³).
+    #[schemars(example = 2700.0)]
     pub density: f64,
     /// Young's modulus (Pa).
+    #[schemars(example = 10e9)]
     pub young: f64,
     /// Poisson's ratio.
+    #[schemars(example = 0.25)]
     pub poisson: f64,
     /// Plane strain or plane stress.
     #[serde(default)]
@@ -274,6 +277,7 @@ pub struct JointLaw {
     #[serde(default)]
     pub shear_stiffness: Option<f64>,
     /// Friction angle (degrees); of Barton–Bandis joints the residual angle φr.
+    #[schemars(example = 30.0)]
     pub friction_deg: f64,
     /// Cohesion (Pa).
     #[serde(default)]

@@ -119,6 +119,7 @@ pub struct RandomCorrelation {
     /// Keys of the two values.
     pub keys: [String; 2],
     /// Coefficient of correlation.
+    #[schemars(example = 0.5)]
     pub value: f64,
 }
 

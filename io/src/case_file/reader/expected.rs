@@ -56,6 +56,11 @@ impl<'a> Schema<'a> {
         Some(text.split(['.', ';', '\n']).next().unwrap_or(text))
     }
 
+    /// Returns a number that is usual for the key.
+    fn example(&self) -> Option<f64> {
+        self.node.get("examples")?.get(0)?.as_f64()
+    }
+
     /// Returns what the schema expects.
     pub fn expected(self) -> Expected<'a> {
         let Self { node, .. } = self.resolved();
@@ -191,8 +196,11 @@ pub fn assigned(key: &Key, value: &str) -> String {
     }
 }
 
-/// Returns an acceptable value.
+/// Returns an acceptable value: the example of the schema, if it has one.
 pub fn literal(schema: &Schema) -> String {
+    if let Some(example) = schema.example() {
+        return number(example);
+    }
     match schema.expected() {
         Expected::Table(_) => "{ }".to_string(),
         Expected::Array { items, length } => format!("[{}]", vec![literal(&items); length.unwrap_or(1)].join(", ")),
@@ -202,6 +210,11 @@ pub fn literal(schema: &Schema) -> String {
         Expected::Boolean => "true".to_string(),
         Expected::Choice(names) => format!("{:?}", names.first().unwrap_or(&"")),
     }
+}
+
+/// Writes a number in TOML: `2700.0`, `1e10`.
+fn number(value: f64) -> String {
+    if (1e-3..1e6).contains(&value.abs()) { format!("{value:?}") } else { format!("{value:e}") }
 }
 
 /// Removes the indices of a key: `stage[0].law` becomes `stage.law`.
