@@ -83,8 +83,8 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
 
     let mut solver = OpenClose::default();
     solver.prepare(masses, &[], &[]);
-    let near_pairs = &state.neighbours.pairs;
-    solver.arrange(&model.boundary, near_pairs, masses, &model.covers.block_covers, &workspace.contacts);
+    let near = (&state.neighbours.pairs[..], &workspace.near_sides);
+    solver.arrange(&model.boundary, near, masses, &model.covers.block_covers, &workspace.accepted.near_side);
     let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
     let report = solver.run(masses, &options, &mut workspace.contacts, &mut others);
     assert!(report.unsettled <= SETTLED, "the solver has not settled: {report:?}");

@@ -285,6 +285,12 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
+    fn select(self, bits: u8, a: Register, b: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_mask_mov_pd(b.0, bits, a.0) })
+    }
+
+    #[inline(always)]
     fn greatest(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
         unsafe { _mm512_reduce_max_pd(lanes.0) }

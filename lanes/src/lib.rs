@@ -85,6 +85,9 @@ pub trait Lanes: Values {
     /// Square root.
     fn sqrt(self, lanes: Self::F) -> Self::F;
 
+    /// The first in lanes with a bit, from the lowest on, the second elsewhere.
+    fn select(self, bits: u8, a: Self::F, b: Self::F) -> Self::F;
+
     /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
     fn sum(self, lanes: Self::F) -> f64;
 

@@ -131,6 +131,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn select(self, bits: u8, a: Array, b: Array) -> Array {
+        Array(std::array::from_fn(|k| if bits >> k & 1 == 1 { a.0[k] } else { b.0[k] }))
+    }
+
+    #[inline(always)]
     fn greatest(self, lanes: Array) -> f64 {
         lanes.0.into_iter().fold(f64::NEG_INFINITY, f64::max)
     }

@@ -44,8 +44,27 @@ impl Kernel for Everything {
         let mut stored = [Pair::zeros(); 6];
         lanes.store_some_pairs([z, w], &mut stored);
         let one = lanes.splat(1.0);
-        let values =
-            [a + b, a - b, a * b, a / (b * b + one), -a, lanes.sqrt(a * a), x, y, z, w, part, g, h, i, j, k, l];
+        let selected = lanes.select(0b1010_0110, a, b);
+        let values = [
+            a + b,
+            a - b,
+            a * b,
+            a / (b * b + one),
+            -a,
+            lanes.sqrt(a * a),
+            x,
+            y,
+            z,
+            w,
+            part,
+            g,
+            h,
+            i,
+            j,
+            k,
+            l,
+            selected,
+        ];
         let mut bits = Vec::new();
         let masks = [(a, b), (b, a), (a, a), (x, w), (lanes.sqrt(-a), b)].map(|(a, b)| lanes.at_most(a, b));
         bits.extend(masks.map(u64::from));

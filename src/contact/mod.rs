@@ -18,7 +18,8 @@ pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, S
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
 pub use narrow_phase::{
-    AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, PenetratingContacts, entrance_edges,
+    AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, NearSides, PenetratingContacts,
+    entrance_edges,
 };
 pub use pair::Pair;
 #[doc(hidden)]

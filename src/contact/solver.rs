@@ -24,7 +24,7 @@ use self::order::{Sequence, SolverOrder};
 use self::subdomain::{PassKind, Subdomain, SubdomainPass};
 use self::support::SupportSystem;
 use self::wide_contact::{ContactView, WideContact};
-use super::{BoltRow, Boundary, NearPair, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, NearPair, NearSides, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
 const CONTACTS: usize = 1024;
@@ -128,18 +128,18 @@ impl OpenClose {
         self.order.clear();
     }
 
-    /// Orders the contacts of a step, and the near pairs when they are new.
+    /// Orders the contacts of a step, given by the near side of each, and all near sides when they are new.
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
-        near_pairs: &[NearPair],
+        (near_pairs, near_sides): (&[NearPair], &NearSides),
         mass_matrix: &MassMatrix,
         block_covers: &[u32],
-        contacts: &[VertexEdge],
+        contacts: &[u32],
     ) {
         let view = SolverView { mass_matrix, roots: &self.roots };
         if self.order.is_empty() {
-            self.order.order(boundary, near_pairs, &view);
+            self.order.order(boundary, near_pairs, near_sides, &view);
             self.cuts.clear();
             self.cuts.extend(
                 self.order.leaf_block().iter().map(|&block| (block, CoverId::new(block_covers[block] as usize))),

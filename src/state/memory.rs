@@ -117,6 +117,7 @@ impl Workspace {
             ("masses", mass_matrix(&self.mass_matrix)),
             ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
             ("places", self.position.bytes() + self.frames.bytes()),
+            ("near sides", self.near_sides.bytes()),
             ("accepted pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
             ("search", self.search.bytes()),
             ("contacts", sum(&[&self.contacts, &self.outcomes])),

@@ -1,8 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, LawId, OpenClose, PenetratingContacts, SearchGrid,
-    SupportRow, VertexEdge,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, LawId, NearSides, OpenClose, PenetratingContacts,
+    SearchGrid, SupportRow, VertexEdge,
 };
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
@@ -42,6 +42,8 @@ pub struct Workspace {
     pub position: Vec<Point>,
     /// Boundary edges and nodes at those positions.
     pub frames: Frames,
+    /// Near pairs by node and side.
+    pub near_sides: NearSides,
     /// What the vertex rule admits in this step.
     pub accepted: AcceptedPairs,
     /// Where the contacts of the last step are.

@@ -38,7 +38,7 @@ impl Step<'_> {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
             points.map(position).collect_into_vec(&mut workspace.position);
         }
-        workspace.frames.update(boundary, &workspace.position, model.entrance.flush_sine, workspace.serial);
+        workspace.frames.update(boundary, &workspace.position, workspace.serial);
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -59,6 +59,7 @@ impl Step<'_> {
             };
             workspace.search.search(&view, &mut self.state.neighbours);
             workspace.open_close.forget_order();
+            workspace.near_sides.forget();
             self.state.counters.searches += 1;
         }
         workspace.seconds.search += clock.elapsed().as_secs_f64();
@@ -74,6 +75,7 @@ impl Step<'_> {
         };
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let size = model.covers.mesh.size;
+        workspace.near_sides.list(&state.neighbours.pairs);
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
         let predicted = &workspace.predicted;
@@ -105,8 +107,8 @@ impl Step<'_> {
             in_situ: model.in_situ.as_ref(),
             serial: workspace.serial,
         };
-        let near_pairs = &state.neighbours.pairs;
-        contact::entrance_edges(&narrow, near_pairs, &mut workspace.accepted, &mut workspace.contacts);
+        let (near_pairs, near_sides) = (&state.neighbours.pairs, &workspace.near_sides);
+        contact::entrance_edges(&narrow, near_pairs, near_sides, &mut workspace.accepted, &mut workspace.contacts);
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 }

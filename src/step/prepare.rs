@@ -26,6 +26,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
     hold(model, state, workspace);
     expose(model, &mut workspace.exposed);
+    workspace.near_sides.forget();
     workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
     integrator_of(model).prepare(model, workspace);
 }

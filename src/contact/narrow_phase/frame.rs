@@ -1,16 +1,20 @@
 //! Current positions and directions of edges and nodes, computed once a step for the narrow phase.
 
+use enmm_lanes::Pair;
 use rayon::prelude::*;
 
 use crate::contact::{Boundary, EdgeId, NodeId};
 use crate::geometry::{Point, Vector};
 
-use super::{is_convex, right_of};
+use super::right_of;
 
 /// Edges or nodes that a thread takes at least.
 const GRAIN: usize = 2048;
-/// Relative difference of squared distances above which rounding does not decide which is the larger.
-const ROUNDING: f64 = 1e-12;
+
+/// Pairs of an edge: its start, its tangent, and its length with a zero.
+pub(super) const EDGE_PAIRS: usize = 3;
+/// Pairs of a node: its position, the ways to the node before it and to the one after it, and their lengths.
+pub(super) const NODE_PAIRS: usize = 4;
 
 /// An edge at its current position.
 #[derive(Debug, Clone, Copy)]
@@ -32,67 +36,28 @@ pub(super) struct NodeFrame {
     pub to: [Vector; 2],
     /// How far those are (m).
     pub distance: [f64; 2],
-    /// Whether it is a convex corner.
-    pub is_convex: bool,
 }
 
-/// Position of a point relative to an edge.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Over {
-    /// Distance along the edge from its start (m).
-    pub along: f64,
-    /// Gap along the outward normal (m).
-    pub gap: f64,
-    /// Distance along the edge beyond its nearer end (m); 0 within.
-    pub beyond: f64,
-}
-
-/// All edges and nodes at their current positions.
+/// All edges and nodes at their current positions, in pairs of numbers that lanes can gather.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
-    pub(super) edges: Vec<EdgeFrame>,
-    pub(super) nodes: Vec<NodeFrame>,
-}
-
-impl Over {
-    /// Distance from the edge (m).
-    pub fn distance(&self) -> f64 {
-        if self.beyond > 0.0 { libm::hypot(self.beyond, self.gap) } else { self.gap.abs() }
-    }
-
-    /// Whether this edge is the nearer one. Equal to the comparison of both distances, which costs more.
-    #[inline(always)]
-    pub fn is_nearer_than(&self, other: &Self) -> bool {
-        let [own, others] = [self, other].map(|over| over.beyond * over.beyond + over.gap * over.gap);
-        if (own - others).abs() > ROUNDING * others { own < others } else { self.distance() < other.distance() }
-    }
+    edges: Vec<[Pair; EDGE_PAIRS]>,
+    nodes: Vec<[Pair; NODE_PAIRS]>,
 }
 
 impl EdgeFrame {
-    fn new(a: Point, b: Point) -> Self {
-        let length = (b - a).norm();
-        Self { start: a, tangent: (b - a) / length, length }
-    }
-
     /// Outward unit normal.
     pub fn normal(&self) -> Vector {
         right_of(self.tangent)
     }
-
-    /// Where a point is over the edge.
-    pub fn over(&self, p: Point) -> Over {
-        let from = p - self.start;
-        let along = from.dot(&self.tangent);
-        let beyond = (-along).max(along - self.length).max(0.0);
-        Over { along, gap: from.dot(&self.normal()), beyond }
-    }
 }
 
 impl NodeFrame {
-    fn new(position: Point, neighbours: [Point; 2], flush_sine: f64) -> Self {
-        let to = neighbours.map(|q| q - position);
-        let distance = to.map(|d| d.norm());
-        Self { position, to, distance, is_convex: is_convex(to, distance, flush_sine) }
+    /// Whether the rock at the node is a corner of less than half a turn, by more than an angle given by its sine.
+    pub fn is_convex(&self, sine: f64) -> bool {
+        let ([previous, next], [before, after]) = (self.to, self.distance);
+        let (cross, dot) = (next.perp(&previous), next.dot(&previous));
+        cross > 0.0 && (dot > 0.0 || cross > sine * before * after)
     }
 }
 
@@ -102,13 +67,41 @@ impl Frames {
         size_of_val(self.edges.as_slice()) + size_of_val(self.nodes.as_slice())
     }
 
-    /// Updates all edges and nodes from the current positions of the boundary points; at a corner the boundary turns by
-    /// more than an angle given by its sine.
-    pub fn update(&mut self, boundary: &Boundary, position: &[Point], flush_sine: f64, serial: bool) {
-        let edge = |(a, next): (&Point, &EdgeId)| EdgeFrame::new(*a, position[*next]);
+    /// An edge.
+    #[inline(always)]
+    pub(super) fn edge(&self, edge: EdgeId) -> EdgeFrame {
+        let [start, tangent, length] = self.edges[edge.index()];
+        EdgeFrame { start, tangent, length: length.x }
+    }
+
+    /// A node.
+    #[inline(always)]
+    pub(super) fn node(&self, node: NodeId) -> NodeFrame {
+        let [position, previous, next, distance] = self.nodes[node.index()];
+        NodeFrame { position, to: [previous, next], distance: [distance.x, distance.y] }
+    }
+
+    /// The pairs of all edges.
+    pub(super) fn edge_pairs(&self) -> &[Pair] {
+        self.edges.as_flattened()
+    }
+
+    /// The pairs of all nodes.
+    pub(super) fn node_pairs(&self) -> &[Pair] {
+        self.nodes.as_flattened()
+    }
+
+    /// Updates all edges and nodes from the current positions of the boundary points.
+    pub fn update(&mut self, boundary: &Boundary, position: &[Point], serial: bool) {
+        let edge = |(a, next): (&Point, &EdgeId)| {
+            let way = position[*next] - a;
+            let length = way.norm();
+            [*a, way / length, Pair::new(length, 0.0)]
+        };
         let at = |node: NodeId| position[boundary.node_point[node]];
         let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
-            NodeFrame::new(position[*point], [at(*previous), at(*next)], flush_sine)
+            let to = [*previous, *next].map(|q| at(q) - position[*point]);
+            [position[*point], to[0], to[1], Pair::new(to[0].norm(), to[1].norm())]
         };
         let Boundary { node_point, node_previous, node_next, .. } = boundary;
         if serial {

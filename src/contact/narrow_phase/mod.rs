@@ -4,29 +4,38 @@
 mod constants;
 mod frame;
 mod make_contact;
+mod near_sides;
+mod nearest;
 mod penetrating;
 mod tributary_length;
 mod vertex_rule;
 
+use std::ops::Range;
+
+use enmm_lanes::dispatch;
 use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::{BlockMotion, MassMatrix, StressField};
 
-use frame::{EdgeFrame, Over};
+use frame::EdgeFrame;
+use near_sides::{NearRun, NearSide};
+use nearest::{ENTERS, FindNearest, Nearest, OVER};
 
 use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, LawId, NearPair, NodeId, SideId, VertexEdge};
 
 pub use constants::EntranceRule;
 pub use frame::Frames;
+pub use near_sides::NearSides;
 pub use penetrating::PenetratingContacts;
 
-/// Near pairs in a run, which one thread tests: fixed, so that the order does not depend on threads.
-const RUN: usize = 4096;
 /// Runs that are tested before their contacts are made.
 const RUNS: usize = 64;
 /// Least number of contacts that a thread makes.
 const GRAIN: usize = 256;
+
+/// No contact of the last step.
+const NONE: u32 = u32::MAX;
 
 /// Distance beyond a corner, relative to the mesh size, that counts as the corner.
 const CORNER_TOLERANCE: f64 = 1e-9;
@@ -126,8 +135,14 @@ impl ContactCache {
 
     /// Contacts of a node.
     #[inline(always)]
-    fn of_node(&self, node: NodeId) -> std::ops::Range<usize> {
-        self.first[node] as usize..self.first[node.index() + 1] as usize
+    fn of_node(&self, node: NodeId) -> Range<usize> {
+        self.of_nodes([node.index(), node.index() + 1])
+    }
+
+    /// Contacts of the nodes from the first to the one after the last.
+    #[inline(always)]
+    fn of_nodes(&self, [first, end]: [usize; 2]) -> Range<usize> {
+        self.first[first] as usize..self.first[end] as usize
     }
 }
 
@@ -137,6 +152,7 @@ struct ContactCandidate {
     node: NodeId,
     side: SideId,
     edge: EdgeId,
+    near_side: u32,
     gap: f64,
     along: f64,
     beyond: f64,
@@ -156,6 +172,9 @@ struct ContactCandidate {
 pub struct AcceptedPairs {
     runs: Vec<Run>,
     candidates: Vec<ContactCandidate>,
+    /// Near side of each contact of this step, and of those of the last one.
+    pub near_side: Vec<u32>,
+    near_side_last: Vec<u32>,
 }
 
 /// Candidates that it accepts of a run of near pairs.
@@ -164,147 +183,162 @@ struct Run {
     accepted: Vec<ContactCandidate>,
     /// Sides of the current node.
     sides: Vec<ContactCandidate>,
+    nearest: Nearest,
+    /// Contact of the last step of each near side, or [`NONE`].
+    known: Vec<u32>,
+    /// Near sides that rule 1 lets in.
+    entering: Vec<u32>,
 }
 
 impl AcceptedPairs {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let of_run = |run: &Run| size_of_val(run.accepted.as_slice()) + size_of_val(run.sides.as_slice());
-        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.candidates.as_slice())
+        let numbers = |list: &Vec<u32>| size_of_val(list.as_slice());
+        let of_run = |run: &Run| {
+            let candidates = size_of_val(run.accepted.as_slice()) + size_of_val(run.sides.as_slice());
+            candidates + run.nearest.bytes() + numbers(&run.known) + numbers(&run.entering)
+        };
+        let near_sides = numbers(&self.near_side) + numbers(&self.near_side_last);
+        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.candidates.as_slice()) + near_sides
     }
 }
 
-/// Tests every near pair and fills the contacts of this step, ordered by node and side.
+/// Applies the vertex rule to every near side and fills the contacts of this step, ordered by node and side.
 pub fn entrance_edges(
     narrow: &NarrowPhase,
     near_pairs: &[NearPair],
+    near_sides: &NearSides,
     accepted: &mut AcceptedPairs,
     contacts: &mut Vec<VertexEdge>,
 ) {
+    std::mem::swap(&mut accepted.near_side_last, &mut accepted.near_side);
+    accepted.near_side.clear();
     let mut made = 0;
-    // In pieces: what is accepted of all near pairs together would be as large as the contacts.
-    let runs = if narrow.serial { 1 } else { RUNS };
-    let mut rest = near_pairs;
-    while !rest.is_empty() {
-        let (piece, others) = rest.split_at(first_of_run(rest, runs));
-        made = narrow.enter(piece, accepted, contacts, made);
-        rest = others;
+    // In pieces: what is accepted of all near sides together would be as large as the contacts.
+    let piece = if narrow.serial { 1 } else { RUNS };
+    let mut first = 0;
+    while first < near_sides.runs() {
+        let end = near_sides.runs().min(first + piece);
+        made = narrow.enter(near_pairs, near_sides, first..end, accepted, contacts, made);
+        first = end;
     }
     contacts.truncate(made);
 }
 
-/// Start of run `k`: a multiple of its length, moved to the next node.
-fn first_of_run(near_pairs: &[NearPair], k: usize) -> usize {
-    let start = (k * RUN).min(near_pairs.len());
-    match start.checked_sub(1).map(|last| near_pairs[last].node) {
-        Some(node) => start + near_pairs[start..].iter().take_while(|c| c.node == node).count(),
-        None => 0,
-    }
-}
-
 impl NarrowPhase<'_> {
-    /// Tests some near pairs and makes their contacts, from index `made` on; returns their end.
+    /// Applies the vertex rule to some runs and makes their contacts, from index `made` on; returns their end.
     fn enter(
         &self,
         near_pairs: &[NearPair],
+        near_sides: &NearSides,
+        range: Range<usize>,
         accepted: &mut AcceptedPairs,
         contacts: &mut Vec<VertexEdge>,
         made: usize,
     ) -> usize {
-        let AcceptedPairs { runs, candidates } = accepted;
-        let count = if self.serial { 1 } else { near_pairs.len().div_ceil(RUN) };
-        runs.resize_with(runs.len().max(count), Run::default);
-        let runs = &mut runs[..count];
+        let AcceptedPairs { runs, candidates, near_side, near_side_last } = accepted;
+        runs.resize_with(runs.len().max(range.len()), Run::default);
+        let runs = &mut runs[..range.len()];
+        let apply = |(k, run): (usize, &mut Run)| {
+            self.apply_vertex_rule(near_pairs, near_sides.run(k), near_side_last, run);
+        };
         if let [run] = runs {
-            self.apply_vertex_rule(near_pairs, run);
+            apply((range.start, run));
+            near_side.extend(run.accepted.iter().map(|candidate| candidate.near_side));
             return self.make(&run.accepted, contacts, made);
         }
-        runs.par_iter_mut().enumerate().for_each(|(k, run)| {
-            self.apply_vertex_rule(&near_pairs[first_of_run(near_pairs, k)..first_of_run(near_pairs, k + 1)], run);
-        });
+        range.into_par_iter().zip(&mut *runs).for_each(apply);
         candidates.clear();
         runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
+        near_side.extend(candidates.iter().map(|candidate| candidate.near_side));
         self.make(candidates, contacts, made)
     }
 
-    /// Finds the candidates that the vertex rule accepts of some near pairs.
-    fn apply_vertex_rule(&self, near_pairs: &[NearPair], run: &mut Run) {
-        let Run { accepted, sides } = run;
+    /// Finds the candidates that the vertex rule accepts of the near sides of a run; `near_side_last` are those of the
+    /// contacts of the last step, as a rule.
+    fn apply_vertex_rule(&self, near_pairs: &[NearPair], near: NearRun, near_side_last: &[u32], run: &mut Run) {
+        let Run { accepted, sides, nearest, known, entering } = run;
+        self.recall(near, near_side_last, nearest, known);
+        dispatch(FindNearest { narrow: self, run: near, nearest });
+        let found = Found { near_pairs, near, nearest, known };
+        list_entering(&nearest.verdict, entering);
         accepted.clear();
-        for group in near_pairs.chunk_by(|a, b| a.node == b.node) {
-            let node = group[0].node;
-            sides.resize(sides.len().max(group.len()), ContactCandidate::default());
-            let candidates = self.nearest_edges(node, group, sides);
+        for group in entering.chunk_by(|&a, &b| found.node(a) == found.node(b)) {
+            sides.clear();
             let mut contested = false;
-            for candidate in candidates.iter_mut().filter(|candidate| candidate.accepted) {
-                let overlap = self.overlap_at_ends(node, candidate).filter(|_| !self.is_false_sight(node, candidate));
-                candidate.accepted = overlap.is_some();
-                candidate.overlap = overlap.unwrap_or_default();
-                contested |= candidate.accepted & !candidate.is_held & (candidate.gap < -TIE_TOLERANCE * self.size);
+            for &k in group {
+                let mut candidate = self.candidate(&found, k as usize);
+                let node = candidate.node;
+                let Some(overlap) = self.overlap_at_ends(node, &candidate) else { continue };
+                if self.is_false_sight(node, &candidate) {
+                    continue;
+                }
+                (candidate.overlap, candidate.accepted) = (overlap, true);
+                contested |= !candidate.is_held & (candidate.gap < -TIE_TOLERANCE * self.size);
+                sides.push(candidate);
             }
             // Those that are not accepted matter only where a deep one without force is.
-            let count = if contested { candidates.len() } else { keep_accepted(candidates) };
-            self.choose_sides(&mut candidates[..count]);
-            accepted.extend(candidates[..count].iter().filter(|p| p.accepted));
-        }
-    }
-
-    /// The nearest edge of each side that the node is over, and whether it is near and faces the node; the buffers hold
-    /// as many as there are near pairs.
-    fn nearest_edges<'p>(
-        &self,
-        node: NodeId,
-        group: &[NearPair],
-        candidates: &'p mut [ContactCandidate],
-    ) -> &'p mut [ContactCandidate] {
-        let mut count = 0;
-        let mut known = self.cache.of_node(node);
-        for edges in group.chunk_by(|a, b| a.side == b.side) {
-            while !known.is_empty() && self.history[known.start].side < edges[0].side {
-                known.start += 1;
+            if contested {
+                self.add_others(&found, group[0] as usize, sides);
             }
-            let held = !known.is_empty() && self.history[known.start].side == edges[0].side;
-            // Whether it counts is seldom the same twice: no branch depends on it.
-            let is_over = self.candidate(node, edges, held.then_some(known.start as u32), &mut candidates[count]);
-            count += usize::from(is_over);
+            self.choose_sides(sides);
+            accepted.extend(sides.iter().filter(|p| p.accepted));
         }
-        &mut candidates[..count]
     }
 
-    /// Fills the candidate of one side; returns whether the node is over that side.
+    /// Finds the contacts of the last step among the near sides of a run, and the gaps of their unloaded springs.
+    fn recall(&self, near: NearRun, near_side_last: &[u32], nearest: &mut Nearest, known: &mut Vec<u32>) {
+        nearest.begin(near.near_sides.len());
+        known.clear();
+        known.resize(near.near_sides.len(), NONE);
+        for k in self.cache.of_nodes(near.nodes()) {
+            let contact = &self.history[k];
+            let guess = near_side_last.get(k).map_or(usize::MAX, |&guess| (guess as usize).wrapping_sub(near.first));
+            if let Some(at) = near.of(contact, guess) {
+                known[at] = k as u32;
+                let bonded = contact.intact && contact.normal_force < 0.0;
+                nearest.rest[at] = if bonded { f64::INFINITY } else { contact.rest - contact.offset };
+            }
+        }
+    }
+
+    /// The candidate of a near side of a run.
     #[inline(always)]
-    fn candidate(&self, node: NodeId, edges: &[NearPair], held: Option<u32>, candidate: &mut ContactCandidate) -> bool {
-        let (edge, over) = self.nearest(self.node_position(node), edges);
-        let Over { along, gap, beyond } = over;
-        let known = held.map(|k| &self.history[k as usize]);
-        let is_held = known.is_some_and(|h| h.state != ContactState::Open);
-        let EdgeFrame { length, tangent, .. } = self.frames.edges[edge];
-        let NearPair { node: own, side, .. } = edges[0];
-        *candidate = ContactCandidate {
-            node: own,
+    fn candidate(&self, found: &Found, k: usize) -> ContactCandidate {
+        let Found { near_pairs, near, nearest, known } = *found;
+        let NearSide { node, side, first } = near.near_sides[k];
+        let edge = near_pairs[(first + nearest.edge[k]) as usize].edge;
+        let EdgeFrame { length, tangent, .. } = self.frames.edge(edge);
+        let held = (known[k] != NONE).then_some(known[k]);
+        ContactCandidate {
+            node,
             side,
             edge,
-            gap,
-            along,
-            beyond,
+            near_side: (near.first + k) as u32,
+            gap: nearest.gap[k],
+            along: nearest.along[k],
+            beyond: nearest.beyond[k],
             length,
             tangent,
             held,
-            is_held,
+            is_held: held.is_some_and(|known| self.history[known as usize].state != ContactState::Open),
             overlap: [f64::INFINITY; 2],
             accepted: false,
-        };
-        let bonded = known.is_some_and(|h| h.intact && h.normal_force < 0.0);
-        let near = bonded | (gap - known.map_or(0.0, |h| h.rest - h.offset) < self.reach);
-        candidate.accepted = near & self.enters(node, candidate);
-        beyond <= self.rule.wedge_ratio * gap.abs() + self.rule.held_beyond * self.size
+        }
     }
 
-    /// The nearest of some edges, the first of equally near ones, and where the point is over it.
-    #[inline(always)]
-    fn nearest(&self, p: Point, edges: &[NearPair]) -> (EdgeId, Over) {
-        let over = |c: &NearPair| (c.edge, self.frames.edges[c.edge].over(p));
-        edges[1..].iter().map(over).fold(over(&edges[0]), |a, b| if b.1.is_nearer_than(&a.1) { b } else { a })
+    /// Adds the other sides of a node that it is over, in their order, given those that are accepted.
+    #[cold]
+    fn add_others(&self, found: &Found, one: usize, sides: &mut Vec<ContactCandidate>) {
+        let node = found.node(one as u32);
+        let near_sides = found.near.near_sides;
+        let first = near_sides.partition_point(|near| near.node < node);
+        let count = near_sides[first..].iter().take_while(|near| near.node == node).count();
+        let accepted = std::mem::take(sides);
+        for k in (first..first + count).filter(|&k| found.nearest.verdict[k] & OVER != 0) {
+            let candidate = self.candidate(found, k);
+            sides.push(*accepted.iter().find(|known| known.side == candidate.side).unwrap_or(&candidate));
+        }
     }
 
     /// Whether a new candidate cannot be a contact: it is deep and not of the nearest side of the rock around the node,
@@ -363,7 +397,7 @@ impl NarrowPhase<'_> {
 
     #[inline(always)]
     fn node_position(&self, node: NodeId) -> Point {
-        self.frames.nodes[node].position
+        self.frames.node(node).position
     }
 
     /// Distance (m) beyond a corner that counts as the corner.
@@ -372,32 +406,35 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// Moves the accepted candidates to the front, in their order; returns their number.
-fn keep_accepted(candidates: &mut [ContactCandidate]) -> usize {
-    let mut kept = 0;
-    for k in 0..candidates.len() {
-        if candidates[k].accepted {
-            candidates[kept] = candidates[k];
-            kept += 1;
-        }
+/// What is found of the near sides of a run.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    near_pairs: &'a [NearPair],
+    near: NearRun<'a>,
+    nearest: &'a Nearest,
+    /// Contact of the last step of each, or [`NONE`].
+    known: &'a [u32],
+}
+
+impl Found<'_> {
+    /// Node of a near side.
+    fn node(&self, k: u32) -> NodeId {
+        self.near.near_sides[k as usize].node
     }
-    kept
+}
+
+/// Lists the near sides whose node is over the edge, near and may enter by rule 1. No branch depends on it.
+fn list_entering(verdicts: &[u8], entering: &mut Vec<u32>) {
+    entering.resize(verdicts.len(), 0);
+    let mut count = 0;
+    for (k, &verdict) in (0..).zip(verdicts) {
+        entering[count] = k;
+        count += usize::from(verdict == OVER | ENTERS);
+    }
+    entering.truncate(count);
 }
 
 /// The direction a quarter turn to the right: outward where rock is on the left.
 fn right_of(along: Vector) -> Vector {
     Vector::new(along.y, -along.x)
-}
-
-/// Whether the rock between the ways to the previous and the next node, of these lengths (m), is a corner of less than
-/// half a turn, by more than an angle given by its sine.
-fn is_convex([previous, next]: [Vector; 2], distance: [f64; 2], sine: f64) -> bool {
-    let (cross, dot) = (next.perp(&previous), next.dot(&previous));
-    cross > 0.0 && (dot > 0.0 || cross > sine * distance[0] * distance[1])
-}
-
-/// Whether a flat piece of boundary, given by its chord with rock on the left, faces an edge up to an angle given by
-/// its sine.
-fn faces(chord: Vector, normal: Vector, sine: f64) -> bool {
-    chord.perp(&normal) > -sine * chord.norm()
 }

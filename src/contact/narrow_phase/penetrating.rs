@@ -68,8 +68,8 @@ impl PenetratingContacts {
         penetrating.clear();
         segment.clear();
         for contact in history {
-            let (node, edge) = (contact.node, &frames.edges[contact.edge]);
-            let gap = (frames.nodes[node].position - edge.start).dot(&edge.normal());
+            let (node, edge) = (contact.node, frames.edge(contact.edge));
+            let gap = (frames.node(node).position - edge.start).dot(&edge.normal());
             let closure = (-gap).max(0.0) * contact.share;
             if closure > 0.0 {
                 first.resize(first.len().max(node.index() + 1), penetrating.len() as u32);

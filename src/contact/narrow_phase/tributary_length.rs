@@ -42,7 +42,7 @@ impl NarrowPhase<'_> {
         let at_ends = ramp(start.min(finish));
         let Facing { flush, oblique } = self.facing(node, candidate);
         let share = at_ends.max(ramp(flush));
-        let distance = &self.frames.nodes[node].distance;
+        let distance = self.frames.node(node).distance;
         let span = 0.5 * (distance[0] + distance[1]);
         let least = LENGTH_FLOOR * span;
         let (length, bonded) = ((0.5 * (flush + at_ends * oblique)).max(least), (0.5 * flush).max(least));
@@ -56,7 +56,7 @@ impl NarrowPhase<'_> {
     #[inline(always)]
     fn facing(&self, node: NodeId, candidate: &ContactCandidate) -> Facing {
         let boundary = self.boundary;
-        let frame = &self.frames.nodes[node];
+        let frame = self.frames.node(node);
         let p = frame.position.dot(&candidate.tangent);
         let before = boundary.node_before[candidate.edge];
         let after = boundary.node_next[before];

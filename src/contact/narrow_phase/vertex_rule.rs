@@ -4,7 +4,7 @@
 use crate::contact::{ContactState, Corner, EdgeId, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
 
-use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE, faces, right_of};
+use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE, right_of};
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,8 +54,8 @@ impl NarrowPhase<'_> {
         let boundary = self.boundary;
         let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side][end as usize];
         let meets = boundary.node_before[corner];
-        let (q, outward) = (self.position[corner], self.frames.edges[round].normal());
-        let frame = &self.frames.nodes[node];
+        let (q, outward) = (self.position[corner], self.frames.edge(round).normal());
+        let frame = self.frames.node(node);
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
         let normal = right_of(candidate.tangent);
@@ -103,12 +103,12 @@ impl NarrowPhase<'_> {
     /// the node, unless that corner is a contact itself; negative where the two have separated.
     pub(super) fn overlap_at(&self, node: NodeId, candidate: &ContactCandidate, end: End) -> f64 {
         let at = self.boundary.side_ends[candidate.side][end as usize];
-        let frame = &self.frames.nodes[node];
+        let frame = self.frames.node(node);
         let to = self.position[at.point] - frame.position;
-        let inside = to.dot(&self.frames.edges[at.round].normal());
+        let inside = to.dot(&self.frames.edge(at.round).normal());
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
         let depth = depths[0].min(depths[1]);
-        let is_covered = frame.is_convex && depth > inside && !self.is_borne(node, at.point, end);
+        let is_covered = frame.is_convex(self.rule.flush_sine) && depth > inside && !self.is_borne(node, at.point, end);
         if is_covered { depth } else { inside }
     }
 
@@ -120,13 +120,6 @@ impl NarrowPhase<'_> {
     /// Whether a node carried force against a side in the last step.
     fn carries(&self, node: NodeId, side: SideId) -> bool {
         self.known(node).iter().any(|h| h.side == side && h.state != ContactState::Open)
-    }
-
-    /// Rule 1: both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
-    pub(super) fn enters(&self, node: NodeId, candidate: &ContactCandidate) -> bool {
-        let (normal, frame) = (right_of(candidate.tangent), &self.frames.nodes[node]);
-        let outside = |k: usize| frame.to[k].dot(&normal) >= -self.rule.flush_sine * frame.distance[k];
-        outside(0) & outside(1) & (frame.is_convex || faces(frame.to[1] - frame.to[0], normal, self.rule.flush_sine))
     }
 
     /// Rule 3: of the sides of one block that the node is over, it enters only one, unless they form a notch: the one

@@ -7,13 +7,12 @@
 
 use std::cmp::Reverse;
 
-use enmm_lanes::{LANES, prefetch};
+use enmm_lanes::LANES;
 
-use crate::contact::{Boundary, EdgeId, NearPair, NodeId, SideId, VertexEdge};
+use crate::contact::{Boundary, EdgeId, NearPair, NearSides};
 use crate::cover::{BlockId, CoverId};
 
 use super::SolverView;
-use super::wide_contact::AHEAD;
 use super::wide_pairs::WidePairs;
 
 /// Near pairs of nodes and sides above which a run of blocks is cut.
@@ -23,14 +22,12 @@ const LEAVES_MAX: usize = 4096;
 /// The last colour: its block pairs may share what they push, and are solved one by one.
 const OVERFLOW: u32 = u64::BITS - 1;
 
-/// In what block pair every near pair of a node and a side is.
+/// In what block pair every near side is.
 #[doc(alias = "graph colouring")]
 #[doc(alias = "islands")]
 #[derive(Debug, Clone, Default)]
 pub struct SolverOrder {
-    /// Near nodes and sides, sorted, the first near pair of each, and its block pair.
-    keys: Vec<u64>,
-    first_near_pair: Vec<u32>,
+    /// Block pair of each near side.
     block_pair: Vec<u32>,
     /// Block pairs in the order in which they are solved.
     block_pairs: Vec<BlockPair>,
@@ -45,15 +42,15 @@ pub struct SolverOrder {
     touching: Vec<u32>,
 }
 
-/// A near node and side, by the blocks that they belong to.
+/// A near side, by the blocks that it and the node belong to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
     subdomain: u32,
     blocks: [BlockId; 2],
-    key: u32,
+    near_side: u32,
 }
 
-/// All near nodes and sides of two blocks, a free one first when there is one: a range of the entries.
+/// All near sides of two blocks, a free one first when there is one: a range of the entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
     subdomain: u32,
@@ -92,11 +89,9 @@ pub struct Sequence {
 impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { first_near_pair, block_pair, leaf, count, touching, leaf_block, .. } = self;
-        let lists = [first_near_pair, block_pair, leaf, count, touching];
-        let order = size_of_val(self.keys.as_slice())
-            + size_of_val(self.block_pairs.as_slice())
-            + size_of_val(leaf_block.as_slice());
+        let Self { block_pair, leaf, count, touching, leaf_block, .. } = self;
+        let lists = [block_pair, leaf, count, touching];
+        let order = size_of_val(self.block_pairs.as_slice()) + size_of_val(leaf_block.as_slice());
         let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
         order + lists + colours + size_of_val(self.entries.as_slice())
@@ -117,32 +112,24 @@ impl SolverOrder {
         &self.leaf_block
     }
 
-    /// Orders near pairs, sorted by node and side.
-    pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SolverView) {
-        self.keys.clear();
-        self.first_near_pair.clear();
+    /// Orders near sides.
+    pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], near_sides: &NearSides, view: &SolverView) {
         self.entries.clear();
-        let mut first = 0;
-        for run in near_pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side)) {
-            let point = boundary.node_point[run[0].node];
-            let (own, other) = (boundary.block[point], boundary.block[run[0].edge]);
-            let key = self.keys.len() as u32;
-            self.keys.push(key_of(run[0].node, run[0].side));
-            self.first_near_pair.push(first);
-            self.entries.push(Entry { subdomain: 0, blocks: [own.min(other), own.max(other)], key });
-            first += run.len() as u32;
-        }
-        self.first_near_pair.push(first);
+        self.entries.extend((0..).zip(near_sides.as_slice()).map(|(near_side, near)| {
+            let points = [boundary.node_point[near.node], near_pairs[near.first as usize].edge];
+            let [own, other] = points.map(|point| boundary.block[point]);
+            Entry { subdomain: 0, blocks: [own.min(other), own.max(other)], near_side }
+        }));
         self.cut(view);
         for entry in &mut self.entries {
             entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b]));
         }
         self.entries.sort_unstable();
-        self.colour(boundary, near_pairs, view);
-        self.block_pair.resize(self.keys.len(), 0);
+        self.colour(boundary, near_pairs, near_sides, view);
+        self.block_pair.resize(self.entries.len(), 0);
         for (index, block_pair) in (0u32..).zip(&self.block_pairs) {
             for entry in &self.entries[block_pair.first as usize..block_pair.end as usize] {
-                self.block_pair[entry.key as usize] = index;
+                self.block_pair[entry.near_side as usize] = index;
             }
         }
     }
@@ -171,7 +158,7 @@ impl SolverOrder {
     }
 
     /// Gives every block pair the first colour that no earlier one of its part has given to what they both push.
-    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], view: &SolverView) {
+    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], near_sides: &NearSides, view: &SolverView) {
         self.block_pairs.clear();
         self.colours.begin(view);
         let (mut first, mut subdomain_first) = (0, 0);
@@ -185,8 +172,7 @@ impl SolverOrder {
             let blocks = if view.mass_matrix.is_free(a) { [a, b] } else { [b, a] };
             self.colours.covers.clear();
             for entry in run {
-                let range = [0, 1].map(|k| self.first_near_pair[entry.key as usize + k] as usize);
-                self.colours.meet(boundary, &near_pairs[range[0]..range[1]], view);
+                self.colours.meet(boundary, near_sides.pairs_of(near_pairs, entry.near_side as usize), view);
             }
             let colour = self.colours.give(blocks, view);
             let end = first + run.len() as u32;
@@ -197,9 +183,11 @@ impl SolverOrder {
     }
 
     /// Puts the block pairs and the contacts of a step in the order of their turns.
-    pub fn arrange(&mut self, touching: &[VertexEdge], view: &SolverView, sequence: &mut Sequence) {
+    ///
+    /// `near_sides` are those of the contacts.
+    pub fn arrange(&mut self, near_sides: &[u32], view: &SolverView, sequence: &mut Sequence) {
         let Sequence { wide_pairs, ends, first_turn, contacts, slots } = sequence;
-        self.count_contacts(touching, slots);
+        self.count_contacts(near_sides, slots);
         wide_pairs.clear();
         ends.clear();
         first_turn.clear();
@@ -238,21 +226,12 @@ impl SolverOrder {
     }
 
     /// Finds the block pair of each contact, and the number of contacts of each block pair.
-    fn count_contacts(&mut self, contacts: &[VertexEdge], block_pairs: &mut Vec<u32>) {
+    fn count_contacts(&mut self, near_sides: &[u32], block_pairs: &mut Vec<u32>) {
         self.count.clear();
         self.count.resize(self.block_pairs.len(), 0);
         block_pairs.clear();
-        let mut k = 0;
-        for (index, contact) in contacts.iter().enumerate() {
-            let later = &contacts[(index + AHEAD).min(contacts.len() - 1)];
-            prefetch(std::slice::from_ref(&later.history.node));
-            let key = key_of(contact.history.node, contact.history.side);
-            while self.keys[k] < key {
-                k += 1;
-            }
-            block_pairs.push(self.block_pair[k]);
-            self.count[self.block_pair[k] as usize] += 1;
-        }
+        block_pairs.extend(near_sides.iter().map(|&near_side| self.block_pair[near_side as usize]));
+        block_pairs.iter().for_each(|&block_pair| self.count[block_pair as usize] += 1);
     }
 }
 
@@ -296,11 +275,6 @@ impl Colours {
         self.seen.extend_from_slice(&self.covers);
         colour
     }
-}
-
-/// What near nodes and sides are sorted by.
-fn key_of(node: NodeId, side: SideId) -> u64 {
-    u64::from(node.number()) << u32::BITS | u64::from(side.number())
 }
 
 /// The smallest part of the tree that holds two leaves, by its slot in the order in which parts are swept: both halves

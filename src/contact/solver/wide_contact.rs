@@ -13,7 +13,7 @@ use super::{SolverOptions, SolverView};
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
 /// Positions by which a contact is fetched ahead.
-pub const AHEAD: usize = 8;
+const AHEAD: usize = 8;
 
 /// One material point of each contact. Numbers begin at lines of the cache.
 #[derive(Debug, Clone, Copy, Default)]

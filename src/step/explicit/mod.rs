@@ -99,10 +99,12 @@ impl Step<'_> {
             let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
             self.state.neighbours.pairs.clear();
             self.state.neighbours.pairs.extend_from_slice(piece);
+            self.workspace.near_sides.forget();
             self.touch(times);
             self.workspace.contacts.iter().for_each(&mut *see);
             rest = others;
         }
+        self.workspace.near_sides.forget();
     }
 
     fn count(&mut self, dt: f64, swept: &SolverReport) {

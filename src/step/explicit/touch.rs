@@ -47,11 +47,23 @@ impl Step<'_> {
         let clock = Instant::now();
         let StepTimes { dt, kick, .. } = times;
         let (model, workspace) = (self.model, &mut *self.workspace);
-        let Workspace { open_close, contacts, rows, bolts, increment, push, mass_matrix, serial, .. } = workspace;
+        let Workspace {
+            open_close,
+            near_sides,
+            accepted,
+            contacts,
+            rows,
+            bolts,
+            increment,
+            push,
+            mass_matrix,
+            serial,
+            ..
+        } = workspace;
         let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
         let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        let (near_pairs, block_covers) = (&self.state.neighbours.pairs, &model.covers.block_covers);
-        open_close.arrange(&model.boundary, near_pairs, mass_matrix, block_covers, contacts);
+        let (near, block_covers) = ((&self.state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);
+        open_close.arrange(&model.boundary, near, mass_matrix, block_covers, &accepted.near_side);
         let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
         open_close.impulses(mass_matrix, increment, push);
         workspace.seconds.sweep += clock.elapsed().as_secs_f64();
