@@ -202,6 +202,13 @@ def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
     assert package.check(case)["blocks"] == 2
 
 
+def test_a_search_without_pictures_finds_the_same(package, case, tmp_path):
+    with package.fos(case, threads=1, tolerance=0.05) as drawn:
+        bare = package.fos(case, tmp_path, threads=1, tolerance=0.05, pictures=False)
+        assert bare.bracket == drawn.bracket and not bare.pictures
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["fos.csv", "fos.json"]
+
+
 def test_bounds_leave_no_files(package, case, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     assert package.bound(case)["associated"]["factor"] > 0.0

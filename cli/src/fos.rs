@@ -46,6 +46,9 @@ pub struct Arguments {
     /// Threads; default: all. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Draw no pictures and no page: only tables are wanted.
+    #[arg(long)]
+    no_pictures: bool,
     /// Print one JSON object, that of fos.json.
     #[arg(long)]
     json: bool,
@@ -64,6 +67,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         tolerance: arguments.tolerance,
         mechanisms: MechanismOptions { least_area: arguments.least_area, count: arguments.mechanisms.into() },
         threads: arguments.threads.map(usize::from),
+        pictures: !arguments.no_pictures,
         interrupt: Some(&INTERRUPT),
     };
     if let Err(message) = options.check() {
@@ -147,7 +151,8 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
         let results = format!("{:<20} {}\n", "results", directory.display());
         let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
         let searches = found.searches.iter().map(|search| result(search, found, told));
-        print_line(&searches.chain([results, page]).collect::<String>());
+        let page = (!arguments.no_pictures).then_some(page);
+        print_line(searches.chain([results]).chain(page).collect::<String>().trim_end());
     }
     let main = found.main();
     let message = remedy(main).unwrap_or_default();

@@ -36,6 +36,8 @@ pub struct FosOptions<'a> {
     pub mechanisms: MechanismOptions,
     /// Threads; all that there are when none is given. The results do not depend on it.
     pub threads: Option<usize>,
+    /// Whether to draw pictures and a page.
+    pub pictures: bool,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -50,6 +52,7 @@ impl FosOptions<'_> {
             tolerance: TOLERANCE,
             mechanisms: MechanismOptions::default(),
             threads: None,
+            pictures: true,
             interrupt: None,
         }
     }
@@ -119,8 +122,12 @@ pub fn fos(
     let clock = Instant::now();
     let found = search(loaded, options, hear)?;
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
-    write(&options.directory, &record, found.main()).map_err(FosError::Output)?;
-    write_fos_page(&options.directory, loaded, &found).map_err(FosError::Output)?;
+    let directory = &options.directory;
+    write(directory, &record, found.main()).map_err(FosError::Output)?;
+    if options.pictures {
+        draw(directory, found.main()).map_err(FosError::Output)?;
+        write_fos_page(directory, loaded, &found).map_err(FosError::Output)?;
+    }
     Ok(found)
 }
 
@@ -158,10 +165,13 @@ fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<
     let path = directory.join("fos.json");
     let text = serde_json::to_vec_pretty(record).map_err(io::Error::from).map_err(at_path(&path))?;
     write_table(&directory.join("fos.csv"), &reduction.trials)?;
+    write_atomic(&path, &text)
+}
+
+fn draw(directory: &Path, reduction: &Reduction) -> io::Result<()> {
     let title = &reduction.simulation.case().title;
     trials_picture(title, reduction).write_png(&directory.join("fos.png"))?;
-    failure_picture(title, reduction).write_png(&directory.join("failure.png"))?;
-    write_atomic(&path, &text)
+    failure_picture(title, reduction).write_png(&directory.join("failure.png"))
 }
 
 /// A word for how a search ended.

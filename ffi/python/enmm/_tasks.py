@@ -240,13 +240,14 @@ def fos(
     least_area: float | None = None,
     mechanisms: int | None = None,
     threads: int | None = None,
+    pictures: bool = True,
 ) -> Fos:
     """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
 
     `low` and `high` bound the factors that are tried, and the search begins with them. `tolerance` is the width of the
     final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2) do not
-    count. `mechanisms` is how many are sought, each without the blocks of those before. A search that ends without a
-    factor is no error: see `Fos.status`. `output` and `threads` are as those of `run`.
+    count. `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither
+    pictures nor a page are drawn. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are as those of `run`.
 
     Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
     """
@@ -255,6 +256,7 @@ def fos(
     options = {"low": low, "high": high, "tolerance": tolerance, "least-area": least_area}
     options |= {"mechanisms": mechanisms, "threads": threads}
     words = [word for name, value in options.items() if value is not None for word in (f"--{name}", value)]
+    words += [] if pictures else ["--no-pictures"]
     with case_file(case) as path:
         written = record(["fos", path, "-o", directory, *words])
     if found is None:

@@ -34,7 +34,7 @@ def evaluate(case: Case, values: dict[str, Any], output: Output, options: dict[s
 
 def _outputs(case: Case, output: Output, options: dict[str, Any]) -> dict[str, Any]:
     if output == "factor_of_safety":
-        with _tasks.fos(case, threads=1, **options) as found:
+        with _tasks.fos(case, threads=1, pictures=False, **options) as found:
             return _of_fos(found)
     if isinstance(output, str):
         collapse = _tasks.bound(case)[output]
