@@ -5,16 +5,22 @@ mod clock;
 mod machine;
 mod measure;
 mod models;
+mod peer_report;
 mod peers;
 mod report;
+mod scene;
 mod slope;
+mod survey;
 
 use serde::Serialize;
 
 pub use machine::{Bandwidth, Machine};
 pub use measure::{Measured, StageMilliseconds};
 pub use models::{LARGE, Model, STANDARD};
+pub use peer_report::{peers_markdown, write_peers};
+pub use peers::{COMPARED, Compared, Peer, PeerError, PeerOptions, PeerReport, Timed, compare};
 pub use report::{Origin, markdown, write_report};
+pub use scene::{Outcome, Placed, Scene, SceneBlock};
 pub use slope::{continuum_case, slope_case};
 
 use enmm::engine_version;

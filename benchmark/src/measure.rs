@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::clock::{forget_peak, memory_peak, processor_seconds};
 use super::models::{Model, advance};
-use super::{BenchError, BenchOptions, Machine, peers};
+use super::{BenchError, BenchOptions, Machine, survey};
 use enmm::model::Simulation;
 use enmm::state::bytes::encode;
 use enmm::state::{Counters, Seconds};
@@ -215,7 +215,7 @@ pub fn measure(model: &Model, options: &BenchOptions, machine: &Machine) -> Resu
     measured.take_windows(&windows, &simulation, &start.counters);
     measured.take_outputs(&simulation)?;
     measured.take_shares(machine);
-    if options.first_second && peers::slope_seconds(model).is_some() {
+    if options.first_second && survey::slope_seconds(model).is_some() {
         measured.first_second = Some(first_second(model)?);
     }
     Ok(measured)
@@ -230,7 +230,8 @@ fn first_second(model: &Model) -> Result<f64, BenchError> {
     Ok(clock.elapsed().as_secs_f64())
 }
 
-fn sizes(simulation: &Simulation) -> Measured {
+/// Counts of a model, and what its elements move.
+pub fn sizes(simulation: &Simulation) -> Measured {
     let (slope, mass_matrix) = (simulation.model(), &simulation.workspace().mass_matrix);
     let covers = &slope.covers;
     let free = covers.blocks().filter(|&block| !mass_matrix.fixed[block]);

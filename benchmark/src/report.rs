@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
-use super::peers;
+use super::survey;
 use super::{BenchReport, Machine, Measured, Model};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Chart, ChartSeries, chart_picture};
@@ -42,10 +42,10 @@ pub fn markdown(report: &BenchReport, origin: &Origin) -> String {
     push_table(&mut text, "Stages (ms per step)", &STAGE_HEAD, report.models.iter().map(stage_row));
     push_table(&mut text, "Build, memory and output", &BUILD_HEAD, report.models.iter().map(build_row));
     let continua = report.models.iter().filter_map(continuum_row);
-    push_table(&mut text, "Elements beside others (million updates per second)", &peers::ELEMENT_HEAD, continua);
+    push_table(&mut text, "Elements beside others (million updates per second)", &survey::ELEMENT_HEAD, continua);
     let slopes = report.models.iter().filter_map(slope_row);
-    push_table(&mut text, "Slopes beside others (seconds per simulated second)", &peers::SLOPE_HEAD, slopes);
-    let _ = writeln!(text, "{}\n\n![cost of a step](step.svg)\n\n![cost of a second](slope.svg)", peers::SOURCE);
+    push_table(&mut text, "Slopes beside others (seconds per simulated second)", &survey::SLOPE_HEAD, slopes);
+    let _ = writeln!(text, "{}\n\n![cost of a step](step.svg)\n\n![cost of a second](slope.svg)", survey::SOURCE);
     text
 }
 
@@ -84,7 +84,7 @@ const BUILD_HEAD: [&str; 11] = [
     "checkpoint ms",
 ];
 
-fn push_machine(text: &mut String, machine: &Machine) {
+pub(super) fn push_machine(text: &mut String, machine: &Machine) {
     let processor = machine.processor.as_deref().unwrap_or("unknown processor");
     let _ = writeln!(text, "Machine: {processor}, {} cores, {}.\n", machine.cores, machine.caches.join(", "));
     let level = |name: String, unit: &str, one: f64, all: f64| {
@@ -97,7 +97,7 @@ fn push_machine(text: &mut String, machine: &Machine) {
     push_table(text, "Limits, measured in the same run", &["limit", "one thread", "all"], bandwidth.chain(peak));
 }
 
-fn push_table(text: &mut String, title: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+pub(super) fn push_table(text: &mut String, title: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {
         return;
@@ -153,14 +153,14 @@ fn build_row(found: &Measured) -> Vec<String> {
 }
 
 fn continuum_row(found: &Measured) -> Option<Vec<String>> {
-    let others = peers::element_rates(&Model::parse(&found.model)?)?;
+    let others = survey::element_rates(&Model::parse(&found.model)?)?;
     let mut row = vec![found.model.clone(), digits(found.elements_per_second / 1e6)];
     row.extend(others.map(digits));
     Some(row)
 }
 
 fn slope_row(found: &Measured) -> Option<Vec<String>> {
-    let others = peers::slope_seconds(&Model::parse(&found.model)?)?;
+    let others = survey::slope_seconds(&Model::parse(&found.model)?)?;
     let mut row = vec![found.model.clone(), found.first_second.map_or_else(none, digits)];
     row.push(digits(found.seconds_per_simulated_second));
     row.extend(others.iter().map(|seconds| seconds.map_or_else(none, digits)));
@@ -185,7 +185,7 @@ fn slope_chart(report: &BenchReport) -> Chart {
     let point = |found: &Measured| [found.blocks as f64, seconds(found)];
     let mut series =
         families(report, &[("enmm, 4 elements a block", Some(4)), ("enmm, 16 elements a block", Some(16))], point);
-    series.extend(peers::slope_lines().map(|(name, points)| ChartSeries { name, points, marks: false }));
+    series.extend(survey::slope_lines().map(|(name, points)| ChartSeries { name, points, marks: false }));
     Chart {
         title: "Cost of a simulated second of a sliding slope".to_owned(),
         axes: ["blocks".to_owned(), "s per simulated s".to_owned()],
@@ -214,14 +214,14 @@ fn families(
 }
 
 /// A number in three digits.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     let size = value.abs();
     let decimals =
         if size >= 100.0 || size == 0.0 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) as usize };
     format!("{value:.decimals$}")
 }
 
-fn none() -> String {
+pub(super) fn none() -> String {
     "–".to_owned()
 }
 

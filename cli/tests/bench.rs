@@ -1,4 +1,5 @@
-//! Claim: `enmm bench --write` hands out the cases of its models and times nothing.
+//! Claim: `enmm bench --write` hands out the cases of its models and times nothing, and `--peers` says what it
+//! needs.
 
 mod support;
 
@@ -15,4 +16,14 @@ fn cases_of_models_are_written_and_can_be_built() {
         assert_eq!(check.status, Some(0), "{check:?}");
     }
     place.enmm(&["bench", "--write", "case.toml/x"]).assert_bad_input(&["case.toml/x", "another directory"]);
+}
+
+#[test]
+fn a_comparison_says_what_it_needs() {
+    let place = Place::with(&case(0.02));
+    place.enmm(&["bench", "--peers"]).assert_bad_input(&["benchmark/peers", "--peer-sources"]);
+    place
+        .enmm(&["bench", "--peers", "rapier,x"])
+        .assert_bad_input(&["\"x\"", "rapier, rapier-constraints, box2d, numba"]);
+    place.enmm(&["bench", "--peers", "--threads", "2"]).assert_bad_input(&["one thread"]);
 }

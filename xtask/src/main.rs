@@ -59,7 +59,8 @@ usage: cargo xtask TASK
   aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
   ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes benchmark/; options of enmm bench
-                   such as --models all
+                   such as --models all; with --peers builds other programs, times them turn by turn with
+                   enmm and writes benchmark/peers.md
   ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
                    times two builds of the program in turn and prints the ratios of each part
   bits [OLD NEW] [--quick]

@@ -1,23 +1,21 @@
-"""Element updates of a Numba kernel beside those of `enmm bench`, turn by turn on one thread.
+"""Element updates of a Numba kernel, which `enmm bench --peers` times beside those of enmm on one thread.
 
-    python3 -m venv VENV && VENV/bin/pip install -r benchmark/peers/requirements.txt
-    VENV/bin/python benchmark/peers/elements.py target/release/enmm
+    VENV/bin/pip install -r benchmark/peers/numba/requirements.txt
+    VENV/bin/python benchmark/peers/numba/elements.py 10000
 
 The kernel does what the engine's element stage does on the same number of elements: corotated constant-strain
 triangles, their forces summed to nodes, and the kick of the nodes. It leaves out damping and the exact mass metric.
 """
 
 import json
-import statistics
-import subprocess
 import sys
 import time
 
+import numba
 import numpy as np
 from numba import njit
 
-SIZES = [10_000, 100_000]
-ROUNDS = 5
+PASSES = 100
 MU = LAMBDA = 2e9
 DENSITY = 2650.0
 
@@ -70,39 +68,33 @@ def mesh(elements):
     return corners, gradients, area, mass, size
 
 
-def numba_rate(elements):
-    """Element updates per second, of the quickest pass."""
+def seconds_per_pass(elements):
+    """Seconds of the quickest pass, and elements of the mesh."""
     corners, gradients, area, mass, size = mesh(elements)
     random = np.random.default_rng(1)
     displacement = 1e-6 * size * random.standard_normal((len(mass), 2))
     velocity, force = np.zeros_like(displacement), np.zeros_like(displacement)
     dt = 0.3 * size * (DENSITY / (3 * (LAMBDA + MU))) ** 0.5
     best = float("inf")
-    for _ in range(100):
+    for _ in range(PASSES):
         start = time.perf_counter()
         step(corners, gradients, area, mass, displacement, velocity, force, dt)
         best = min(best, time.perf_counter() - start)
-    assert np.isfinite(displacement).all()
-    return len(corners) / best
-
-
-def enmm_rate(program, elements):
-    """Elements per second of the engine's element stage."""
-    command = [program, "bench", "--json", "--no-limits", "--threads", "1", "--seconds", "1"]
-    told = subprocess.run([*command, "--models", f"continuum_{elements}"], check=True, capture_output=True)
-    return json.loads(told.stdout)["models"][0]["elements_per_second"]
+    if not np.isfinite(displacement).all():
+        sys.exit("displacements are not finite")
+    return best, len(corners)
 
 
 def main():
-    """Prints a table: medians of both, and of their ratio round by round."""
-    program = sys.argv[1]
-    numba_rate(1000)
-    print("| elements | enmm M/s | Numba M/s | enmm / Numba |\n|---|---|---|---|")
-    for elements in SIZES:
-        rounds = [(enmm_rate(program, elements), numba_rate(elements)) for _ in range(ROUNDS)]
-        ours, theirs = (statistics.median(column) / 1e6 for column in zip(*rounds))
-        ratio = statistics.median(a / b for a, b in rounds)
-        print(f"| {elements} | {ours:.0f} | {theirs:.0f} | {ratio:.2f} |")
+    """Prints seconds for a million element updates as one JSON object."""
+    seconds, elements = seconds_per_pass(int(sys.argv[1]))
+    told = {
+        "program": f"Numba {numba.__version__}",
+        "settings": f"corotated elements, their forces and the kick, quickest of {PASSES} passes, 8-byte numbers",
+        "seconds": 1e6 * seconds / elements,
+        "elements": elements,
+    }
+    print(json.dumps(told))
 
 
 if __name__ == "__main__":
