@@ -1,6 +1,19 @@
 //! What the system tells of this program: time that a thread had, and memory.
 
 use std::fs;
+use std::time::Instant;
+
+/// What the processor's clock may be late by (s).
+pub const PROCESSOR_TICK: f64 = 0.004;
+
+/// Result of work on one thread and the seconds that it takes: wall time, or what the processor gave to this thread
+/// where that is less, since other programs had it for the rest.
+pub fn timed<R>(work: impl FnOnce() -> R) -> (R, f64) {
+    let (wall, before) = (Instant::now(), processor_seconds());
+    let result = work();
+    let spent = processor_seconds().zip(before).map_or(f64::INFINITY, |(after, before)| after - before);
+    (result, (spent + PROCESSOR_TICK).min(wall.elapsed().as_secs_f64()))
+}
 
 /// Processor time (s) that this thread has had; none where the system does not tell.
 ///

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::clock::{forget_peak, memory_peak, processor_seconds};
+use super::clock::{PROCESSOR_TICK, forget_peak, memory_peak, processor_seconds};
 use super::models::{Model, advance};
 use super::{BenchError, BenchOptions, Machine, survey};
 use enmm::model::Simulation;
@@ -23,8 +23,6 @@ const WINDOW_STEPS: [u64; 2] = [20, 200];
 const OF_CONTACTS: [&str; 4] = ["near pairs", "search", "accepted pairs", "contacts"];
 /// Fewest windows.
 const WINDOWS_MIN: usize = 2;
-/// What the processor's clock may be late by (s).
-const PROCESSOR_TICK: f64 = 0.004;
 /// Floating-point operations of one element: gradient 22, rotation 8, stretch 4, stress 12, forces 22, their sum 6.
 const OPERATIONS_PER_ELEMENT: f64 = 74.0;
 /// Bytes of an element that its stage must read: the slots of three covers in its chunk, and its cut area.

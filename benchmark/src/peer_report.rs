@@ -10,10 +10,10 @@ use enmm_io::files::{at_path, write_atomic};
 
 const INTRODUCTION: &str = "\
 Every program simulates the same polygons of blocks from the same first instant, on one thread, turn by turn in rounds
-with the others; who is first changes from round to round. Time is wall time of the steps without building the model,
-except that a pass over elements counts with its quickest time. The ratio is that of one round: how many times as long
-as enmm a program took. Way is the mean displacement of the centroids of the blocks; overlaps are those of the
-polygons of the corners, after the last step, in parts of the mesh size.";
+with the others; who is first changes from round to round. Times are of the steps without building the model: wall time,
+or the processor's time of the thread where that is less; a pass over elements counts with its quickest time. The ratio
+is that of one round: how many times as long as enmm a program took. Way is the mean displacement of the centroids of
+the blocks; overlaps are those of the polygons of the corners, after the last step, in parts of the mesh size.";
 
 const SLOPE_HEAD: [&str; 10] = [
     "model",

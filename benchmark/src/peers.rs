@@ -6,10 +6,10 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::clock::timed;
 use super::models::advance;
 use super::scene::{Outcome, Placed, Scene};
 use super::{BenchError, BenchOptions, Machine, Model, measure};
@@ -279,12 +279,12 @@ impl Task {
         };
         let mut simulation = model.build()?;
         let steps = simulation.steps_in(scene.duration);
-        let clock = Instant::now();
-        advance(&mut simulation, steps)?;
+        let (done, seconds) = timed(|| advance(&mut simulation, steps));
+        done?;
         Ok(Answer {
             program,
             settings,
-            seconds: clock.elapsed().as_secs_f64() / scene.duration,
+            seconds: seconds / scene.duration,
             elements: Some(measure::sizes(&simulation).elements),
             contacts: Some(simulation.state().contacts.len()),
             blocks: scene.placed(&simulation),

@@ -8,7 +8,6 @@
 mod scene;
 
 use std::error::Error;
-use std::time::Instant;
 
 use boxdd::shapes::{Polygon, SurfaceMaterial};
 use boxdd::{BodyBuilder, BodyId, BodyType, ShapeDef, Vec2, World, WorldDef};
@@ -28,9 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let blocks = scene.blocks.iter().map(|block| &block.points[..block.points.len() - 1]);
     let placed: Vec<Placed> = blocks.map(|corners| insert(&mut world, &scene, corners, BodyType::Dynamic)).collect();
     let steps = (scene.duration * STEPS_PER_SECOND).round() as usize;
-    let clock = Instant::now();
-    (0..steps).for_each(|_| world.step((1.0 / STEPS_PER_SECOND) as f32, SUBSTEPS));
-    let seconds = clock.elapsed().as_secs_f64() / scene.duration;
+    let step = (1.0 / STEPS_PER_SECOND) as f32;
+    let seconds = scene::seconds(|| (0..steps).for_each(|_| world.step(step, SUBSTEPS))) / scene.duration;
     let now = |placed: &Placed| {
         let (body, corners) = placed.as_ref()?;
         let place = world.body_transform(*body);

@@ -15,7 +15,6 @@
 mod scene;
 
 use std::error::Error;
-use std::time::Instant;
 
 use rapier2d_f64::prelude::*;
 use scene::{Answer, Block, Scene};
@@ -43,9 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|block| soft_body(&scene, block, solver, skin).map(|body| world.insert_soft_body(body)))
         .collect();
     let steps = (scene.duration / world.integration_parameters.dt).round() as usize;
-    let clock = Instant::now();
-    (0..steps).for_each(|_| world.step());
-    let seconds = clock.elapsed().as_secs_f64() / scene.duration;
+    let seconds = scene::seconds(|| (0..steps).for_each(|_| world.step())) / scene.duration;
     let (mut blocks, mut elements, mut contacts) = (Vec::new(), 0, 0);
     for (handle, block) in handles.iter().zip(&scene.blocks) {
         let Some(handle) = handle else {
