@@ -162,21 +162,22 @@ impl Timed {
         Ok(())
     }
 
-    /// The middle of the rounds (s).
+    /// The middle of the rounds (s); not a number without rounds.
     pub fn median(&self) -> f64 {
-        sorted(self.seconds.clone())[self.seconds.len() / 2]
+        range(self.seconds.clone())[1]
     }
 
     /// How many times as long as `own` it took: the least, middle and greatest of the rounds.
     pub fn ratios(&self, own: &Self) -> [f64; 3] {
-        let ratios = sorted(self.seconds.iter().zip(&own.seconds).map(|(theirs, ours)| theirs / ours).collect());
-        [ratios[0], ratios[ratios.len() / 2], ratios[ratios.len() - 1]]
+        range(self.seconds.iter().zip(&own.seconds).map(|(theirs, ours)| theirs / ours).collect())
     }
 }
 
-fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+/// The least, middle and greatest value; of an even number the upper of the middle two.
+fn range(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
-    values
+    let at = |k: usize| values.get(k).copied().unwrap_or(f64::NAN);
+    [at(0), at(values.len() / 2), at(values.len().saturating_sub(1))]
 }
 
 /// What a program tells of a run.
@@ -299,7 +300,7 @@ impl Task {
     }
 }
 
-/// All rounds on one model; none for a model that no program takes.
+/// All rounds on one model; none for a model that no program takes, or on which this one failed.
 fn rounds(
     model: &Model,
     others: &[&Built],
@@ -325,6 +326,9 @@ fn rounds(
                 results[k] = None;
             }
         }
+    }
+    if results[0].is_none() {
+        return Ok(None);
     }
     let size = if let Task::Slope(scene) = &task { Some(scene.size) } else { None };
     Ok(Some(Compared { model: model.to_string(), size, programs: results.into_iter().flatten().collect() }))
