@@ -94,8 +94,8 @@ impl FindNearest<'_> {
         };
         let mut best = over(lanes, &nodes.position, edge_pairs, &edges[0]);
         let mut which = lanes.splat(0.0);
-        for k in 1..edges.len() {
-            let other = over(lanes, &nodes.position, edge_pairs, &edges[k]);
+        for (k, edge) in edges.iter().enumerate().skip(1) {
+            let other = over(lanes, &nodes.position, edge_pairs, edge);
             let bits = nearer(lanes, &other, &best);
             which = lanes.select(bits, lanes.splat(k as f64), which);
             best = OverEdges {
@@ -132,7 +132,7 @@ impl FindNearest<'_> {
             self.nearest.gap[k] = gap[lane];
             self.nearest.beyond[k] = beyond[lane];
             self.nearest.edge[k] = edge[lane] as u32;
-            self.nearest.verdict[k] = (is_over >> lane & 1) * OVER | (enters >> lane & 1) * ENTERS;
+            self.nearest.verdict[k] = ((is_over >> lane & 1) * OVER) | ((enters >> lane & 1) * ENTERS);
         }
     }
 
