@@ -181,8 +181,9 @@ pub struct AcceptedPairs {
 #[derive(Debug, Clone, Default)]
 struct Run {
     accepted: Vec<ContactCandidate>,
-    /// Sides of the current node.
+    /// Sides of the current node, and those of them that are accepted.
     sides: Vec<ContactCandidate>,
+    accepted_sides: Vec<ContactCandidate>,
     nearest: Nearest,
     /// Contact of the last step of each near side, or [`NONE`].
     known: Vec<u32>,
@@ -257,7 +258,7 @@ impl NarrowPhase<'_> {
     /// Finds the candidates that the vertex rule accepts of the near sides of a run; `near_side_last` are those of the
     /// contacts of the last step, as a rule.
     fn apply_vertex_rule(&self, near_pairs: &[NearPair], near: NearRun, near_side_last: &[u32], run: &mut Run) {
-        let Run { accepted, sides, nearest, known, entering } = run;
+        let Run { accepted, sides, accepted_sides, nearest, known, entering } = run;
         self.recall(near, near_side_last, nearest, known);
         dispatch(FindNearest { narrow: self, run: near, nearest });
         let found = Found { near_pairs, near, nearest, known };
@@ -279,7 +280,8 @@ impl NarrowPhase<'_> {
             }
             // Those that are not accepted matter only where a deep one without force is.
             if contested {
-                self.add_others(&found, group[0] as usize, sides);
+                std::mem::swap(sides, accepted_sides);
+                self.all_sides(&found, group[0] as usize, accepted_sides, sides);
             }
             self.choose_sides(sides);
             accepted.extend(sides.iter().filter(|p| p.accepted));
@@ -327,17 +329,13 @@ impl NarrowPhase<'_> {
         }
     }
 
-    /// Adds the other sides of a node that it is over, in their order, given those that are accepted.
-    #[cold]
-    fn add_others(&self, found: &Found, one: usize, sides: &mut Vec<ContactCandidate>) {
-        let node = found.node(one as u32);
-        let near_sides = found.near.near_sides;
-        let first = near_sides.partition_point(|near| near.node < node);
-        let count = near_sides[first..].iter().take_while(|near| near.node == node).count();
-        let accepted = std::mem::take(sides);
-        for k in (first..first + count).filter(|&k| found.nearest.verdict[k] & OVER != 0) {
-            let candidate = self.candidate(found, k);
-            sides.push(*accepted.iter().find(|known| known.side == candidate.side).unwrap_or(&candidate));
+    /// All sides that the node of a near side `k` is over, in their order, given those that are `accepted`.
+    fn all_sides(&self, found: &Found, k: usize, accepted: &[ContactCandidate], sides: &mut Vec<ContactCandidate>) {
+        sides.clear();
+        let mut accepted = accepted.iter().peekable();
+        for k in found.near.of_same_node(k).filter(|&k| found.nearest.verdict[k] & OVER != 0) {
+            let known = accepted.next_if(|known| known.near_side as usize == found.near.first + k);
+            sides.push(known.copied().unwrap_or_else(|| self.candidate(found, k)));
         }
     }
 

@@ -48,6 +48,8 @@ pub struct NearSides {
     places: Vec<Places>,
     /// Where each run ends.
     ends: Vec<End>,
+    /// Near sides of a run by their numbers of near edges.
+    order: Vec<usize>,
     /// Number of near pairs.
     near_pairs: usize,
 }
@@ -72,6 +74,7 @@ impl NearSides {
             + size_of_val(self.batches.as_slice())
             + size_of_val(self.places.as_slice())
             + size_of_val(self.ends.as_slice())
+            + size_of_val(self.order.as_slice())
     }
 
     /// Makes the next step list anew: the near pairs are others.
@@ -129,11 +132,12 @@ impl NearSides {
 
     /// Puts the near sides of a run side by side, those with equally many near edges together.
     fn batch(&mut self, near_pairs: &[NearPair], run: std::ops::Range<usize>) {
-        let Self { near_sides, batches, places, .. } = self;
+        let Self { near_sides, batches, places, order, .. } = self;
         let first = |k: usize| near_sides.get(k).map_or(near_pairs.len(), |near| near.first as usize);
         let count = |k: usize| first(k + 1) - first(k);
-        let mut order: Vec<usize> = run.clone().collect();
-        order.sort_by_key(|&k| count(k));
+        order.clear();
+        order.extend(run.clone());
+        order.sort_unstable_by_key(|&k| (count(k), k));
         for equal in order.chunk_by(|&a, &b| count(a) == count(b)) {
             for some in equal.chunks(LANES) {
                 let lane = |k: usize| some[if k < some.len() { k } else { 0 }];
@@ -172,6 +176,13 @@ impl NearSides {
 }
 
 impl NearRun<'_> {
+    /// Near sides of the node of one of them.
+    pub fn of_same_node(&self, k: usize) -> std::ops::Range<usize> {
+        let is_same = |near: &&NearSide| near.node == self.near_sides[k].node;
+        let before = self.near_sides[..k].iter().rev().take_while(is_same).count();
+        k - before..k + self.near_sides[k..].iter().take_while(is_same).count()
+    }
+
     /// Nodes from the first to the one after the last.
     pub fn nodes(&self) -> [usize; 2] {
         let [first, .., last] = self.near_sides else {
