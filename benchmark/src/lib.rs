@@ -9,8 +9,11 @@ mod peer_report;
 mod peers;
 mod report;
 mod scene;
+mod schedule;
 mod slope;
 mod survey;
+mod thread_report;
+mod threads;
 
 use serde::Serialize;
 
@@ -22,6 +25,8 @@ pub use peers::{COMPARED, Compared, Peer, PeerError, PeerOptions, PeerReport, Ti
 pub use report::{Origin, markdown, write_report};
 pub use scene::{Outcome, Placed, Scene, SceneBlock};
 pub use slope::{continuum_case, slope_case};
+pub use thread_report::threads_markdown;
+pub use threads::{Predicted, Prediction, predict};
 
 use enmm::engine_version;
 use enmm::model::case::Invalid;

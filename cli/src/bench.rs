@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use enmm_bench::{
-    BenchOptions, BenchReport, COMPARED, LARGE, Measured, Model, Origin, Peer, PeerError, PeerOptions, STANDARD, bench,
-    compare, peers_markdown, write_peers, write_report,
+    BenchOptions, BenchReport, COMPARED, LARGE, Machine, Measured, Model, Origin, Peer, PeerError, PeerOptions,
+    STANDARD, bench, compare, peers_markdown, predict, threads_markdown, write_peers, write_report,
 };
 use enmm_io::files::write_atomic;
 
@@ -50,6 +50,9 @@ pub struct Arguments {
     /// Folder of the sources of the other programs.
     #[arg(long, value_name = "DIR", default_value = "benchmark/peers", requires = "peers")]
     peer_sources: PathBuf,
+    /// Predict what a step of the models takes on up to 64 threads. Default models: slopes of 2 000 and 10 000 blocks.
+    #[arg(long, conflicts_with = "peers")]
+    predict_threads: bool,
     /// What tells these results from others, such as commit and date.
     #[arg(long, default_value = "Measured", value_name = "TEXT")]
     label: String,
@@ -69,6 +72,9 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     }
     if let Some(names) = &arguments.peers {
         return run_peers(arguments, names, models);
+    }
+    if arguments.predict_threads {
+        return run_prediction(arguments, models);
     }
     let options = BenchOptions {
         models,
@@ -118,6 +124,24 @@ fn run_peers(arguments: &Arguments, names: &[String], models: Vec<Model>) -> Exi
     let written = arguments.output.as_ref().map_or(Ok(()), |folder| write_peers(&report, &origin, folder));
     let text = || peers_markdown(&report, &origin).trim_end().to_owned();
     print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text() });
+    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+/// Predicts what a step takes on more threads and prints it.
+fn run_prediction(arguments: &Arguments, models: Vec<Model>) -> ExitCode {
+    let default = vec![Model::Slope(2_000, 4), Model::Slope(10_000, 4)];
+    let mut predictions = Vec::new();
+    for model in if arguments.models.is_empty() { default } else { models } {
+        tell_line(&format!("{model} …"));
+        match predict(&model) {
+            Ok(found) => predictions.push(found),
+            Err(error) => return fail(&error, FAILED),
+        }
+    }
+    let text = threads_markdown(&Machine::here(false), &predictions, &origin(&arguments.label));
+    print_line(&if arguments.json { format!("{:#}", serde_json::json!(predictions)) } else { text.clone() });
+    let write = |folder: &PathBuf| write_atomic(&folder.join("threads.md"), text.as_bytes());
+    let written = arguments.output.as_ref().map_or(Ok(()), write);
     written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
 }
 

@@ -129,7 +129,7 @@ impl SearchGrid {
         };
         match self.runs.as_mut_slice() {
             [run] => find((0, run)),
-            runs => runs.par_iter_mut().enumerate().for_each(find),
+            runs => enmm_fork::each("search", runs.par_iter_mut().enumerate(), find),
         }
         found.take(&mut self.runs, view);
     }

@@ -278,7 +278,8 @@ impl OpenClose {
         if serial || contacts.len() <= CONTACTS {
             finish((contacts, slots));
         } else {
-            contacts.par_chunks_mut(CONTACTS).zip(slots.par_chunks(CONTACTS)).for_each(finish);
+            let parts = contacts.par_chunks_mut(CONTACTS).zip(slots.par_chunks(CONTACTS));
+            enmm_fork::each("forces", parts, finish);
         }
     }
 

@@ -36,7 +36,8 @@ impl Step<'_> {
             workspace.position.extend(boundary.covers.iter().zip(&boundary.weights).map(position));
         } else {
             let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
-            points.map(position).collect_into_vec(&mut workspace.position);
+            let (length, positions) = (boundary.covers.len(), &mut workspace.position);
+            enmm_fork::spread("locate", length, CONTACTS, || points.map(position).collect_into_vec(positions));
         }
         workspace.frames.update(boundary, &workspace.position, workspace.serial);
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();

@@ -111,9 +111,11 @@ impl Frames {
             self.nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
         } else {
             let edges = position.par_iter().zip(&boundary.next).with_min_len(GRAIN);
-            edges.map(edge).collect_into_vec(&mut self.edges);
+            let length = position.len();
+            enmm_fork::spread("frames", length, GRAIN, || edges.map(edge).collect_into_vec(&mut self.edges));
             let nodes = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
-            nodes.map(node).collect_into_vec(&mut self.nodes);
+            let length = node_point.len();
+            enmm_fork::spread("frames", length, GRAIN, || nodes.map(node).collect_into_vec(&mut self.nodes));
         }
     }
 }

@@ -38,7 +38,8 @@ impl NarrowPhase<'_> {
             dispatch(Make { narrow: self, candidates, contacts });
         } else {
             let parts = contacts.par_chunks_mut(GRAIN).zip(candidates.par_chunks(GRAIN));
-            parts.for_each(|(contacts, candidates)| dispatch(Make { narrow: self, candidates, contacts }));
+            let make = |(contacts, candidates): (&mut [_], &[_])| dispatch(Make { narrow: self, candidates, contacts });
+            enmm_fork::each("contacts", parts, make);
         }
         end
     }

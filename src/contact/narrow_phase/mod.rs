@@ -248,7 +248,7 @@ impl NarrowPhase<'_> {
             near_side.extend(run.accepted.iter().map(|candidate| candidate.near_side));
             return self.make(&run.accepted, contacts, made);
         }
-        range.into_par_iter().zip(&mut *runs).for_each(apply);
+        enmm_fork::each("vertex rule", range.into_par_iter().zip(&mut *runs), apply);
         candidates.clear();
         runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
         near_side.extend(candidates.iter().map(|candidate| candidate.near_side));
