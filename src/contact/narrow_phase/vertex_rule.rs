@@ -1,5 +1,5 @@
 //! The vertex rule (theory §5): which of the sides near a node it may enter. A wrong choice locks blocks that should
-//! slide.
+//! slide. Rule 1 is applied in `nearest.rs`, eight near sides at once.
 
 use crate::contact::{ContactState, Corner, EdgeId, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
