@@ -1,12 +1,12 @@
 //! What `enmm bench --peers` tells a program about a slope, and what it wants to be told.
 
+#[path = "../src/clock.rs"]
+#[expect(dead_code, reason = "memory is not compared")]
+mod clock;
+
 use std::error::Error;
 use std::fs;
 use std::io::Write;
-use std::time::Instant;
-
-/// What the processor's clock may be late by (s).
-const TICK: f64 = 0.004;
 
 /// A slope of convex blocks on one held slab; lengths in m, SI units.
 #[derive(serde::Deserialize)]
@@ -46,19 +46,9 @@ pub fn read() -> Result<Scene, Box<dyn Error>> {
     Ok(serde_json::from_slice(&fs::read(path)?)?)
 }
 
-/// Seconds that work takes: wall time, or what the processor gave to this thread where that is less, since other
-/// programs had it for the rest.
+/// Seconds that work takes, by the clock that enmm is timed with.
 pub fn seconds(work: impl FnOnce()) -> f64 {
-    let (wall, before) = (Instant::now(), processor_seconds());
-    work();
-    let spent = processor_seconds().zip(before).map_or(f64::INFINITY, |(after, before)| after - before + TICK);
-    spent.min(wall.elapsed().as_secs_f64())
-}
-
-/// Processor time (s) that this thread has had; none where the system does not tell.
-fn processor_seconds() -> Option<f64> {
-    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
+    clock::timed(work).1
 }
 
 /// Writes the answer to the standard output.

@@ -86,10 +86,14 @@ pub struct BenchReport {
 /// # Errors
 /// A model that cannot be built or fails, which for a standard one is a defect.
 pub fn bench(options: &BenchOptions, begin: &mut (dyn FnMut(&str) + Send)) -> Result<BenchReport, BenchError> {
-    // Zero stands for all threads; a pool of its own, so that one thread does all that it counts as its time.
-    let threads = options.threads.unwrap_or(0);
+    // Zero stands for all threads.
+    in_pool(options.threads.unwrap_or(0), || bench_here(options, begin))?
+}
+
+/// Works in a pool of its own with so many threads, so that one thread does all that it counts as its time.
+fn in_pool<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BenchError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|_| BenchError::Threads(threads))?.install(|| bench_here(options, begin))
+    Ok(pool.map_err(|_| BenchError::Threads(threads))?.install(work))
 }
 
 fn bench_here(options: &BenchOptions, begin: &mut dyn FnMut(&str)) -> Result<BenchReport, BenchError> {

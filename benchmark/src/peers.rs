@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::clock::timed;
 use super::models::advance;
 use super::scene::{Outcome, Placed, Scene};
-use super::{BenchError, BenchOptions, Machine, Model, measure};
+use super::{BenchError, BenchOptions, Machine, Model, in_pool, measure};
 use enmm::engine_version;
 
 /// Models that are compared when none is named.
@@ -210,8 +210,7 @@ pub fn compare(options: &PeerOptions, begin: &mut (dyn FnMut(&str) + Send)) -> R
         return Err(PeerError::Sources(options.sources.clone()));
     }
     std::fs::create_dir_all(&options.builds)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.map_err(|_| BenchError::Threads(1))?.install(|| compare_here(options, begin))
+    in_pool(1, || compare_here(options, begin))?
 }
 
 fn compare_here(options: &PeerOptions, begin: &mut dyn FnMut(&str)) -> Result<PeerReport, PeerError> {

@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::schedule::{Limits, schedule, span, work};
-use super::{BenchError, Machine, Model};
+use super::{BenchError, Machine, Model, in_pool};
 use enmm::contact::{ContactHistory, NearPair, VertexEdge};
 use enmm::model::Simulation;
 use enmm_fork::{Task, record};
@@ -106,11 +106,6 @@ pub fn predict(model: &Model) -> Result<Prediction, BenchError> {
             .map(|(name, bytes, ms)| (name, 1e-6 * bytes, ms))
             .collect(),
     })
-}
-
-fn in_pool<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BenchError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    Ok(pool.map_err(|_| BenchError::Threads(threads))?.install(work))
 }
 
 /// A model in the state from which steps are timed.

@@ -89,8 +89,7 @@ impl NearSides {
 
     /// The near pairs of one of them.
     pub fn pairs_of<'a>(&self, near_pairs: &'a [NearPair], k: usize) -> &'a [NearPair] {
-        let end = self.near_sides.get(k + 1).map_or(near_pairs.len(), |next| next.first as usize);
-        &near_pairs[self.near_sides[k].first as usize..end]
+        pairs_of(&self.near_sides, near_pairs, k)
     }
 
     /// Lists the near sides of near pairs, unless they are listed.
@@ -133,8 +132,7 @@ impl NearSides {
     /// Puts the near sides of a run side by side, those with equally many near edges together.
     fn batch(&mut self, near_pairs: &[NearPair], run: std::ops::Range<usize>) {
         let Self { near_sides, batches, places, order, .. } = self;
-        let first = |k: usize| near_sides.get(k).map_or(near_pairs.len(), |near| near.first as usize);
-        let count = |k: usize| first(k + 1) - first(k);
+        let count = |k: usize| pairs_of(near_sides, near_pairs, k).len();
         order.clear();
         order.extend(run.clone());
         order.sort_unstable_by_key(|&k| (count(k), k));
@@ -150,7 +148,7 @@ impl NearSides {
                     edges: edges as u32,
                 });
                 for edge in 0..edges {
-                    let edge = |k: usize| near_pairs[first(k) + edge].edge.number();
+                    let edge = |k: usize| pairs_of(near_sides, near_pairs, k)[edge].edge.number();
                     places.push(Places::new(&at.map(|k| EDGE_PAIRS as u32 * edge(k))));
                 }
             }
@@ -173,6 +171,11 @@ impl NearSides {
             places: &self.places[from.places..to.places],
         }
     }
+}
+
+fn pairs_of<'a>(near_sides: &[NearSide], near_pairs: &'a [NearPair], k: usize) -> &'a [NearPair] {
+    let end = near_sides.get(k + 1).map_or(near_pairs.len(), |next| next.first as usize);
+    &near_pairs[near_sides[k].first as usize..end]
 }
 
 impl NearRun<'_> {
