@@ -1,9 +1,5 @@
 //! What `enmm bench --peers` tells a program about a slope, and what it wants to be told.
 
-#[path = "../src/clock.rs"]
-#[expect(dead_code, reason = "memory is not compared")]
-mod clock;
-
 use std::error::Error;
 use std::fs;
 use std::io::Write;
@@ -44,11 +40,6 @@ pub struct Answer {
 pub fn read() -> Result<Scene, Box<dyn Error>> {
     let path = std::env::args().skip(1).last().ok_or("usage: PROGRAM SCENE.json")?;
     Ok(serde_json::from_slice(&fs::read(path)?)?)
-}
-
-/// Seconds that work takes, by the clock that enmm is timed with.
-pub fn seconds(work: impl FnOnce()) -> f64 {
-    clock::timed(work).1
 }
 
 /// Writes the answer to the standard output.

@@ -3,6 +3,11 @@
 //! Density and friction are those of the case; there is no elasticity. Steps, iterations and contact softness are those
 //! that Box2D recommends: 60 steps a second, each of 4 substeps. Bodies do not fall asleep, since enmm's do not either.
 //! Box2D counts lengths in 4-byte numbers and takes no polygon below half a centimetre: it leaves such blocks out.
+
+/// The clock that enmm is timed with.
+#[path = "../../../src/clock.rs"]
+#[expect(dead_code, reason = "memory is not compared")]
+mod clock;
 #[path = "../../scene.rs"]
 #[expect(dead_code, reason = "rigid blocks need neither elasticity nor triangles")]
 mod scene;
@@ -28,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let placed: Vec<Placed> = blocks.map(|corners| insert(&mut world, &scene, corners, BodyType::Dynamic)).collect();
     let steps = (scene.duration * STEPS_PER_SECOND).round() as usize;
     let step = (1.0 / STEPS_PER_SECOND) as f32;
-    let seconds = scene::seconds(|| (0..steps).for_each(|_| world.step(step, SUBSTEPS))) / scene.duration;
+    let ((), seconds) = clock::timed(|| (0..steps).for_each(|_| world.step(step, SUBSTEPS)));
     let now = |placed: &Placed| {
         let (body, corners) = placed.as_ref()?;
         let place = world.body_transform(*body);
@@ -41,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings: format!(
             "rigid blocks, {STEPS_PER_SECOND} steps a second of {SUBSTEPS} substeps, AVX2, 4-byte numbers"
         ),
-        seconds,
+        seconds: seconds / scene.duration,
         elements: None,
         contacts: usize::try_from(world.counters().contact_count).ok(),
         blocks: placed.iter().map(now).collect(),

@@ -11,6 +11,11 @@
 //! skin all round, so that blocks which touch in the case do so here: with full size they begin with an overlap of
 //! their skins, which throws them apart. Its mass stays that of the whole block, and the answer has the corners of the
 //! whole block. Grains thinner than two skins are left out.
+
+/// The clock that enmm is timed with.
+#[path = "../../../src/clock.rs"]
+#[expect(dead_code, reason = "memory is not compared")]
+mod clock;
 #[path = "../../scene.rs"]
 mod scene;
 
@@ -42,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|block| soft_body(&scene, block, solver, skin).map(|body| world.insert_soft_body(body)))
         .collect();
     let steps = (scene.duration / world.integration_parameters.dt).round() as usize;
-    let seconds = scene::seconds(|| (0..steps).for_each(|_| world.step())) / scene.duration;
+    let ((), seconds) = clock::timed(|| (0..steps).for_each(|_| world.step()));
     let (mut blocks, mut elements, mut contacts) = (Vec::new(), 0, 0);
     for (handle, block) in handles.iter().zip(&scene.blocks) {
         let Some(handle) = handle else {
@@ -66,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             1.0 / parameters.dt,
             parameters.num_solver_iterations
         ),
-        seconds,
+        seconds: seconds / scene.duration,
         elements: Some(elements),
         contacts: Some(contacts),
         blocks,
