@@ -50,9 +50,15 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
     if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
         return steps.close();
     }
-    // Tests, most of all those in Python, leave a part of the processors idle: what else has to be compiled fills it.
+    // Tests, most of all those in Python, leave a part of the processors idle: what else has to be compiled or fetched
+    // fills it.
     let oldest = (extent == Extent::Full).then(|| supply::start_oldest_compiler(repository));
-    steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
+    std::thread::scope(|scope| {
+        if extent == Extent::Full {
+            scope.spawn(|| venv::prepare(repository));
+        }
+        steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
+    });
     if extent == Extent::Full {
         steps.take("documentation", || {
             let mut doc = repository.cargo(&["doc", "--release", "--workspace", "--no-deps"]);

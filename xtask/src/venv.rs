@@ -16,6 +16,11 @@ fn library(repository: &Repository) -> PathBuf {
     repository.target.join("release").join(name)
 }
 
+/// Makes the environment, which takes a while; who needs it says what went wrong.
+pub fn prepare(repository: &Repository) {
+    let _ = environment(repository);
+}
+
 /// Python of the environment, which finds the package `enmm` and its library.
 ///
 /// # Errors
