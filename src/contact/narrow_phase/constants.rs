@@ -22,7 +22,8 @@ pub struct EntranceRule {
     pub deep: f64,
     /// and the same relative to the thickness of the thinner block, where that is less.
     pub deep_share: f64,
-    /// Distance, relative to the gap, by which a foot may miss an edge where the boundary bends.
+    /// Distance, relative to the gap, by which the foot of a contact without force may miss an edge where the boundary
+    /// bends.
     pub wedge_ratio: f64,
     /// Least length of the solver's own stiffness of a contact in full strength, relative to the mean of the node
     /// segments: a contact at a point is not softer than one of two faces.

@@ -299,6 +299,7 @@ impl NarrowPhase<'_> {
             if let Some(at) = near.of(contact, guess) {
                 known[at] = k as u32;
                 let bonded = contact.intact && contact.normal_force < 0.0;
+                nearest.carried[at] = u8::from(contact.state != ContactState::Open);
                 nearest.rest[at] = if bonded { f64::INFINITY } else { contact.rest - contact.offset };
             }
         }

@@ -26,12 +26,17 @@ pub(super) struct Nearest {
     pub verdict: Vec<u8>,
     /// Gap (m) of an unloaded spring; infinite where a bonded joint pulls.
     pub rest: Vec<f64>,
+    /// 1 where the contact of the last step carried force, else 0.
+    pub carried: Vec<u8>,
 }
 
 impl Nearest {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * 4 * self.gap.len() + size_of_val(self.edge.as_slice()) + self.verdict.len()
+        size_of::<f64>() * 4 * self.gap.len()
+            + size_of_val(self.edge.as_slice())
+            + self.verdict.len()
+            + self.carried.len()
     }
 
     /// Sizes the buffers for so many near sides, without contacts of the last step.
@@ -43,6 +48,8 @@ impl Nearest {
         self.verdict.resize(count, 0);
         self.rest.clear();
         self.rest.resize(count, 0.0);
+        self.carried.clear();
+        self.carried.resize(count, 0);
     }
 }
 
@@ -115,13 +122,15 @@ impl FindNearest<'_> {
     #[inline(always)]
     fn leave<L: Lanes>(&mut self, lanes: L, batch: &Batch, nodes: &Nodes<L>, best: &OverEdges<L>, which: L::F) {
         let at = batch.near_sides.map(|k| k as usize);
-        let mut rest = [0.0; LANES];
+        let (mut rest, mut carried) = ([0.0; LANES], 0);
         for lane in 0..LANES {
             rest[lane] = self.nearest.rest[at[lane]];
+            carried |= self.nearest.carried[at[lane]] << lane;
         }
         let near = less(lanes, best.gap - lanes.load(&rest), lanes.splat(self.narrow.reach));
         let enters = near & self.enters(lanes, nodes, best.tangent);
-        let is_over = self.is_over(lanes, best);
+        // What carries force ends by rule 2: the overlap, not the foot, tells when.
+        let is_over = carried | self.is_over(lanes, best);
         let [mut along, mut gap, mut beyond, mut edge] = [[0.0; LANES]; 4];
         lanes.store(best.along, &mut along);
         lanes.store(best.gap, &mut gap);

@@ -23,14 +23,17 @@ impl NarrowPhase<'_> {
         let mut overlap = [f64::INFINITY; 2];
         for end in [End::Start, End::Finish] {
             let at = self.boundary.side_ends[candidate.side][end as usize];
-            if at.corner == Corner::Reflex {
-                continue;
-            }
             let past = match end {
                 End::Start => candidate.along < 0.0,
                 End::Finish => candidate.along > candidate.length,
-            };
-            let missed = at.edge == candidate.edge && past && candidate.beyond > tolerance;
+            } && at.edge == candidate.edge;
+            if at.corner == Corner::Reflex {
+                if past && self.misses(candidate) {
+                    return None;
+                }
+                continue;
+            }
+            let missed = past && candidate.beyond > tolerance;
             if missed && !self.is_kept(node, candidate, end) {
                 return None;
             }
@@ -40,6 +43,11 @@ impl NarrowPhase<'_> {
             }
         }
         Some(overlap)
+    }
+
+    /// Whether a node misses the edge by more than a bend of the boundary explains.
+    fn misses(&self, candidate: &ContactCandidate) -> bool {
+        candidate.beyond > self.rule.wedge_ratio * candidate.gap.abs() + self.rule.held_beyond * self.size
     }
 
     /// Overlap (m) along a side of a node with the block before a convex `end` of the side, with springs unloaded;
