@@ -254,7 +254,6 @@ fn serial_stretches(steps: &[Vec<Task>], per_step: f64) -> Vec<(String, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::schedule::work;
     use super::*;
 
     fn failed(error: impl std::fmt::Display) -> ! {

@@ -20,7 +20,7 @@ use crate::mechanics::{BlockMotion, MassMatrix, StressField};
 
 use frame::EdgeFrame;
 use near_sides::{NearRun, NearSide};
-use nearest::{ENTERS, FindNearest, Nearest, OVER};
+use nearest::{CARRIED, ENTERS, FindNearest, Nearest, OVER};
 
 use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, LawId, NearPair, NodeId, SideId, VertexEdge};
 
@@ -162,6 +162,8 @@ struct ContactCandidate {
     held: Option<u32>,
     /// Whether the contact carried force in the last step.
     is_held: bool,
+    /// Whether the node is over the edge: it misses it by no more than a bend of the boundary explains.
+    is_over: bool,
     /// Overlap (m) along the side before its start and its finish, with springs unloaded.
     overlap: [f64; 2],
     accepted: bool,
@@ -299,7 +301,7 @@ impl NarrowPhase<'_> {
             if let Some(at) = near.of(contact, guess) {
                 known[at] = k as u32;
                 let bonded = contact.intact && contact.normal_force < 0.0;
-                nearest.carried[at] = u8::from(contact.state != ContactState::Open);
+                nearest.verdict[at] = CARRIED * u8::from(contact.state != ContactState::Open);
                 nearest.rest[at] = if bonded { f64::INFINITY } else { contact.rest - contact.offset };
             }
         }
@@ -324,17 +326,18 @@ impl NarrowPhase<'_> {
             length,
             tangent,
             held,
-            is_held: held.is_some_and(|known| self.history[known as usize].state != ContactState::Open),
+            is_held: nearest.verdict[k] & CARRIED != 0,
+            is_over: nearest.verdict[k] & OVER != 0,
             overlap: [f64::INFINITY; 2],
             accepted: false,
         }
     }
 
-    /// All sides that the node of a near side `k` is over, in their order, given those that are `accepted`.
+    /// All sides that are considered of the node of a near side `k`, in their order, given those that are `accepted`.
     fn all_sides(&self, found: &Found, k: usize, accepted: &[ContactCandidate], sides: &mut Vec<ContactCandidate>) {
         sides.clear();
         let mut accepted = accepted.iter().peekable();
-        for k in found.near.of_same_node(k).filter(|&k| found.nearest.verdict[k] & OVER != 0) {
+        for k in found.near.of_same_node(k).filter(|&k| is_considered(found.nearest.verdict[k])) {
             let known = accepted.next_if(|known| known.near_side as usize == found.near.first + k);
             sides.push(known.copied().unwrap_or_else(|| self.candidate(found, k)));
         }
@@ -422,13 +425,19 @@ impl Found<'_> {
     }
 }
 
-/// Lists the near sides whose node is over the edge, near and may enter by rule 1. No branch depends on it.
+/// Whether a node may be in contact by where it is. What carried force ends by rule 2: the overlap, not the foot, tells
+/// when.
+fn is_considered(verdict: u8) -> bool {
+    verdict & (OVER | CARRIED) != 0
+}
+
+/// Lists the near sides that are considered, near and may be entered by rule 1. No branch depends on it.
 fn list_entering(verdicts: &[u8], entering: &mut Vec<u32>) {
     entering.resize(verdicts.len(), 0);
     let mut count = 0;
     for (k, &verdict) in (0..).zip(verdicts) {
         entering[count] = k;
-        count += usize::from(verdict == OVER | ENTERS);
+        count += usize::from((verdict & ENTERS != 0) & is_considered(verdict));
     }
     entering.truncate(count);
 }

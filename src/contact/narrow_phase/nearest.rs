@@ -12,6 +12,8 @@ const ROUNDING: f64 = 1e-12;
 pub(super) const OVER: u8 = 1;
 /// Bit of a verdict: the node is nearer than the reach, and may enter the edge by rule 1.
 pub(super) const ENTERS: u8 = 2;
+/// Bit of a verdict: the contact of the last step carried force.
+pub(super) const CARRIED: u8 = 4;
 
 /// What is found of the near sides of a run.
 #[derive(Debug, Clone, Default)]
@@ -22,21 +24,16 @@ pub(super) struct Nearest {
     pub beyond: Vec<f64>,
     /// The edge, counted from the first near edge of the side.
     pub edge: Vec<u32>,
-    /// [`OVER`] and [`ENTERS`].
+    /// [`OVER`], [`ENTERS`] and [`CARRIED`].
     pub verdict: Vec<u8>,
     /// Gap (m) of an unloaded spring; infinite where a bonded joint pulls.
     pub rest: Vec<f64>,
-    /// 1 where the contact of the last step carried force, else 0.
-    pub carried: Vec<u8>,
 }
 
 impl Nearest {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * 4 * self.gap.len()
-            + size_of_val(self.edge.as_slice())
-            + self.verdict.len()
-            + self.carried.len()
+        size_of::<f64>() * 4 * self.gap.len() + size_of_val(self.edge.as_slice()) + self.verdict.len()
     }
 
     /// Sizes the buffers for so many near sides, without contacts of the last step.
@@ -45,11 +42,10 @@ impl Nearest {
             list.resize(count, 0.0);
         }
         self.edge.resize(count, 0);
+        self.verdict.clear();
         self.verdict.resize(count, 0);
         self.rest.clear();
         self.rest.resize(count, 0.0);
-        self.carried.clear();
-        self.carried.resize(count, 0);
     }
 }
 
@@ -122,15 +118,13 @@ impl FindNearest<'_> {
     #[inline(always)]
     fn leave<L: Lanes>(&mut self, lanes: L, batch: &Batch, nodes: &Nodes<L>, best: &OverEdges<L>, which: L::F) {
         let at = batch.near_sides.map(|k| k as usize);
-        let (mut rest, mut carried) = ([0.0; LANES], 0);
+        let mut rest = [0.0; LANES];
         for lane in 0..LANES {
             rest[lane] = self.nearest.rest[at[lane]];
-            carried |= self.nearest.carried[at[lane]] << lane;
         }
         let near = less(lanes, best.gap - lanes.load(&rest), lanes.splat(self.narrow.reach));
         let enters = near & self.enters(lanes, nodes, best.tangent);
-        // What carries force ends by rule 2: the overlap, not the foot, tells when.
-        let is_over = carried | self.is_over(lanes, best);
+        let is_over = self.is_over(lanes, best);
         let [mut along, mut gap, mut beyond, mut edge] = [[0.0; LANES]; 4];
         lanes.store(best.along, &mut along);
         lanes.store(best.gap, &mut gap);
@@ -141,7 +135,7 @@ impl FindNearest<'_> {
             self.nearest.gap[k] = gap[lane];
             self.nearest.beyond[k] = beyond[lane];
             self.nearest.edge[k] = edge[lane] as u32;
-            self.nearest.verdict[k] = ((is_over >> lane & 1) * OVER) | ((enters >> lane & 1) * ENTERS);
+            self.nearest.verdict[k] |= ((is_over >> lane & 1) * OVER) | ((enters >> lane & 1) * ENTERS);
         }
     }
 

@@ -28,7 +28,7 @@ impl NarrowPhase<'_> {
                 End::Finish => candidate.along > candidate.length,
             } && at.edge == candidate.edge;
             if at.corner == Corner::Reflex {
-                if past && self.misses(candidate) {
+                if past && !candidate.is_over {
                     return None;
                 }
                 continue;
@@ -43,11 +43,6 @@ impl NarrowPhase<'_> {
             }
         }
         Some(overlap)
-    }
-
-    /// Whether a node misses the edge by more than a bend of the boundary explains.
-    fn misses(&self, candidate: &ContactCandidate) -> bool {
-        candidate.beyond > self.rule.wedge_ratio * candidate.gap.abs() + self.rule.held_beyond * self.size
     }
 
     /// Overlap (m) along a side of a node with the block before a convex `end` of the side, with springs unloaded;
