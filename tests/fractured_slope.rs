@@ -72,9 +72,9 @@ fn rests_and_then_fails(change: f64) {
     println!("worst overlap {worst:?} of {size}, {counters:?}");
     assert!(simulation.monitor(0).0.norm() > 2.0, "the crest must move");
     assert!(worst[0] < 0.01 * size, "overlap {worst:?} m");
-    // A ledge lower than that bears nothing. On other paths up to twice as much was seen.
-    let ledge = EntranceRule::default().ledge * size;
-    assert!(worst[1] < if change == 0.0 { ledge } else { 2.5 * ledge }, "overlap that no spring holds: {worst:?} m");
+    // A ledge bears in full from twice its least height on.
+    let ledge = 2.0 * EntranceRule::default().ledge * size;
+    assert!(worst[1] < ledge, "overlap that no spring holds: {worst:?} m");
     assert_eq!(counters.deep_contacts, 0, "{counters:?}");
     assert!((counters.unsettled as f64) < 1e-3 * counters.substeps as f64, "{counters:?}");
 }

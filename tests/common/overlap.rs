@@ -15,19 +15,23 @@ const ROOM: f64 = 1e-3;
 pub struct Overlap {
     /// Depth (m).
     pub depth: f64,
+    /// Depth (m) of the deepest node. Contacts hold nodes; between two of them, a mesh size apart, faces may bend into
+    /// each other.
+    pub at_nodes: f64,
     /// Blocks.
     pub blocks: [BlockId; 2],
 }
 
 impl Overlap {
-    /// How much (m) of it no spring explains: what is more than 1.2 times the closure of the most deeply pressed
-    /// contact between the two blocks, which is force over stiffness, and what that contact was first seen with.
+    /// How much (m) of it no spring explains at the nodes: what is more than 1.2 times the closure of the most deeply
+    /// pressed contact between the two blocks, which is force over stiffness, and what that contact was first seen
+    /// with.
     pub fn unheld(&self, simulation: &Simulation) -> f64 {
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
         let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
         let contacts = simulation.workspace().contacts.iter().filter(is_between);
-        self.depth - 1.2 * contacts.map(closure).fold(0.0, f64::max)
+        self.at_nodes - 1.2 * contacts.map(closure).fold(0.0, f64::max)
     }
 }
 
@@ -35,6 +39,8 @@ impl Overlap {
 pub struct Audit {
     /// Boundary points of each block.
     points: Vec<Vec<EdgeId>>,
+    /// Those of them that are nodes.
+    nodes: Vec<Vec<EdgeId>>,
     /// Triangles of boundary points of each block that is not cracked.
     triangles: Vec<Vec<[EdgeId; 3]>>,
     cracked: Vec<bool>,
@@ -43,6 +49,7 @@ pub struct Audit {
 /// A block at its current place.
 struct Placed {
     points: Vec<Point>,
+    nodes: Vec<Point>,
     triangles: Vec<[Point; 3]>,
     low: Point,
     high: Point,
@@ -57,8 +64,10 @@ impl Audit {
             points[block].push(k);
             cracked[block] |= boundary.partial[k];
         }
+        let is_node = |k: &EdgeId| boundary.node_point[boundary.node_before[*k]] == *k;
+        let nodes = points.iter().map(|points| points.iter().copied().filter(is_node).collect()).collect();
         let triangles = (0..blocks).map(|b| if cracked[b] { Vec::new() } else { cut(boundary, &points[b]) }).collect();
-        Self { points, triangles, cracked }
+        Self { points, nodes, triangles, cracked }
     }
 
     /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
@@ -88,24 +97,32 @@ impl Audit {
         }
         pairs.sort_unstable();
         pairs.dedup();
-        let depth = |&[p, q]: &[BlockId; 2]| {
-            if placed[p].is_apart(placed[q].low, placed[q].high) {
-                return 0.0;
-            }
-            if self.cracked[p] || self.cracked[q] {
-                let [p, q] = [&self.points[p], &self.points[q]];
-                return corner_depth(boundary, place, p, q).max(corner_depth(boundary, place, q, p));
-            }
-            pair_depth(&placed[p], &placed[q])
+        let overlap = |&blocks: &[BlockId; 2]| {
+            let [p, q] = blocks;
+            let (depth, at_nodes) = if placed[p].is_apart(placed[q].low, placed[q].high) {
+                (0.0, 0.0)
+            } else if self.cracked[p] || self.cracked[q] {
+                let depth = |of: &[Vec<EdgeId>]| {
+                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, place, &of[p], &self.points[q]);
+                    depth(p, q).max(depth(q, p))
+                };
+                (depth(&self.points), depth(&self.nodes))
+            } else {
+                let at_nodes = |p: &Placed, q: &Placed| deepest_corner(&p.nodes, q);
+                let [p, q] = [&placed[p], &placed[q]];
+                (pair_depth(p, q), at_nodes(p, q).max(at_nodes(q, p)))
+            };
+            Overlap { depth, at_nodes, blocks }
         };
-        pairs.par_iter().map(|blocks| Overlap { depth: depth(blocks), blocks: *blocks }).collect()
+        pairs.par_iter().map(overlap).collect()
     }
 
     fn placed(&self, block: usize, place: &[Point]) -> Placed {
-        let points: Vec<Point> = self.points[block].iter().map(|&k| place[k]).collect();
+        let at = |points: &[EdgeId]| -> Vec<Point> { points.iter().map(|&k| place[k]).collect() };
+        let (points, nodes) = (at(&self.points[block]), at(&self.nodes[block]));
         let triangles = self.triangles[block].iter().map(|t| t.map(|k| place[k])).collect();
         let (low, high) = polygon::bounds(&points);
-        Placed { points, triangles, low, high }
+        Placed { points, nodes, triangles, low, high }
     }
 }
 
@@ -139,12 +156,12 @@ fn pair_depth(p: &Placed, q: &Placed) -> f64 {
     let (own, others) = (neighbours(p, q), neighbours(q, p));
     let pieces = own.iter().flat_map(|t| others.iter().map(move |u| polygon::clip_convex(t, u)));
     let widest = pieces.filter(|piece| piece.len() > 2).map(|piece| polygon::width(&piece)).fold(0.0, f64::max);
-    if widest == 0.0 { 0.0 } else { widest.max(deepest_corner(p, q)).max(deepest_corner(q, p)) }
+    if widest == 0.0 { 0.0 } else { widest.max(deepest_corner(&p.points, q)).max(deepest_corner(&q.points, p)) }
 }
 
-/// Distance (m) to the boundary of the corner of one block that is deepest inside another.
-fn deepest_corner(p: &Placed, q: &Placed) -> f64 {
-    let neighbours: Vec<Point> = p.points.iter().filter(|x| !q.is_apart(**x, **x)).copied().collect();
+/// Distance (m) to the boundary of the point of one block that is deepest inside another.
+fn deepest_corner(points: &[Point], q: &Placed) -> f64 {
+    let neighbours: Vec<Point> = points.iter().filter(|x| !q.is_apart(**x, **x)).copied().collect();
     polygon::deepest_corner(&neighbours, &q.points)
 }
 
