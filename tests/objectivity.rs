@@ -61,7 +61,7 @@ struct Model {
 }
 
 /// Tolerance of contacts and convergence.
-const FINE: [f64; 2] = [1e-5, 1e-9];
+const FINE: [f64; 2] = [1e-6, 1e-9];
 const COARSE: [f64; 2] = [1e-2, 1e-7];
 
 const GLUED: &str = "friction_deg = 30\ncohesion = 1e9\ntension = 1e9";

@@ -2,8 +2,8 @@
 //!
 //! All contacts of two blocks are a block pair. Blocks are cut into runs of like work, which are the leaves of a binary
 //! tree. What lies within a run is solved before what lies between two runs, so that both halves of any part of the
-//! tree can be swept at once. Within a part block pairs come by colour: no two of a colour share a free block, or a
-//! cover of a held one, so that eight of them are solved side by side.
+//! tree can be swept at once. Within a part block pairs come in groups of up to eight that are solved side by side: no
+//! two of a group share a free block, or a cover of a held one.
 
 use std::cmp::Reverse;
 
@@ -19,27 +19,26 @@ use super::wide_pairs::WidePairs;
 const LEAF: usize = 4096;
 /// Most runs of blocks.
 const LEAVES_MAX: usize = 4096;
-/// The last colour: its block pairs may share what they push, and are solved one by one.
-const OVERFLOW: u32 = u64::BITS - 1;
-
 /// In what block pair every near side is.
-#[doc(alias = "graph colouring")]
 #[doc(alias = "islands")]
 #[derive(Debug, Clone, Default)]
 pub struct SolverOrder {
     /// Block pair of each near side.
     block_pair: Vec<u32>,
-    /// Block pairs in the order in which they are solved.
+    /// Block pairs, part by part in the order in which these are solved.
     block_pairs: Vec<BlockPair>,
     /// First block of each run of blocks, and the number of blocks.
     leaf_block: Vec<BlockId>,
     entries: Vec<Entry>,
     leaf: Vec<u32>,
-    colours: Colours,
+    /// What the block pairs push, pair by pair: a free block by its number, a cover of a held one by its number after
+    /// those of all blocks.
+    pushed: Vec<u32>,
     /// Of a step: the number of contacts of each block pair, then the slot of its next.
     count: Vec<u32>,
-    /// Block pairs of a colour that have contacts.
+    /// Block pairs of a part that have contacts.
     touching: Vec<u32>,
+    groups: Groups,
 }
 
 /// A near side, by the blocks that it and the node belong to.
@@ -51,23 +50,35 @@ struct Entry {
 }
 
 /// All near sides of two blocks, a free one first when there is one: a range of the entries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy)]
 struct BlockPair {
     subdomain: u32,
-    colour: u32,
     first: u32,
     end: u32,
+    /// What it pushes: the first, and the one after the last.
+    pushed: [u32; 2],
     blocks: [BlockId; 2],
 }
 
-/// Colours that free blocks and covers of held ones have got in a part, a bit each.
+/// Groups of block pairs that share nothing that they push.
+#[doc(alias = "graph colouring")]
 #[derive(Debug, Clone, Default)]
-struct Colours {
-    of_block: Vec<u64>,
-    of_cover: Vec<u64>,
-    /// Covers of held blocks of the block pair in hand, and all that have a colour.
+struct Groups {
+    /// Block pairs of each, those with the most contacts first.
+    members: Vec<Members>,
+    /// Which of 64 groups push each block and cover, a bit each.
+    pushing: Vec<u64>,
+    /// Block pairs that none of the 64 groups could take.
+    left: Vec<u32>,
+    /// Covers of held blocks that the block pair in hand pushes.
     covers: Vec<CoverId>,
-    seen: Vec<CoverId>,
+}
+
+/// Up to eight block pairs.
+#[derive(Debug, Clone, Default)]
+struct Members {
+    block_pairs: [u32; LANES],
+    count: usize,
 }
 
 /// Block pairs of a step in the order in which they are solved.
@@ -89,12 +100,12 @@ pub struct Sequence {
 impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { block_pair, leaf, count, touching, leaf_block, .. } = self;
-        let lists = [block_pair, leaf, count, touching];
+        let Self { block_pair, leaf, pushed, count, touching, leaf_block, groups, .. } = self;
+        let lists = [block_pair, leaf, pushed, count, touching, &groups.left];
         let order = size_of_val(self.block_pairs.as_slice()) + size_of_val(leaf_block.as_slice());
-        let colours = size_of_val(self.colours.of_block.as_slice()) + size_of_val(self.colours.of_cover.as_slice());
+        let groups = size_of_val(groups.members.as_slice()) + size_of_val(groups.pushing.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
-        order + lists + colours + size_of_val(self.entries.as_slice())
+        order + lists + groups + size_of_val(self.entries.as_slice())
     }
 
     /// Whether it has to be made.
@@ -125,7 +136,7 @@ impl SolverOrder {
             entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b]));
         }
         self.entries.sort_unstable();
-        self.colour(boundary, near_pairs, near_sides, view);
+        self.list_block_pairs(boundary, near_pairs, near_sides, view);
         self.block_pair.resize(self.entries.len(), 0);
         for (index, block_pair) in (0u32..).zip(&self.block_pairs) {
             for entry in &self.entries[block_pair.first as usize..block_pair.end as usize] {
@@ -157,29 +168,46 @@ impl SolverOrder {
         self.leaf_block.resize(leaves + 1, BlockId::new(blocks));
     }
 
-    /// Gives every block pair the first colour that no earlier one of its part has given to what they both push.
-    fn colour(&mut self, boundary: &Boundary, near_pairs: &[NearPair], near_sides: &NearSides, view: &SolverView) {
-        self.block_pairs.clear();
-        self.colours.begin(view);
-        let (mut first, mut subdomain_first) = (0, 0);
-        for run in self.entries.chunk_by(|a, b| (a.subdomain, a.blocks) == (b.subdomain, b.blocks)) {
-            let subdomain = run[0].subdomain;
-            if self.block_pairs.last().is_some_and(|m| m.subdomain != subdomain) {
-                self.colours.forget(&self.entries[subdomain_first as usize..first as usize]);
-                subdomain_first = first;
+    /// Lists the block pairs and what they push.
+    fn list_block_pairs(
+        &mut self,
+        boundary: &Boundary,
+        near_pairs: &[NearPair],
+        near_sides: &NearSides,
+        view: &SolverView,
+    ) {
+        let Self { entries, block_pairs, pushed, groups, .. } = self;
+        let blocks = view.mass_matrix.total.len();
+        groups.pushing.clear();
+        groups.pushing.resize(blocks + view.roots.len(), 0);
+        block_pairs.clear();
+        pushed.clear();
+        let mut first = 0;
+        for run in entries.chunk_by(|a, b| (a.subdomain, a.blocks) == (b.subdomain, b.blocks)) {
+            let ([a, b], first_pushed) = (run[0].blocks, pushed.len());
+            let free = [a, b].map(|block| view.mass_matrix.is_free(block));
+            pushed
+                .extend([(a, free[0]), (b, free[1])].iter().filter(|(_, free)| *free).map(|(block, _)| block.number()));
+            if free != [true; 2] {
+                groups.covers.clear();
+                for entry in run {
+                    let edges = near_sides.pairs_of(near_pairs, entry.near_side as usize);
+                    held_covers(boundary, edges, view, &mut groups.covers);
+                }
+                groups.covers.sort_unstable();
+                groups.covers.dedup();
+                pushed.extend(groups.covers.iter().map(|cover| blocks as u32 + cover.number()));
             }
-            let [a, b] = run[0].blocks;
-            let blocks = if view.mass_matrix.is_free(a) { [a, b] } else { [b, a] };
-            self.colours.covers.clear();
-            for entry in run {
-                self.colours.meet(boundary, near_sides.pairs_of(near_pairs, entry.near_side as usize), view);
-            }
-            let colour = self.colours.give(blocks, view);
             let end = first + run.len() as u32;
-            self.block_pairs.push(BlockPair { subdomain, colour, first, end, blocks });
+            block_pairs.push(BlockPair {
+                subdomain: run[0].subdomain,
+                first,
+                end,
+                pushed: [first_pushed as u32, pushed.len() as u32],
+                blocks: if free[0] { [a, b] } else { [b, a] },
+            });
             first = end;
         }
-        self.block_pairs.sort_unstable();
     }
 
     /// Puts the block pairs and the contacts of a step in the order of their turns.
@@ -192,14 +220,16 @@ impl SolverOrder {
         ends.clear();
         first_turn.clear();
         let (mut first, mut turns) = (0, 0);
-        for class in self.block_pairs.chunk_by(|a, b| (a.subdomain, a.colour) == (b.subdomain, b.colour)) {
-            ends.resize(class[0].subdomain as usize, wide_pairs.len() as u32);
-            let all = first..first + class.len() as u32;
+        for part in self.block_pairs.chunk_by(|a, b| a.subdomain == b.subdomain) {
+            ends.resize(part[0].subdomain as usize, wide_pairs.len() as u32);
+            let all = first..first + part.len() as u32;
             first = all.end;
             self.touching.clear();
             self.touching.extend(all.filter(|&m| self.count[m as usize] > 0));
             self.touching.sort_unstable_by_key(|&m| (Reverse(self.count[m as usize]), m));
-            for some in self.touching.chunks(if class[0].colour == OVERFLOW { 1 } else { LANES }) {
+            self.groups.form(&mut self.touching, &self.block_pairs, &self.pushed);
+            for group in &self.groups.members {
+                let some = &group.block_pairs[..group.count];
                 let first_row = first_turn.len() as u32;
                 let counts = some.iter().map(|&m| self.count[m as usize]);
                 for row in 0..self.count[some[0] as usize] {
@@ -235,45 +265,52 @@ impl SolverOrder {
     }
 }
 
-impl Colours {
-    /// No colours yet.
-    fn begin(&mut self, view: &SolverView) {
-        self.seen.clear();
-        self.of_block.clear();
-        self.of_block.resize(view.mass_matrix.total.len(), 0);
-        self.of_cover.clear();
-        self.of_cover.resize(view.roots.len(), 0);
-    }
-
-    /// Another part begins after some entries.
-    fn forget(&mut self, entries: &[Entry]) {
-        entries.iter().flat_map(|entry| entry.blocks).for_each(|block| self.of_block[block] = 0);
-        self.seen.drain(..).for_each(|cover| self.of_cover[cover] = 0);
-    }
-
-    /// Covers of held blocks that a node and the near edges of a side may push.
-    fn meet(&mut self, boundary: &Boundary, edges: &[NearPair], view: &SolverView) {
-        let is_held = |point: EdgeId| !view.mass_matrix.is_free(boundary.block[point]);
-        let node = boundary.node_point[edges[0].node];
-        if is_held(node) {
-            self.covers.extend(boundary.covers[node]);
+impl Groups {
+    /// Puts block pairs one by one into the first group with a free lane that pushes nothing of theirs. Those for which
+    /// 64 groups have no place go into the next 64. Block pairs of like length come together when the longest are
+    /// first. Nothing is left of `block_pairs`.
+    fn form(&mut self, block_pairs: &mut Vec<u32>, all: &[BlockPair], pushed: &[u32]) {
+        let Self { members, pushing, left, .. } = self;
+        let pushed_by = |m: u32| {
+            let [first, end] = all[m as usize].pushed;
+            &pushed[first as usize..end as usize]
+        };
+        members.clear();
+        while !block_pairs.is_empty() {
+            let first = members.len();
+            let mut open = u64::MAX;
+            for &m in &*block_pairs {
+                let taken = pushed_by(m).iter().fold(0, |bits, &k| bits | pushing[k as usize]);
+                let group = (open & !taken).trailing_zeros();
+                if group == u64::BITS {
+                    left.push(m);
+                    continue;
+                }
+                members.resize(members.len().max(first + group as usize + 1), Members::default());
+                let Members { block_pairs, count } = &mut members[first + group as usize];
+                block_pairs[*count] = m;
+                *count += 1;
+                if *count == LANES {
+                    open &= !(1 << group);
+                }
+                pushed_by(m).iter().for_each(|&k| pushing[k as usize] |= 1 << group);
+            }
+            block_pairs.iter().flat_map(|&m| pushed_by(m)).for_each(|&k| pushing[k as usize] = 0);
+            std::mem::swap(block_pairs, left);
+            left.clear();
         }
-        for edge in edges.iter().map(|near_pair| near_pair.edge).filter(|&edge| is_held(edge)) {
-            self.covers.extend(boundary.covers_on(edge));
-        }
     }
+}
 
-    /// The first colour that a block pair in hand may have.
-    fn give(&mut self, blocks: [BlockId; 2], view: &SolverView) -> u32 {
-        let free = blocks.map(|block| view.mass_matrix.is_free(block));
-        let of_blocks = (0..2).filter(|&k| free[k]).map(|k| self.of_block[blocks[k]]);
-        let of_covers = self.covers.iter().map(|&cover| self.of_cover[cover]);
-        let used: u64 = of_blocks.chain(of_covers).fold(0, |a, b| a | b);
-        let colour = (!used).trailing_zeros().min(OVERFLOW);
-        (0..2).filter(|&k| free[k]).for_each(|k| self.of_block[blocks[k]] |= 1 << colour);
-        self.covers.iter().for_each(|&cover| self.of_cover[cover] |= 1 << colour);
-        self.seen.extend_from_slice(&self.covers);
-        colour
+/// Adds the covers of held blocks that a node and the near edges of a side may push.
+fn held_covers(boundary: &Boundary, edges: &[NearPair], view: &SolverView, covers: &mut Vec<CoverId>) {
+    let is_held = |point: EdgeId| !view.mass_matrix.is_free(boundary.block[point]);
+    let node = boundary.node_point[edges[0].node];
+    if is_held(node) {
+        covers.extend(boundary.covers[node]);
+    }
+    for edge in edges.iter().map(|near_pair| near_pair.edge).filter(|&edge| is_held(edge)) {
+        covers.extend(boundary.covers_on(edge));
     }
 }
 
@@ -288,6 +325,35 @@ fn subdomain_of([a, b]: [u32; 2]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A block that touches a hundred others, and pairs of neighbours in a row of blocks.
+    #[test]
+    fn a_group_pushes_nothing_twice_and_every_pair_is_in_one() {
+        let neighbours = (0..399).map(|k| [k, k + 1]);
+        let pushed: Vec<[u32; 2]> = (0..100).map(|k| [3 * k, 400]).chain(neighbours).collect();
+        let of = |k: u32| BlockPair {
+            subdomain: 0,
+            first: 0,
+            end: 0,
+            pushed: [2 * k, 2 * k + 2],
+            blocks: [BlockId::default(); 2],
+        };
+        let all: Vec<BlockPair> = (0..pushed.len() as u32).map(of).collect();
+        let mut groups = Groups { pushing: vec![0; 401], ..Groups::default() };
+        groups.form(&mut (0..all.len() as u32).collect(), &all, pushed.as_flattened());
+        let members = || groups.members.iter().map(|group| &group.block_pairs[..group.count]);
+        for group in members() {
+            let mut pushed: Vec<u32> = group.iter().flat_map(|&k| pushed[k as usize]).collect();
+            pushed.sort_unstable();
+            assert!(!group.is_empty() && pushed.windows(2).all(|two| two[0] < two[1]), "{group:?}");
+        }
+        let mut taken: Vec<u32> = members().flatten().copied().collect();
+        taken.sort_unstable();
+        assert_eq!(taken, Vec::from_iter(0..all.len() as u32));
+        // That block needs a hundred groups; they take the 399 other pairs as well.
+        assert_eq!(groups.members.len(), 100);
+        assert!(groups.pushing.iter().all(|&groups| groups == 0));
+    }
 
     #[test]
     fn halves_come_before_the_whole() {

@@ -1,7 +1,7 @@
 //! The open–close iteration as `docs/theory.md` §5 has it. **This is the file in which to read the method.**
 //!
 //! Plain Gauss–Seidel: contact after contact, in the order of the list, until no force changes any more. There are no
-//! eight lanes, no colours and no threads, no contact is skipped, and each equation stands once. No step calls it, but
+//! eight lanes, no groups and no threads, no contact is skipped, and each equation stands once. No step calls it, but
 //! [`OpenClose`](super::OpenClose), which solves the same equations fast, and which `tests/contact_reference.rs` holds
 //! to this. Supports and bolts, which answer between its sweeps, are not repeated here.
 

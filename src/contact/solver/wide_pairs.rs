@@ -1,4 +1,4 @@
-//! Eight block pairs of one colour that are solved side by side: what their blocks have in common, kept in registers.
+//! Eight block pairs of one group that are solved side by side: what their blocks have in common, kept in registers.
 
 use std::ops::Range;
 
@@ -17,7 +17,6 @@ const MOVES: f64 = 0.3;
 /// Up to eight block pairs; lanes beyond them repeat the first one without taking part. Numbers begin at lines of the
 /// cache.
 #[doc(alias = "SIMD")]
-#[doc(alias = "graph colouring")]
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct WidePairs {
