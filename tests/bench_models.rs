@@ -71,7 +71,7 @@ fn blocks_slide_down_the_base() {
     let mut audited = [0.0f64; 2];
     for _ in 0..steps.div_ceil(5) {
         advance(&mut simulation, 5);
-        let [overlap, unheld] = overlaps.worst(&simulation);
+        let [overlap, unheld, _] = overlaps.worst(&simulation);
         audited = [audited[0].max(overlap), audited[1].max(unheld)];
     }
     let slope = simulation.model();

@@ -49,7 +49,7 @@ fn audit(simulation: &mut Simulation, every: u64) -> Worst {
         let seen = k.is_multiple_of(every);
         let report = simulation.advance(seen).unwrap_or_else(|e| panic!("{e}"));
         if seen {
-            let [overlap, unheld] = overlaps.worst(simulation);
+            let [overlap, unheld, _] = overlaps.worst(simulation);
             (worst.overlap, worst.unheld) = (worst.overlap.max(overlap), worst.unheld.max(unheld));
             worst.speed = worst.speed.max(report.speed_max);
         }

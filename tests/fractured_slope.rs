@@ -21,11 +21,12 @@ const PATHS: [f64; 4] = [0.0, 1.1e-11, 1.4e-11, -1.4e-11];
 
 #[test]
 fn long_the_fractured_slope_rests_and_then_fails() {
-    let paths = if std::env::var_os("ENMM_LONG").is_some() { &PATHS[..] } else { &PATHS[..1] };
-    paths.iter().for_each(|&change| rests_and_then_fails(change));
+    let is_long = std::env::var_os("ENMM_LONG").is_some();
+    let paths = if is_long { &PATHS[..] } else { &PATHS[..1] };
+    paths.iter().for_each(|&change| rests_and_then_fails(change, is_long));
 }
 
-fn rests_and_then_fails(change: f64) {
+fn rests_and_then_fails(change: f64, is_long: bool) {
     let mut case = fractured_slope();
     case.rocks.values_mut().for_each(|rock| rock.young *= 1.0 + change);
     let size = case.mesh.size;
@@ -48,14 +49,14 @@ fn rests_and_then_fails(change: f64) {
     tell("fractured_slope.sweeps_settling", settled.sweeps as f64 / settled.substeps as f64);
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
     let overlaps = Audit::new(&simulation);
-    let every = if std::env::var_os("ENMM_LONG").is_some() { 5 } else { 25 };
-    let (mut worst, mut k, mut heat) = ([0.0; 2], 0u64, rest.ledger.friction);
+    let every = if is_long { 5 } else { 25 };
+    let (mut worst, mut k, mut heat) = ([0.0; 3], 0u64, rest.ledger.friction);
     while !simulation.stage_is_over(None) {
         let audit = k.is_multiple_of(every);
         let report = simulation.advance(audit).unwrap_or_else(|e| panic!("{e}"));
         if audit {
-            let [overlap, unheld] = overlaps.worst(&simulation);
-            worst = [f64::max(worst[0], overlap), f64::max(worst[1], unheld)];
+            let found = overlaps.worst(&simulation);
+            worst = std::array::from_fn(|k| f64::max(worst[k], found[k]));
             assert!(report.ledger.residual().abs() < 1e-3 * report.ledger.largest(), "{:?}", report.ledger);
             // Friction only ever turns energy into heat, up to what its springs give back.
             assert!(report.ledger.friction > heat - 1e-3 * report.ledger.largest(), "{:?}", report.ledger);
@@ -72,9 +73,13 @@ fn rests_and_then_fails(change: f64) {
     println!("worst overlap {worst:?} of {size}, {counters:?}");
     assert!(simulation.monitor(0).0.norm() > 2.0, "the crest must move");
     assert!(worst[0] < 0.01 * size, "overlap {worst:?} m");
-    // A ledge bears in full from twice its least height on.
-    let ledge = 2.0 * EntranceRule::default().ledge * size;
-    assert!(worst[1] < ledge, "overlap that no spring holds: {worst:?} m");
+    // Between two nodes, a mesh size apart, faces bend into each other.
+    let ledge = EntranceRule::default().ledge * size;
+    assert!(worst[1] < 2.5 * ledge, "overlap that no spring holds: {worst:?} m");
+    // A ledge lower than that bears nothing, and one of twice its height in full: a tip that passes the mouth of a
+    // crack was between the two for two steps, which audits meet when they are frequent.
+    let at_nodes = if is_long { 2.0 * ledge } else { ledge };
+    assert!(worst[2] < at_nodes, "overlap that no spring holds, at the nodes: {worst:?} m");
     assert_eq!(counters.deep_contacts, 0, "{counters:?}");
     assert!((counters.unsettled as f64) < 1e-3 * counters.substeps as f64, "{counters:?}");
 }

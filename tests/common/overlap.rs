@@ -23,15 +23,16 @@ pub struct Overlap {
 }
 
 impl Overlap {
-    /// How much (m) of it no spring explains at the nodes: what is more than 1.2 times the closure of the most deeply
-    /// pressed contact between the two blocks, which is force over stiffness, and what that contact was first seen
-    /// with.
-    pub fn unheld(&self, simulation: &Simulation) -> f64 {
+    /// How much (m) of it no spring explains, anywhere and at the nodes: what is more than 1.2 times the closure of the
+    /// most deeply pressed contact between the two blocks, which is force over stiffness, and what that contact was
+    /// first seen with.
+    pub fn unheld(&self, simulation: &Simulation) -> [f64; 2] {
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
         let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
         let contacts = simulation.workspace().contacts.iter().filter(is_between);
-        self.at_nodes - 1.2 * contacts.map(closure).fold(0.0, f64::max)
+        let held = 1.2 * contacts.map(closure).fold(0.0, f64::max);
+        [self.depth - held, self.at_nodes - held]
     }
 }
 
@@ -76,11 +77,14 @@ impl Audit {
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
     }
 
-    /// Deepest overlap (m), and how much of one no spring explains at most.
-    pub fn worst(&self, simulation: &Simulation) -> [f64; 2] {
-        let worst = |overlap: Overlap| [overlap.depth, overlap.unheld(simulation)];
+    /// Deepest overlap (m), and how much of one no spring explains at most, anywhere and at the nodes.
+    pub fn worst(&self, simulation: &Simulation) -> [f64; 3] {
+        let worst = |overlap: Overlap| {
+            let [unheld, at_nodes] = overlap.unheld(simulation);
+            [overlap.depth, unheld, at_nodes]
+        };
         let deep = self.overlaps(simulation).into_par_iter().filter(|overlap| overlap.depth > 0.0);
-        deep.map(worst).reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
+        deep.map(worst).reduce(|| [0.0; 3], |a, b| std::array::from_fn(|k| a[k].max(b[k])))
     }
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.

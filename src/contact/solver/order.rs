@@ -19,6 +19,7 @@ use super::wide_pairs::WidePairs;
 const LEAF: usize = 4096;
 /// Most runs of blocks.
 const LEAVES_MAX: usize = 4096;
+
 /// In what block pair every near side is.
 #[doc(alias = "islands")]
 #[derive(Debug, Clone, Default)]
