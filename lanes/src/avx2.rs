@@ -217,6 +217,24 @@ impl Values for Avx2 {
     }
 
     #[inline(always)]
+    fn sqrt(self, lanes: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        Registers(unsafe { [_mm256_sqrt_pd(lanes.0[0]), _mm256_sqrt_pd(lanes.0[1])] })
+    }
+
+    #[inline(always)]
+    fn select(self, bits: u8, a: Registers, b: Registers) -> Registers {
+        // SAFETY: the token proves AVX2.
+        unsafe {
+            let bits = _mm256_set1_epi64x(i64::from(bits));
+            let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
+            let low = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, low), low));
+            let high = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, high), high));
+            Registers([_mm256_blendv_pd(b.0[0], a.0[0], low), _mm256_blendv_pd(b.0[1], a.0[1], high)])
+        }
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Registers; 2] {
         // SAFETY: each address is that of a pair, two f64 in a row.
         unsafe { eight(self, at.of(pairs)) }
@@ -250,24 +268,6 @@ impl Lanes for Avx2 {
                 _mm256_storeu_pd(at.add(8 * k), low);
                 _mm256_storeu_pd(at.add(8 * k + 4), high);
             }
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self, lanes: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_sqrt_pd(lanes.0[0]), _mm256_sqrt_pd(lanes.0[1])] })
-    }
-
-    #[inline(always)]
-    fn select(self, bits: u8, a: Registers, b: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        unsafe {
-            let bits = _mm256_set1_epi64x(i64::from(bits));
-            let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
-            let low = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, low), low));
-            let high = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, high), high));
-            Registers([_mm256_blendv_pd(b.0[0], a.0[0], low), _mm256_blendv_pd(b.0[1], a.0[1], high)])
         }
     }
 

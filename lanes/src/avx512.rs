@@ -203,6 +203,18 @@ impl Values for Avx512 {
     }
 
     #[inline(always)]
+    fn sqrt(self, lanes: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_sqrt_pd(lanes.0) })
+    }
+
+    #[inline(always)]
+    fn select(self, bits: u8, a: Register, b: Register) -> Register {
+        // SAFETY: the token proves AVX-512F.
+        Register(unsafe { _mm512_mask_mov_pd(b.0, bits, a.0) })
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Register; 2] {
         // SAFETY: each address is that of a pair, two f64 in a row.
         unsafe { eight(self, at.of(pairs)) }
@@ -276,18 +288,6 @@ impl Lanes for Avx512 {
             return;
         };
         self.store_pairs(lanes, full);
-    }
-
-    #[inline(always)]
-    fn sqrt(self, lanes: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_sqrt_pd(lanes.0) })
-    }
-
-    #[inline(always)]
-    fn select(self, bits: u8, a: Register, b: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_mask_mov_pd(b.0, bits, a.0) })
     }
 
     #[inline(always)]

@@ -1,91 +1,69 @@
 //! The first of eight lanes alone, in plain Rust: for work of which the others have no share.
 
 use std::hint::select_unpredictable;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Arithmetic, LANES, Pair, Places, Values};
+use super::{LANES, Pair, Places, Values};
 
 /// The first lane.
 #[derive(Clone, Copy)]
 pub struct First;
 
-/// Its value.
-#[derive(Clone, Copy)]
-pub struct Value(f64);
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl $trait for Value {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0 $operator other.0)
-            }
-        }
-    };
-}
-
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
-operator!(Div, div, /);
-
-impl Neg for Value {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
-
-impl Arithmetic for Value {}
-
 impl Values for First {
-    type F = Value;
+    type F = f64;
 
     #[inline(always)]
-    fn splat(self, value: f64) -> Value {
-        Value(value)
+    fn splat(self, value: f64) -> f64 {
+        value
     }
 
     #[inline(always)]
-    fn load(self, values: &[f64; LANES]) -> Value {
-        Value(values[0])
+    fn load(self, values: &[f64; LANES]) -> f64 {
+        values[0]
     }
 
     #[inline(always)]
-    fn store(self, lanes: Value, out: &mut [f64; LANES]) {
-        out[0] = lanes.0;
+    fn store(self, lanes: f64, out: &mut [f64; LANES]) {
+        out[0] = lanes;
     }
 
     #[inline(always)]
-    fn max(self, a: Value, b: Value) -> Value {
-        if a.0 > b.0 { a } else { b }
+    fn max(self, a: f64, b: f64) -> f64 {
+        if a > b { a } else { b }
     }
 
     #[inline(always)]
-    fn min(self, a: Value, b: Value) -> Value {
-        if a.0 < b.0 { a } else { b }
+    fn min(self, a: f64, b: f64) -> f64 {
+        if a < b { a } else { b }
     }
 
     #[inline(always)]
-    fn keep_above(self, values: Value, others: Value, limit: Value) -> Value {
-        Value(select_unpredictable(others.0 > limit.0, values.0, 0.0))
+    fn keep_above(self, values: f64, others: f64, limit: f64) -> f64 {
+        select_unpredictable(others > limit, values, 0.0)
     }
 
     #[inline(always)]
-    fn at_most(self, a: Value, b: Value) -> u8 {
-        u8::from(a.0 <= b.0)
+    fn at_most(self, a: f64, b: f64) -> u8 {
+        u8::from(a <= b)
     }
 
     #[inline(always)]
-    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Value; 2] {
+    fn sqrt(self, value: f64) -> f64 {
+        value.sqrt()
+    }
+
+    #[inline(always)]
+    fn select(self, bits: u8, a: f64, b: f64) -> f64 {
+        select_unpredictable(bits & 1 == 1, a, b)
+    }
+
+    #[inline(always)]
+    fn gather_from(self, pairs: &[Pair], at: &Places) -> [f64; 2] {
         let pair = pairs[at.index(0) as usize];
-        [Value(pair.x), Value(pair.y)]
+        [pair.x, pair.y]
     }
 
     #[inline(always)]
-    fn scatter_to(self, [x, y]: [Value; 2], pairs: &mut [Pair], at: &Places) {
-        pairs[at.index(0) as usize] = Pair::new(x.0, y.0);
+    fn scatter_to(self, [x, y]: [f64; 2], pairs: &mut [Pair], at: &Places) {
+        pairs[at.index(0) as usize] = Pair::new(x, y);
     }
 }

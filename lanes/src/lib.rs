@@ -35,6 +35,8 @@ pub trait Arithmetic:
 {
 }
 
+impl Arithmetic for f64 {}
+
 /// What is reckoned with a value of each of eight lanes at once, or with that of the first lane only.
 pub trait Values: Copy {
     /// Values of the lanes.
@@ -55,11 +57,17 @@ pub trait Values: Copy {
     /// The lesser of each lane; the second where the first is not a number.
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
 
+    /// Square root.
+    fn sqrt(self, lanes: Self::F) -> Self::F;
+
     /// Values where others are above a limit; zero elsewhere.
     fn keep_above(self, values: Self::F, others: Self::F, limit: Self::F) -> Self::F;
 
     /// Lanes in which the first is at most the second, as bits from the lowest on.
     fn at_most(self, a: Self::F, b: Self::F) -> u8;
+
+    /// The first in lanes with a bit, from the lowest on, the second elsewhere.
+    fn select(self, bits: u8, a: Self::F, b: Self::F) -> Self::F;
 
     /// Pairs of a list.
     ///
@@ -81,12 +89,6 @@ pub trait Lanes: Values {
 
     /// Writes eight pairs.
     fn store_pairs(self, lanes: [Self::F; 2], out: &mut [Pair; LANES]);
-
-    /// Square root.
-    fn sqrt(self, lanes: Self::F) -> Self::F;
-
-    /// The first in lanes with a bit, from the lowest on, the second elsewhere.
-    fn select(self, bits: u8, a: Self::F, b: Self::F) -> Self::F;
 
     /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
     fn sum(self, lanes: Self::F) -> f64;

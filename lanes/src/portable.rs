@@ -100,6 +100,16 @@ impl Values for Portable {
     }
 
     #[inline(always)]
+    fn sqrt(self, lanes: Array) -> Array {
+        Array(lanes.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn select(self, bits: u8, a: Array, b: Array) -> Array {
+        Array(std::array::from_fn(|k| if bits >> k & 1 == 1 { a.0[k] } else { b.0[k] }))
+    }
+
+    #[inline(always)]
     fn gather_from(self, pairs: &[Pair], at: &Places) -> [Array; 2] {
         self.load_pairs(&std::array::from_fn(|k| pairs[at.index(k) as usize]))
     }
@@ -123,16 +133,6 @@ impl Lanes for Portable {
         for (k, pair) in out.iter_mut().enumerate() {
             *pair = Pair::new(x.0[k], y.0[k]);
         }
-    }
-
-    #[inline(always)]
-    fn sqrt(self, lanes: Array) -> Array {
-        Array(lanes.0.map(f64::sqrt))
-    }
-
-    #[inline(always)]
-    fn select(self, bits: u8, a: Array, b: Array) -> Array {
-        Array(std::array::from_fn(|k| if bits >> k & 1 == 1 { a.0[k] } else { b.0[k] }))
     }
 
     #[inline(always)]
