@@ -3,7 +3,7 @@
 mod common;
 
 use common::simulation;
-use enmm::contact::{ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
+use enmm::contact::{Approach, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
 use enmm::model::Simulation;
 
 /// Both solvers sweep until no force changes by more than this share of itself.
@@ -76,9 +76,18 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
     let (dt, masses) = (model.dt, &workspace.mass_matrix);
     let (kick, theta) = (0.5 * (state.dt_last + dt), model.theta);
     let options = SolverOptions { dt, kick, theta, tolerance: SETTLED, sweeps_max: 100_000, serial: true };
+    let approach = Approach {
+        predicted: &workspace.predicted,
+        velocity: &state.velocity,
+        dt_last: state.dt_last,
+        forward: model.theta_in(dt),
+        damping: (state.stage > 0).then_some(0.1),
+        laws: &state.laws,
+        motion: &workspace.motion,
+    };
     let mut plain = workspace.contacts.clone();
     assert!(plain.iter().any(|contact| contact.is_curved()) || state.stage > 0, "no contact of the master joint");
-    let (expected, report) = reference::solve(masses, &options, &mut plain);
+    let (expected, report) = reference::solve(masses, &options, &approach, &mut plain);
     assert!(report.unsettled <= SETTLED, "the reference has not settled: {report:?}");
 
     let mut solver = OpenClose::default();
@@ -86,7 +95,7 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
     let near = (&state.neighbours.pairs[..], &workspace.near_sides);
     solver.arrange(&model.boundary, near, masses, &model.covers.block_covers, &workspace.accepted.near_side);
     let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
-    let report = solver.run(masses, &options, &mut workspace.contacts, &mut others);
+    let report = solver.run(masses, &options, &approach, &mut workspace.contacts, &mut others);
     assert!(report.unsettled <= SETTLED, "the solver has not settled: {report:?}");
     solver.impulses(masses, &mut workspace.increment, &mut workspace.push);
 

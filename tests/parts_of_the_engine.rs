@@ -274,6 +274,7 @@ mod bolts {
         let row = BoltRow {
             segment: 0,
             pair: Pair::default(),
+            arms: [Vector::zeros(); 2],
             direction: Vector::x(),
             length: 1.0,
             rest: 0.9,

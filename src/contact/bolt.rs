@@ -56,6 +56,8 @@ pub struct BoltRow {
     pub segment: u32,
     /// Its two points.
     pub pair: Pair,
+    /// Arms from the centroids of the blocks to them (m).
+    pub arms: [Vector; 2],
     /// Unit vector from the second point to the first.
     pub direction: Vector,
     /// Length at the step's start (m).
@@ -106,12 +108,13 @@ impl BoltSegment {
         let length = span.norm();
         let direction = if length > 0.0 { span / length } else { (self.points[0] - self.points[1]).normalize() };
         let arms = [0, 1].map(|k| positions[k] - view.motion[self.blocks[k]].centre);
-        let mut pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights, arms, z: [0.0; 2] };
-        let [compliance] = pair.weigh(view.mass_matrix, [direction]);
+        let pair = Pair { blocks: self.blocks, covers: self.covers, weights: self.weights };
+        let compliance = pair.compliance(view.mass_matrix, &arms, direction);
         BoltRow {
             segment: index,
             approach: pair.difference(view.predicted).dot(&direction),
             pair,
+            arms,
             direction,
             length,
             rest: state.rest,

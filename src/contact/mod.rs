@@ -18,13 +18,12 @@ pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, S
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
 pub use narrow_phase::{
-    AcceptedPairs, Approach, ContactCache, EntranceRule, Frames, NarrowPhase, NearSides, PenetratingContacts,
-    entrance_edges,
+    AcceptedPairs, ContactCache, EntranceRule, Frames, NarrowPhase, NearSides, PenetratingContacts, entrance_edges,
 };
 pub use pair::Pair;
 #[doc(hidden)]
 pub use solver::reference;
-pub use solver::{BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
+pub use solver::{Approach, BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
 pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};

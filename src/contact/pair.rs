@@ -15,10 +15,6 @@ pub struct Pair {
     pub covers: [[CoverId; 3]; 2],
     /// Weights of those covers at the points' current positions.
     pub weights: [Weights; 2],
-    /// Arms from the blocks' centroids to the points (m).
-    pub arms: [Vector; 2],
-    /// z = Σwμ/m of both blocks.
-    pub z: [f64; 2],
 }
 
 impl Pair {
@@ -29,30 +25,24 @@ impl Pair {
             - cover::sample(&self.covers[1], &self.weights[1], field)
     }
 
-    /// Sets z; returns the inverse effective mass (m/kg) of both bodies along each axis (Eq. 4).
+    /// z = Σwμ/m of point `k`.
     #[inline(always)]
-    pub fn weigh<const N: usize>(&mut self, mass_matrix: &MassMatrix, axes: [Vector; N]) -> [f64; N] {
-        let mut compliance = [0.0; N];
-        for body in 0..2 {
-            let block = self.blocks[body];
+    pub fn z(&self, k: usize, mass_matrix: &MassMatrix) -> f64 {
+        let of = |(&i, w): (&CoverId, f64)| w * mass_matrix.inertial[i] * mass_matrix.inverse[i].x;
+        self.covers[k].iter().zip(self.weights[k]).map(of).sum()
+    }
+
+    /// Inverse effective mass (m/kg) of both bodies along an axis (Eq. 4); `arms` (m) lead from the centroids of the
+    /// blocks to the points.
+    pub fn compliance(&self, mass_matrix: &MassMatrix, arms: &[Vector; 2], axis: Vector) -> f64 {
+        let of_body = |k: usize| {
+            let (block, lever) = (self.blocks[k], arms[k].perp(&axis));
             let share = mass_matrix.inverse_total[block];
-            let mut own = Vector::zeros();
-            let mut z = 0.0;
-            for (&i, w) in self.covers[body].iter().zip(self.weights[body]) {
-                let inverse = mass_matrix.inverse[i];
-                own += inverse * (w * w);
-                z += w * mass_matrix.inertial[i] * inverse.x;
-            }
-            self.z[body] = z;
-            let common = share * (1.0 - 2.0 * z + mass_matrix.square[block] * share);
-            for (compliance, axis) in compliance.iter_mut().zip(&axes) {
-                let lever = self.arms[body].perp(axis);
-                *compliance += own.x * axis.x * axis.x
-                    + own.y * axis.y * axis.y
-                    + common
-                    + mass_matrix.spin[block] * lever * lever;
-            }
-        }
-        compliance
+            let of_cover = |(&i, w): (&CoverId, f64)| mass_matrix.inverse[i] * (w * w);
+            let own: Vector = self.covers[k].iter().zip(self.weights[k]).map(of_cover).sum();
+            let common = share * (1.0 - 2.0 * self.z(k, mass_matrix) + mass_matrix.square[block] * share);
+            own.dot(&axis.component_mul(&axis)) + common + mass_matrix.spin[block] * lever * lever
+        };
+        of_body(0) + of_body(1)
     }
 }

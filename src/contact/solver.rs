@@ -9,22 +9,23 @@ mod support;
 mod wide_block;
 mod wide_contact;
 mod wide_pairs;
+mod wide_point;
 
 pub use anchor::BlockImpulse;
 
-use enmm_lanes::LANES;
+use enmm_lanes::{LANES, Values};
 use rayon::prelude::*;
 
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
-use crate::mechanics::MassMatrix;
+use crate::mechanics::{BlockMotion, MassMatrix};
 
 use self::anchor::{Accumulators, Anchor, PackedImpulse};
 use self::order::{Sequence, SolverOrder};
 use self::subdomain::{PassKind, Subdomain, SubdomainPass};
 use self::support::SupportSystem;
 use self::wide_contact::{ContactView, WideContact};
-use super::{BoltRow, Boundary, NearPair, NearSides, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, JointLaw, NearPair, NearSides, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
 const CONTACTS: usize = 1024;
@@ -66,6 +67,42 @@ struct SolverView<'a> {
     mass_matrix: &'a MassMatrix,
     /// 1/√m of the covers along each axis, 0 where held.
     roots: &'a [Vector],
+    /// 1/√m of the covers, negative where held along one axis alone, and μ/m, 0 where held along x.
+    masses: &'a [Vector],
+}
+
+/// Motion at the start of an explicit step: what the springs of contacts answer to.
+pub struct Approach<'a> {
+    /// Velocities (m/s) of the covers without contact forces, and those of the last step.
+    pub predicted: &'a [Vector],
+    pub velocity: &'a [Vector],
+    /// Last step (s).
+    pub dt_last: f64,
+    /// Forward weight of the solver's own springs: 1 and the dashpot.
+    pub forward: f64,
+    /// Damping ratio of a dynamic stage.
+    pub damping: Option<f64>,
+    /// Joint laws.
+    pub laws: &'a [JointLaw],
+    /// Centroids of the blocks.
+    pub motion: &'a [BlockMotion],
+}
+
+impl Approach<'_> {
+    /// Damping 2ξ·√M (kg½/m½) of two blocks that bounce against each other, by the sum of their 1/M (1/kg·m).
+    #[inline(always)]
+    fn bouncing<L: Values>(&self, lanes: L, inverse: L::F) -> L::F {
+        let ratio = lanes.splat(2.0 * self.damping.unwrap_or(0.0));
+        lanes.keep_above(ratio / lanes.sqrt(inverse), inverse, lanes.splat(0.0))
+    }
+}
+
+/// What a step is solved with.
+#[derive(Clone, Copy)]
+struct SolverInputs<'a> {
+    mass_matrix: &'a MassMatrix,
+    options: &'a SolverOptions,
+    approach: &'a Approach<'a>,
 }
 
 /// What is solved in a step besides contacts.
@@ -92,8 +129,9 @@ pub struct OpenClose {
     block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
     cuts: Vec<(BlockId, CoverId)>,
-    /// 1/√m of the covers along each axis.
+    /// What a [`SolverView`] has of the covers.
     roots: Vec<Vector>,
+    masses: Vec<Vector>,
 }
 
 impl OpenClose {
@@ -105,11 +143,13 @@ impl OpenClose {
             + size_of_val(first_turn.as_slice())
             + size_of_val(contacts.as_slice())
             + size_of_val(slots.as_slice());
-        let cover_impulse = size_of_val(self.cover_impulse.as_slice()) + size_of_val(self.roots.as_slice());
+        let masses = size_of_val(self.roots.as_slice()) + size_of_val(self.masses.as_slice());
+        let cover_impulse = size_of_val(self.cover_impulse.as_slice());
         let block_impulse = size_of_val(self.block_impulse.as_slice());
         size_of_val(self.rows.as_slice())
             + sequence
             + cover_impulse
+            + masses
             + block_impulse
             + self.order.bytes()
             + self.supports.bytes()
@@ -120,6 +160,12 @@ impl OpenClose {
         self.order.clear();
         self.roots.clear();
         self.roots.extend(mass_matrix.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
+        let masses = mass_matrix.inverse.iter().zip(&mass_matrix.inertial).map(|(inverse, inertial)| {
+            let sign = if inverse.x == inverse.y { 1.0 } else { -1.0 };
+            Vector::new(sign * inverse.max().sqrt(), inertial * inverse.x)
+        });
+        self.masses.clear();
+        self.masses.extend(masses);
         self.supports.prepare(supports, rows, &self.roots);
     }
 
@@ -137,7 +183,7 @@ impl OpenClose {
         block_covers: &[u32],
         contacts: &[u32],
     ) {
-        let view = SolverView { mass_matrix, roots: &self.roots };
+        let view = SolverView { mass_matrix, roots: &self.roots, masses: &self.masses };
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, near_sides, &view);
             self.cuts.clear();
@@ -153,47 +199,50 @@ impl OpenClose {
         &mut self,
         mass_matrix: &MassMatrix,
         options: &SolverOptions,
+        approach: &Approach,
         contacts: &mut [VertexEdge],
         others: &mut OtherConstraints,
     ) -> SolverReport {
-        self.begin(mass_matrix, options, others);
-        self.pass(mass_matrix, contacts, options, PassKind::Prepare);
+        let inputs = SolverInputs { mass_matrix, options, approach };
+        self.begin(inputs, others);
+        self.pass(inputs, contacts, PassKind::Prepare);
         for (bolt, anchors) in others.bolts.iter().zip(&self.bolts) {
             let mut accumulators = all_blocks(&mut self.cover_impulse, &mut self.block_impulse);
             apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
-        let report = self.sweeps(mass_matrix, options, contacts, others);
+        let report = self.sweeps(inputs, contacts, others);
         self.finish(contacts, options.serial);
         self.supports.finish(others.rows);
         report
     }
 
     /// Nothing has moved but by supports.
-    fn begin(&mut self, mass_matrix: &MassMatrix, options: &SolverOptions, others: &OtherConstraints) {
-        let view = SolverView { mass_matrix, roots: &self.roots };
+    fn begin(&mut self, inputs: SolverInputs, others: &OtherConstraints) {
+        let SolverInputs { mass_matrix, options, .. } = inputs;
+        let view = SolverView { mass_matrix, roots: &self.roots, masses: &self.masses };
         self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
         self.cover_impulse.clear();
         self.cover_impulse.resize(self.roots.len(), Vector::zeros());
         self.block_impulse.clear();
         self.block_impulse.resize(mass_matrix.total.len(), PackedImpulse::default());
         self.bolts.clear();
-        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, &view))));
+        self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, b.arms[k], &view))));
         self.supports.load(others.rows, options.kick, &mut self.cover_impulse);
     }
 
     /// One pass over the rows, part by part.
     fn pass(
         &mut self,
-        mass_matrix: &MassMatrix,
+        SolverInputs { mass_matrix, options, approach }: SolverInputs,
         contacts: &[VertexEdge],
-        options: &SolverOptions,
         kind: PassKind,
     ) -> subdomain::SweepOutcome {
         let from = ContactView {
             contacts,
             turns: &self.sequence.contacts,
-            view: SolverView { mass_matrix, roots: &self.roots },
+            view: SolverView { mass_matrix, roots: &self.roots, masses: &self.masses },
             options,
+            approach,
         };
         Subdomain {
             wide_pairs: &mut self.sequence.wide_pairs,
@@ -208,13 +257,8 @@ impl OpenClose {
 
     /// Sweeps over all contacts until they settle; between two such sweeps only those are solved that have something to
     /// answer, until none has.
-    fn sweeps(
-        &mut self,
-        mass_matrix: &MassMatrix,
-        options: &SolverOptions,
-        contacts: &[VertexEdge],
-        others: &mut OtherConstraints,
-    ) -> SolverReport {
+    fn sweeps(&mut self, inputs: SolverInputs, contacts: &[VertexEdge], others: &mut OtherConstraints) -> SolverReport {
+        let SolverInputs { options, .. } = inputs;
         let mut report = SolverReport::default();
         let mut all = true;
         let any = !(self.rows.is_empty() && self.supports.is_empty() && self.bolts.is_empty());
@@ -224,8 +268,7 @@ impl OpenClose {
             let largest = block_pairs.map(|wide_pairs| wide_pairs.force).fold(f64::MIN_POSITIVE, f64::max);
             let turns = subdomain::ROUNDS * self.sequence.wide_pairs.len() as u32;
             let turn = report.sweeps * (turns + 1) + 1;
-            let outcome =
-                self.pass(mass_matrix, contacts, options, PassKind::Sweep { all, floor: LIGHT * largest, turn });
+            let outcome = self.pass(inputs, contacts, PassKind::Sweep { all, floor: LIGHT * largest, turn });
             let support_change = self.supports.sweep(&mut self.cover_impulse);
             let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
             let change = outcome.change.max(support_change).max(bolt_change);

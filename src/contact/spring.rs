@@ -1,5 +1,7 @@
 //! Springs of a contact in an explicit step: a normal or shear spring, and its linear response to a velocity (Eq. 14).
 
+use enmm_lanes::{Arithmetic, Values};
+
 /// β of the centred spring of a joint's own stiffness: the least that is stable at any step.
 const CENTRED: f64 = 0.25;
 
@@ -18,53 +20,48 @@ pub struct SoftSpring<T = f64> {
     pub kept: T,
 }
 
-/// A normal or shear spring with its velocity and time constants in a step.
+/// Normal or shear springs with their velocities and time constants in a step: one, or one of each lane.
 #[doc(alias = "penalty")]
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
+pub struct Spring<T = f64> {
     /// Stiffness (N/m per metre).
-    pub stiffness: f64,
+    pub stiffness: T,
     /// Inverse effective mass of the contact (m/kg).
-    pub compliance: f64,
+    pub compliance: T,
     /// Predicted relative velocity without contact forces (m/s).
-    pub approach: f64,
+    pub approach: T,
     /// Forward weight of the motion in the step: θ, or that of a joint's own spring.
-    pub forward: f64,
+    pub forward: T,
     /// Motion (m) that is added: minus a share of that of the last step.
-    pub lag: f64,
+    pub lag: T,
     /// Time (s) for which positions move.
-    pub dt: f64,
+    pub dt: T,
     /// Time (s) for which forces act.
-    pub kick: f64,
+    pub kick: T,
 }
 
-impl Spring {
+impl<T: Arithmetic> Spring<T> {
     /// Centres a stiffness that is a property of the joint (Eqs. 52, 53).
     ///
     /// The force belongs to the time at which it acts, so that a spring that the step resolves keeps its energy; a
     /// stiffer one gets a dashpot that grows towards that of θ. The motion in the last step was `last` (m), and
     /// `damping` is 2ξ·√M of the two blocks against each other (kg½/m½): it damps their bouncing.
+    #[inline(always)]
     #[must_use]
-    pub fn centred(self, last: f64, damping: f64) -> Self {
+    pub fn centred<L: Values<F = T>>(self, lanes: L, last: T, damping: T) -> Self {
+        let (centred, one) = (lanes.splat(CENTRED), lanes.splat(1.0));
         let stiff = self.stiffness * self.compliance * self.dt * self.kick;
-        let dashpot = if stiff > 1.0 { self.forward * (1.0 - 1.0 / stiff) } else { 0.0 };
-        let forward = CENTRED + dashpot + damping / (self.stiffness.sqrt() * self.dt);
-        Self { forward, lag: -CENTRED * last, ..self }
+        let dashpot = lanes.keep_above(self.forward * (one - one / stiff), stiff, one);
+        let forward = centred + dashpot + damping / (lanes.sqrt(self.stiffness) * self.dt);
+        Self { forward, lag: -(centred * last), ..self }
     }
 
-    /// Response of a linear spring with the force `stored` (N/m) at the start of the step.
+    /// Response with the force `stored` (N/m) at the start of the step; of a curved spring with the closure (m), whose
+    /// `stiffness` is then 1.
     #[inline(always)]
-    pub fn linear(&self, stored: f64) -> SoftSpring {
+    pub fn response(&self, stored: T) -> SoftSpring<T> {
         let a = self.stiffness * self.forward * self.dt;
         let aw = a * self.compliance * self.kick;
         SoftSpring { rest: stored - self.stiffness * self.lag - a * self.approach, rate: a, kept: aw }
-    }
-
-    /// Response of a curved spring with the closure `closure` (m) at the start of the step.
-    #[inline(always)]
-    pub fn curved(&self, closure: f64) -> SoftSpring {
-        let reach = self.forward * self.dt;
-        let rest = closure - self.lag - reach * self.approach;
-        SoftSpring { rest, rate: reach, kept: reach * self.compliance * self.kick }
     }
 }

@@ -1,9 +1,9 @@
 //! One contact between a boundary node and an edge: its data in a step (`VertexEdge`) and between steps
 //! (`ContactHistory`). The narrow phase makes it, the solver finds its forces.
 
-use crate::geometry::Vector;
+use crate::geometry::{Point, Vector};
 
-use super::{Closure, EdgeId, LawId, Limits, NodeId, Pair, SideId, SoftSpring};
+use super::{Closure, EdgeId, LawId, Limits, NodeId, Pair, SideId};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -52,21 +52,18 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// A contact during one step: geometry, springs and forces. The fields that the sweeps read come first.
+/// A contact during one step: geometry, springs and forces.
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
 #[derive(Debug, Clone, Copy, Default)]
-#[repr(C, align(64))]
 pub struct VertexEdge {
     /// The node and the position on the edge that it faces.
     pub pair: Pair,
+    /// Position of the node.
+    pub point: Point,
     /// Outward unit normal of the edge.
     pub normal: Vector,
-    /// Implicit responses of the normal and shear spring in an explicit step.
-    pub answers: [SoftSpring; 2],
-    /// Forces (N/m), normal and shear, that an explicit step starts from.
-    pub expected: [f64; 2],
     /// Limits of the joint law for this length.
     pub limits: Limits,
     /// Greatest closure of the normal spring (m); infinite for a linear one.
@@ -87,8 +84,11 @@ pub struct VertexEdge {
     pub fresh: bool,
 }
 
-// Six lines of the cache; sweeps read four.
-const _: () = assert!(size_of::<VertexEdge>() == 384 && std::mem::offset_of!(VertexEdge, history) == 256);
+// Large slopes have a million of them and more.
+const _: () = assert!(size_of::<VertexEdge>() <= 288);
+
+/// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
+const EXPECTED: f64 = 0.5;
 
 impl VertexEdge {
     /// Unit tangent of the edge.
@@ -96,12 +96,7 @@ impl VertexEdge {
     pub fn tangent(&self) -> Vector {
         Vector::new(-self.normal.y, self.normal.x)
     }
-}
 
-/// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
-const EXPECTED: f64 = 0.5;
-
-impl VertexEdge {
     /// Whether the normal spring follows a curve.
     #[inline(always)]
     pub fn closes_on_a_curve(&self) -> bool {
@@ -171,14 +166,14 @@ impl VertexEdge {
     /// Warm start: a contact that stays closed begins with its last force plus half of its last change, within its
     /// limit.
     #[inline(always)]
-    pub fn expect(&mut self) {
+    pub fn expected(&self) -> [f64; 2] {
         let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
         let normal = normal_force + EXPECTED * trend[0];
-        self.expected = [normal_force, shear_force];
         if normal > 0.0 && normal_force > trend[0].max(0.0) {
             let limit = self.shear_limit(normal);
-            self.expected = [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)];
+            return [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)];
         }
+        [normal_force, shear_force]
     }
 
     /// Stores the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and their change.

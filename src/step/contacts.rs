@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::contact::{self, Approach, NarrowPhase, SearchView};
+use crate::contact::{self, NarrowPhase, SearchView};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::Point;
 
-use super::{Regime, Step, StepTimes};
+use super::Step;
 
 /// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
 const SKIN: f64 = 0.1;
@@ -66,40 +66,29 @@ impl Step<'_> {
         workspace.seconds.search += clock.elapsed().as_secs_f64();
     }
 
-    /// Contacts nearer than `reach` (m), with how they answer in an explicit sub-step of some `times`; covers have
-    /// moved for `dt_last` (s) with the velocities of the state.
-    pub(super) fn entrance(&mut self, reach: f64, dt_last: f64, times: Option<StepTimes>) {
+    /// Contacts nearer than `reach` (m); an explicit sub-step is `dt` (s) long, and 0 stands for an implicit one.
+    pub(super) fn entrance(&mut self, reach: f64, dt: f64) {
         let clock = Instant::now();
-        let damping = match self.regime {
-            Regime::Dynamic { damping } => Some(damping),
-            Regime::Static { .. } => None,
-        };
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let size = model.covers.mesh.size;
         workspace.near_sides.list(&state.neighbours.pairs);
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
-        let predicted = &workspace.predicted;
-        let approach =
-            |StepTimes { dt, kick, .. }| Approach { predicted, dt, kick, forward: model.theta_in(dt), damping };
         let narrow = NarrowPhase {
             boundary: &model.boundary,
             position: &workspace.position,
             frames: &workspace.frames,
             star: &model.covers.star_position,
             displacement: &state.displacement,
-            mass_matrix: &workspace.mass_matrix,
-            motion: &workspace.motion,
             laws: &state.laws,
             trace_law: &workspace.trace_law,
             strength: state.drive.strength_factor(state.drive.share(self.time)),
             default_law: state.law_switch[model.default_law],
             velocity: &state.velocity,
-            dt_last,
             history: &state.contacts,
             cache: &workspace.contact_cache,
             penetrating: &workspace.penetrating,
-            approach: times.map(approach),
+            dt,
             size,
             rule: model.entrance,
             flush_cosine: model.entrance.flush_cosine(),

@@ -3,12 +3,12 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, Spring, VertexEdge};
+use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
-use super::{Approach, CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase, right_of};
+use super::{CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase, right_of};
 
 /// Makes contacts from accepted candidates: compiled for every kind of lanes.
 struct Make<'a> {
@@ -53,7 +53,6 @@ impl NarrowPhase<'_> {
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let blocks = [boundary.block[point], boundary.block[edge]];
-        let arms = blocks.map(|b| p - self.motion[b].centre);
         let Tributary { length, bonded, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law].stiffness(length, penalty);
@@ -65,17 +64,15 @@ impl NarrowPhase<'_> {
         };
         let history = ContactHistory { edge: candidate.edge, share, ..history };
         let gap = candidate.gap + history.offset;
-        let mut pair = Pair { blocks, covers, weights, arms, z: [0.0; 2] };
-        let compliance = pair.weigh(self.mass_matrix, [normal, candidate.tangent]);
+        let pair = Pair { blocks, covers, weights };
         if self.laws[law].penalty[0] {
             stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
         }
         let gap = gap - history.rest;
         *contact = VertexEdge {
             pair,
+            point: p,
             normal,
-            answers: Default::default(),
-            expected: [0.0; 2],
             limits: self.laws[law].limits(bonded, history.intact).times(self.strength),
             closure_max,
             gap,
@@ -86,48 +83,14 @@ impl NarrowPhase<'_> {
             torn: false,
             fresh: candidate.held.is_none(),
         };
-        if let Some(approach) = &self.approach {
-            self.answer(contact, compliance, approach);
-        }
     }
 
     /// Factor on the default stiffness at the penetration that a step would reach from a gap (m) that opens at some
     /// rate (m/s).
     #[inline(always)]
     fn hardening(&self, gap: f64, rate: f64) -> f64 {
-        let reached = gap + rate * self.approach.as_ref().map_or(0.0, |approach| approach.dt);
+        let reached = gap + rate * self.dt;
         1.0 + (reached.min(0.0) / (self.rule.hardens * self.size)).powi(2)
-    }
-
-    /// Spring responses of a contact with these inverse effective masses (m/kg) in an explicit step. A joint's own
-    /// springs are centred in a dynamic stage.
-    #[inline(always)]
-    fn answer(&self, contact: &mut VertexEdge, compliance: [f64; 2], approach: &Approach) {
-        let Approach { predicted, dt, kick, forward, damping } = *approach;
-        let speed = contact.relative(predicted);
-        let spring = |k: usize| {
-            let (stiffness, compliance, approach) = (contact.stiffness[k], compliance[k], speed[k]);
-            Spring { stiffness, compliance, approach, forward, lag: 0.0, dt, kick }
-        };
-        let (mut normal, mut shear) = (spring(0), spring(1));
-        let physical = self.laws[contact.law].penalty.map(|penalty| !penalty);
-        if let Some(ratio) = damping
-            && physical != [false; 2]
-        {
-            let last = contact.relative(self.velocity).map(|v| v * self.dt_last);
-            let inverse: f64 = contact.pair.blocks.map(|b| self.mass_matrix.inverse_total[b]).iter().sum();
-            let bouncing = if inverse > 0.0 { 2.0 * ratio / inverse.sqrt() } else { 0.0 };
-            let centre =
-                |k: usize, spring: Spring| if physical[k] { spring.centred(last[k], bouncing) } else { spring };
-            (normal, shear) = (centre(0, normal), centre(1, shear));
-        }
-        let closing = if contact.closes_on_a_curve() {
-            normal.curved(-contact.gap)
-        } else {
-            normal.linear(-contact.stiffness[0] * contact.gap)
-        };
-        contact.answers = [closing, shear.linear(contact.shear_stored())];
-        contact.expect();
     }
 
     /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off

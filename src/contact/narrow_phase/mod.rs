@@ -16,7 +16,7 @@ use enmm_lanes::dispatch;
 use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector, segment};
-use crate::mechanics::{BlockMotion, MassMatrix, StressField};
+use crate::mechanics::StressField;
 
 use frame::EdgeFrame;
 use near_sides::{NearRun, NearSide};
@@ -56,10 +56,6 @@ pub struct NarrowPhase<'a> {
     pub star: &'a [Point],
     /// Displacements of the covers (m).
     pub displacement: &'a [Vector],
-    /// Masses.
-    pub mass_matrix: &'a MassMatrix,
-    /// Centroids of the blocks.
-    pub motion: &'a [BlockMotion],
     /// Joint laws.
     pub laws: &'a [JointLaw],
     /// Law of each joint trace, after switches.
@@ -70,16 +66,14 @@ pub struct NarrowPhase<'a> {
     pub default_law: LawId,
     /// Velocities (m/s) of the covers during the last step.
     pub velocity: &'a [Vector],
-    /// Last step (s).
-    pub dt_last: f64,
     /// Contacts of the last step, ordered by node and side.
     pub history: &'a [ContactHistory],
     /// Index of these contacts by node.
     pub cache: &'a ContactCache,
     /// Those in penetration, by node and by node segment.
     pub penetrating: &'a PenetratingContacts,
-    /// Velocities and step of an explicit step; `None` in an implicit one.
-    pub approach: Option<Approach<'a>>,
+    /// Step (s) for which the default stiffness looks ahead; 0 in an implicit step.
+    pub dt: f64,
     /// Mesh size (m).
     pub size: f64,
     /// Constants.
@@ -94,20 +88,6 @@ pub struct NarrowPhase<'a> {
     pub in_situ: Option<&'a StressField>,
     /// Whether to keep to the calling thread.
     pub serial: bool,
-}
-
-/// Velocities and step for the springs of an explicit step.
-pub struct Approach<'a> {
-    /// Velocities (m/s) of the covers without contact forces.
-    pub predicted: &'a [Vector],
-    /// Step (s).
-    pub dt: f64,
-    /// Time (s) for which forces act.
-    pub kick: f64,
-    /// Forward weight of the solver's own springs: 1 and the dashpot.
-    pub forward: f64,
-    /// Damping ratio of a dynamic stage.
-    pub damping: Option<f64>,
 }
 
 /// Index of the contacts of the last step by node; their list is ordered by node and side.

@@ -3,6 +3,7 @@
 use crate::contact::Pair;
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
+use crate::mechanics::MassMatrix;
 
 use super::SolverView;
 
@@ -82,10 +83,9 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Body `k` of a pair.
-    #[inline(always)]
-    pub fn new(pair: &Pair, k: usize, view: &SolverView) -> Self {
-        let SolverView { mass_matrix, roots } = view;
+    /// Point `k` of a pair, at the end of an `arm` (m) from the centroid of its block.
+    pub fn new(pair: &Pair, k: usize, arm: Vector, view: &SolverView) -> Self {
+        let SolverView { mass_matrix, roots, .. } = view;
         let (block, covers) = (pair.blocks[k], pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
@@ -94,14 +94,13 @@ impl Anchor {
         if !mass_matrix.is_free(block) {
             return Self { covers, weights, block: None, ..Self::default() };
         }
-        let (lever, mass_share) = lever_and_share(pair, k, view);
         Self {
             covers,
             weights,
             block: Some(block),
-            lever,
-            mass_share,
-            common: common_share(view, block),
+            lever: Vector::new(-arm.y, arm.x),
+            mass_share: pair.z(k, mass_matrix) * mass_matrix.inverse_total[block],
+            common: common_share(mass_matrix, block),
             spin: mass_matrix.spin[block],
         }
     }
@@ -133,19 +132,9 @@ impl Anchor {
     }
 }
 
-/// J90·(arm from the block's centroid) (m) and z/M (m/kg) of point `k` of a pair; 0 on a held block.
-#[inline(always)]
-pub fn lever_and_share(pair: &Pair, k: usize, view: &SolverView) -> (Vector, f64) {
-    let (block, arm) = (pair.blocks[k], pair.arms[k]);
-    if !view.mass_matrix.is_free(block) {
-        return (Vector::zeros(), 0.0);
-    }
-    (Vector::new(-arm.y, arm.x), pair.z[k] * view.mass_matrix.inverse_total[block])
-}
-
 /// (1 + S/M)/M of a block (m/kg), 0 of a held one.
 #[inline(always)]
-pub fn common_share(view: &SolverView, block: BlockId) -> f64 {
-    let inverse = view.mass_matrix.inverse_total[block];
-    (1.0 + view.mass_matrix.square[block] * inverse) * inverse
+pub fn common_share(mass_matrix: &MassMatrix, block: BlockId) -> f64 {
+    let inverse = mass_matrix.inverse_total[block];
+    (1.0 + mass_matrix.square[block] * inverse) * inverse
 }

@@ -5,12 +5,52 @@
 //! [`OpenClose`](super::OpenClose), which solves the same equations fast, and which `tests/contact_reference.rs` holds
 //! to this. Supports and bolts, which answer between its sweeps, are not repeated here.
 
-use crate::contact::{Pair, SoftSpring, VertexEdge};
+use enmm_lanes::First;
+
+use crate::contact::{Pair, SoftSpring, Spring, VertexEdge};
 use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 
-use super::{BlockImpulse, LIGHT, SolverOptions, SolverReport};
+use super::{Approach, BlockImpulse, LIGHT, SolverOptions, SolverReport};
+
+/// What a contact answers with in a step, beside what [`VertexEdge`] says of it.
+#[derive(Debug, Clone)]
+struct Equation {
+    /// Arms from the centroids of the blocks to the node (m).
+    arms: [Vector; 2],
+    /// z = Σwμ/m of both blocks.
+    z: [f64; 2],
+    /// Responses of the normal and of the shear spring.
+    answers: [SoftSpring; 2],
+}
+
+impl Equation {
+    fn new(contact: &VertexEdge, masses: &MassMatrix, options: &SolverOptions, approach: &Approach) -> Self {
+        let (pair, axes) = (&contact.pair, [contact.normal, contact.tangent()]);
+        let arms = pair.blocks.map(|block| contact.point - approach.motion[block].centre);
+        let compliance = axes.map(|axis| pair.compliance(masses, &arms, axis));
+        let speed = contact.relative(approach.predicted);
+        let last = contact.relative(approach.velocity).map(|v| v * approach.dt_last);
+        let inverse: f64 = pair.blocks.map(|block| masses.inverse_total[block]).iter().sum();
+        let penalty = approach.laws[contact.law].penalty;
+        let spring = |axis: usize| {
+            let (stiffness, compliance, speed) = (contact.stiffness[axis], compliance[axis], speed[axis]);
+            let SolverOptions { dt, kick, .. } = *options;
+            let own = Spring { stiffness, compliance, approach: speed, forward: approach.forward, lag: 0.0, dt, kick };
+            let is_centred = approach.damping.is_some() && !penalty[axis];
+            if is_centred { own.centred(First, last[axis], approach.bouncing(First, inverse)) } else { own }
+        };
+        let normal = spring(0);
+        let closing = if contact.closes_on_a_curve() {
+            Spring { stiffness: 1.0, ..normal }.response(-contact.gap)
+        } else {
+            normal.response(-contact.stiffness[0] * contact.gap)
+        };
+        let answers = [closing, spring(1).response(contact.shear_stored())];
+        Self { arms, z: [0, 1].map(|k| pair.z(k, masses)), answers }
+    }
+}
 
 /// What the impulses of all contacts so far have done to covers and blocks.
 #[derive(Debug, Clone)]
@@ -33,7 +73,7 @@ impl<'a> Impulses<'a> {
     }
 
     /// Velocity (m/s) that they give to point `k` of a pair: all of Eq. 17 but v* of the start, which the springs know.
-    fn velocity(&self, pair: &Pair, k: usize) -> Vector {
+    fn velocity(&self, pair: &Pair, k: usize, equation: &Equation) -> Vector {
         let own = cover::sample(&pair.covers[k], &pair.weights[k], &self.increment);
         let (block, masses) = (pair.blocks[k], self.mass_matrix);
         if !masses.is_free(block) {
@@ -41,12 +81,12 @@ impl<'a> Impulses<'a> {
         }
         let BlockImpulse { impulse, weighted, moment } = self.block_impulse[block];
         let (mass, square) = (masses.total[block], masses.square[block]);
-        let shift = impulse / mass - impulse * (pair.z[k] / mass) - (weighted - impulse * (square / mass)) / mass;
-        own + shift + turned(pair.arms[k]) * (masses.spin[block] * moment)
+        let shift = impulse / mass - impulse * (equation.z[k] / mass) - (weighted - impulse * (square / mass)) / mass;
+        own + shift + turned(equation.arms[k]) * (masses.spin[block] * moment)
     }
 
     /// Point `k` of a pair takes an impulse (N·s/m).
-    fn push(&mut self, pair: &Pair, k: usize, impulse: Vector) {
+    fn push(&mut self, pair: &Pair, k: usize, equation: &Equation, impulse: Vector) {
         for (&i, weight) in pair.covers[k].iter().zip(pair.weights[k]) {
             self.increment[i] += self.mass_matrix.inverse[i].component_mul(&impulse) * weight;
         }
@@ -54,16 +94,16 @@ impl<'a> Impulses<'a> {
         if self.mass_matrix.is_free(block) {
             let sums = &mut self.block_impulse[block];
             sums.impulse += impulse;
-            sums.weighted += impulse * pair.z[k];
-            sums.moment += pair.arms[k].perp(&impulse);
+            sums.weighted += impulse * equation.z[k];
+            sums.moment += equation.arms[k].perp(&impulse);
         }
     }
 
     /// Both bodies of a contact take the impulses of forces (N/m) normal and shear that act for `kick` (s).
-    fn push_both(&mut self, contact: &VertexEdge, [normal, shear]: [f64; 2], kick: f64) {
+    fn push_both(&mut self, contact: &VertexEdge, equation: &Equation, [normal, shear]: [f64; 2], kick: f64) {
         let impulse = (contact.normal * normal + contact.tangent() * shear) * kick;
-        self.push(&contact.pair, 0, impulse);
-        self.push(&contact.pair, 1, -impulse);
+        self.push(&contact.pair, 0, equation, impulse);
+        self.push(&contact.pair, 1, equation, -impulse);
     }
 }
 
@@ -72,18 +112,22 @@ impl<'a> Impulses<'a> {
 pub fn solve<'a>(
     mass_matrix: &'a MassMatrix,
     options: &SolverOptions,
+    approach: &Approach,
     contacts: &mut [VertexEdge],
 ) -> (Impulses<'a>, SolverReport) {
     let mut impulses = Impulses::none(mass_matrix);
-    for contact in &mut *contacts {
-        [contact.history.normal_force, contact.history.shear_force] = contact.expected;
-        impulses.push_both(contact, contact.expected, options.kick);
+    let equation = |contact: &VertexEdge| Equation::new(contact, mass_matrix, options, approach);
+    let equations: Vec<Equation> = contacts.iter().map(equation).collect();
+    for (contact, equation) in contacts.iter_mut().zip(&equations) {
+        let expected = contact.expected();
+        [contact.history.normal_force, contact.history.shear_force] = expected;
+        impulses.push_both(contact, equation, expected, options.kick);
     }
     let mut report = SolverReport::default();
     let mut changes = vec![0.0; contacts.len()];
     while report.sweeps < options.sweeps_max {
-        for (contact, change) in contacts.iter_mut().zip(&mut changes) {
-            *change = solve_contact(contact, &mut impulses, options.kick);
+        for ((contact, equation), change) in contacts.iter_mut().zip(&equations).zip(&mut changes) {
+            *change = solve_contact(contact, equation, &mut impulses, options.kick);
         }
         report.sweeps += 1;
         report.contacts_solved += contacts.len() as u64;
@@ -96,14 +140,14 @@ pub fn solve<'a>(
 }
 
 /// One contact takes its new forces: open, slip or lock; returns the larger of their changes (N/m).
-fn solve_contact(contact: &mut VertexEdge, impulses: &mut Impulses, kick: f64) -> f64 {
-    let velocity = impulses.velocity(&contact.pair, 0) - impulses.velocity(&contact.pair, 1);
+fn solve_contact(contact: &mut VertexEdge, equation: &Equation, impulses: &mut Impulses, kick: f64) -> f64 {
+    let velocity = impulses.velocity(&contact.pair, 0, equation) - impulses.velocity(&contact.pair, 1, equation);
     let before = forces(contact);
-    let [normal, shear] = asked(contact, velocity);
+    let [normal, shear] = asked(contact, equation, velocity);
     contact.decide(normal, shear);
     let after = forces(contact);
     let change = [after[0] - before[0], after[1] - before[1]];
-    impulses.push_both(contact, change, kick);
+    impulses.push_both(contact, equation, change, kick);
     change[0].abs().max(change[1].abs())
 }
 
@@ -112,14 +156,14 @@ fn solve_contact(contact: &mut VertexEdge, impulses: &mut Impulses, kick: f64) -
 ///
 /// Of each spring [`SoftSpring`] holds what no sweep changes: `rest` = −k(g + θΔt·u*), or T_hist − kθΔt·u* along the
 /// edge, u* being the velocity without contact forces; `rate` = kθΔt; `kept` = kθΔt·W times the kick.
-fn asked(contact: &VertexEdge, u: Vector) -> [f64; 2] {
+fn asked(contact: &VertexEdge, equation: &Equation, u: Vector) -> [f64; 2] {
     let along = [u.dot(&contact.normal), u.dot(&contact.tangent())];
     let force = forces(contact);
     let [normal, shear] = [0, 1].map(|axis| {
-        let SoftSpring { rest, rate, kept } = contact.answers[axis];
+        let SoftSpring { rest, rate, kept } = equation.answers[axis];
         rest - rate * along[axis] + kept * force[axis]
     });
-    let [kept_normal, kept_shear] = [contact.answers[0].kept, contact.answers[1].kept];
+    let [kept_normal, kept_shear] = [equation.answers[0].kept, equation.answers[1].kept];
     // Of a joint that closes on a curve the sum above is the closure from which the force follows (Eq. 35).
     let curve = contact.closure();
     let normal =

@@ -1,37 +1,19 @@
 //! Contacts side by side, one of each of eight block pairs, as the iteration solves them (Eqs. 14, 15, 17).
 
-use enmm_lanes::{LANES, Lanes, Places, Values, prefetch};
+use enmm_lanes::{Arithmetic, LANES, Values, prefetch};
 
-use crate::contact::{Limits, Pair, SoftSpring, VertexEdge};
-use crate::cover::{BlockId, CoverId};
+use crate::contact::{Limits, SoftSpring, Spring, VertexEdge};
+use crate::cover::CoverId;
 use crate::geometry::Vector;
 
-use super::anchor::lever_and_share;
 use super::wide_block::{F64x8, WideBlock};
-use super::{SolverOptions, SolverView};
+use super::wide_point::{Bodies, Points};
+use super::{Approach, SolverOptions, SolverView};
 
 /// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
 const FAR: usize = 16_384;
 /// Positions by which a contact is fetched ahead.
 const AHEAD: usize = 8;
-
-/// One material point of each contact. Numbers begin at lines of the cache.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(C, align(64))]
-struct Points {
-    /// w/√m.
-    weights: [F64x8; 3],
-    /// J90·(arm from the block's centroid) (m).
-    lever: [F64x8; 2],
-    /// z/M (m/kg).
-    mass_share: F64x8,
-    /// Covers, from the first one of the part of the order on.
-    covers: [Places; 3],
-    /// Lanes, a bit each, whose covers are held along one axis alone, by axis; no weight is on what is held along both.
-    held: [[u8; 2]; 3],
-    /// Whether one of them is.
-    holds: bool,
-}
 
 /// Contacts of eight block pairs. A lane without one bears nothing and repeats the covers of the first lane.
 #[doc(alias = "SIMD")]
@@ -56,6 +38,42 @@ pub struct WideContact {
     curved: bool,
 }
 
+/// Contacts of a row at the start of a step.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct Start {
+    /// Positions of the nodes (m).
+    point: [F64x8; 2],
+    /// Springs normal and shear (N/m per metre), and the forces (N/m) that they store, or the closure (m).
+    stiffness: [F64x8; 2],
+    stored: [F64x8; 2],
+    /// Lanes, a bit each, whose spring is the joint's own in a dynamic stage, whose spring follows a curve (never the
+    /// shear spring), and whose points lie in one block.
+    own: [u8; 2],
+    closing: [u8; 2],
+    joined: u8,
+}
+
+impl Start {
+    #[inline(always)]
+    fn take(&mut self, lane: usize, contact: &VertexEdge, approach: &Approach) {
+        let VertexEdge { pair, point, stiffness, gap, .. } = contact;
+        let closes_on_a_curve = contact.closes_on_a_curve();
+        let stored = [if closes_on_a_curve { -gap } else { -stiffness[0] * gap }, contact.shear_stored()];
+        for k in 0..2 {
+            self.point[k][lane] = point[k];
+            self.stiffness[k][lane] = stiffness[k];
+            self.stored[k][lane] = stored[k];
+        }
+        self.closing[0] |= u8::from(closes_on_a_curve) << lane;
+        self.joined |= u8::from(pair.blocks[0] == pair.blocks[1]) << lane;
+        if approach.damping.is_some() {
+            let penalty = approach.laws[contact.law].penalty;
+            (0..2).for_each(|k| self.own[k] |= u8::from(!penalty[k]) << lane);
+        }
+    }
+}
+
 /// What a row is made from.
 pub struct ContactView<'a> {
     /// Contacts of the step, and the one of each turn.
@@ -65,6 +83,8 @@ pub struct ContactView<'a> {
     pub view: SolverView<'a>,
     /// Choices.
     pub options: &'a SolverOptions,
+    /// Motion at the start.
+    pub approach: &'a Approach<'a>,
 }
 
 impl ContactView<'_> {
@@ -80,32 +100,32 @@ impl ContactView<'_> {
 
 impl WideContact {
     /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected;
-    /// `first_block` is the block of each lane that its first points lie in.
+    /// first and second points lie in the blocks of a lane in their order.
     #[inline(always)]
-    pub fn load<L: Lanes>(
+    pub fn load<L: Values>(
         &mut self,
         lanes: L,
         turns: [u32; 2],
-        first_block: &[BlockId; LANES],
+        blocks: &[Bodies; 2],
         from: &ContactView,
         first_cover: CoverId,
     ) {
         self.turns = turns;
-        for points in &mut self.points {
-            (points.covers, points.held, points.holds) = ([Places::default(); 3], [[0; 2]; 3], false);
-        }
+        self.points.iter_mut().for_each(Points::begin);
         self.curved = false;
+        let mut start = Start::default();
         let contacts = self.of(from.turns);
         if from.turns.len() > FAR {
             from.fetch(turns.map(|turn| turn as usize + AHEAD));
         }
         for (lane, &contact) in contacts.iter().enumerate() {
-            self.take(lane, &from.contacts[contact as usize], first_block, from, first_cover);
+            self.take(lane, &from.contacts[contact as usize], &mut start, blocks, from, first_cover);
         }
         (contacts.len()..LANES).for_each(|lane| self.leave_out(lane));
-        self.divide(lanes);
-        if self.curved {
-            self.take_curved(from);
+        self.answer(lanes, &start, blocks, from, first_cover);
+        if start.joined != 0 {
+            let [first, second] = &mut self.points;
+            first.join(start.joined, second);
         }
         debug_assert!(self.is_apart(contacts.len()), "two contacts of one row share a cover");
     }
@@ -118,10 +138,7 @@ impl WideContact {
 
     /// Whether no two of the first `count` lanes push the same cover.
     fn is_apart(&self, count: usize) -> bool {
-        let covers = |lane: usize| {
-            let covers = self.points.iter().flat_map(|points| points.covers.iter().zip(&points.weights));
-            covers.filter(move |(_, weights)| weights[lane] != 0.0).map(move |(covers, _)| covers.index(lane))
-        };
+        let covers = |lane: usize| self.points.iter().flat_map(move |points| points.moved(lane));
         (0..count).all(|a| (0..a).all(|b| covers(a).all(|i| covers(b).all(|j| i != j))))
     }
 
@@ -130,23 +147,20 @@ impl WideContact {
         &mut self,
         lane: usize,
         contact: &VertexEdge,
-        first_block: &[BlockId; LANES],
+        start: &mut Start,
+        blocks: &[Bodies; 2],
         from: &ContactView,
         first_cover: CoverId,
     ) {
-        for (answers, answer) in self.answers.iter_mut().zip(&contact.answers) {
-            answers.take(lane, answer);
-        }
-        let turned = contact.pair.blocks[0] != first_block[lane];
+        let pair = &contact.pair;
+        let turned = pair.blocks[0] != blocks[0].blocks[lane];
         let [first, second] = if turned { [1, 0] } else { [0, 1] };
-        self.points[0].take(lane, &contact.pair, first, &from.view, first_cover);
-        self.points[1].take(lane, &contact.pair, second, &from.view, first_cover);
-        if contact.pair.blocks[0] == contact.pair.blocks[1] {
-            self.join_points(lane);
-        }
+        self.points[0].take(lane, pair, first, first_cover);
+        self.points[1].take(lane, pair, second, first_cover);
         let normal = if turned { -contact.normal } else { contact.normal };
         (self.normal[0][lane], self.normal[1][lane]) = (normal.x, normal.y);
-        (self.force[0][lane], self.force[1][lane]) = (contact.expected[0], contact.expected[1]);
+        [self.force[0][lane], self.force[1][lane]] = contact.expected();
+        start.take(lane, contact, from.approach);
         let (friction, cohesion, tension) = match contact.limits {
             Limits::MohrCoulomb { friction, cohesion, tension } => (friction, cohesion, tension),
             Limits::BartonBandis { .. } => (0.0, 0.0, 0.0),
@@ -156,54 +170,67 @@ impl WideContact {
         self.curved |= contact.is_curved();
     }
 
-    /// Makes forces of what the springs ask for.
-    #[inline(always)]
-    fn divide<L: Lanes>(&mut self, lanes: L) {
-        let one = lanes.splat(1.0);
-        for SoftSpring { rest, rate, kept } in &mut self.answers {
-            let share = one / (one + lanes.load(kept));
-            lanes.store(lanes.load(rest) * share, rest);
-            lanes.store(lanes.load(rate) * share, rate);
-            lanes.store(lanes.load(kept) * share, kept);
-        }
-    }
-
-    /// Takes again what curved springs ask for, which is no force.
-    #[cold]
-    #[inline(never)]
-    fn take_curved(&mut self, from: &ContactView) {
-        let contacts = self.of(from.turns).iter().map(|&contact| &from.contacts[contact as usize]);
-        for (lane, contact) in contacts.enumerate().filter(|(_, contact)| contact.closes_on_a_curve()) {
-            self.answers[0].take(lane, &contact.answers[0]);
-        }
-    }
-
     /// Leaves a lane without contact.
     #[inline(always)]
     fn leave_out(&mut self, lane: usize) {
         for k in 0..2 {
             self.points[k].leave_out(lane);
-            self.answers[k].take(lane, &SoftSpring::default());
             (self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0);
         }
         (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
     }
 
-    /// Both points lie in one block: its motion as a whole is felt and pushed by their difference, and covers that they
-    /// share once, by the first point.
-    #[cold]
-    #[inline(never)]
-    fn join_points(&mut self, lane: usize) {
-        let [a, b] = &mut self.points;
+    /// Makes of what has been taken what the springs answer with in this step (Eqs. 14, 15).
+    #[inline(always)]
+    fn answer<L: Values>(
+        &mut self,
+        lanes: L,
+        start: &Start,
+        blocks: &[Bodies; 2],
+        from: &ContactView,
+        first_cover: CoverId,
+    ) {
+        let normal = [lanes.load(&self.normal[0]), lanes.load(&self.normal[1])];
+        let ContactView { view, options, approach: motion, .. } = *from;
+        let part = first_cover.index()..;
+        let approach = self.relative(lanes, normal, &motion.predicted[part.clone()]);
+        let mut last = [lanes.splat(0.0); 2];
+        if start.own != [0; 2] {
+            last = self.relative(lanes, normal, &motion.velocity[part.clone()]);
+        }
+        let at = [lanes.load(&start.point[0]), lanes.load(&start.point[1])];
+        let tables = [&view.roots[part.clone()], &view.masses[part]];
+        let a = self.points[0].weigh(lanes, at, normal, &blocks[0], tables);
+        let b = self.points[1].weigh(lanes, at, normal, &blocks[1], tables);
+        let (dt, kick, one) = (lanes.splat(options.dt), lanes.splat(options.kick), lanes.splat(1.0));
         for k in 0..2 {
-            a.lever[k][lane] -= std::mem::take(&mut b.lever[k][lane]);
+            let (stiffness, compliance) = (lanes.load(&start.stiffness[k]), a[k] + b[k]);
+            let (approach, forward, lag) = (approach[k], lanes.splat(motion.forward), lanes.splat(0.0));
+            let mut spring = Spring { stiffness, compliance, approach, forward, lag, dt, kick };
+            if start.own[k] != 0 {
+                let inverse = lanes.load(&blocks[0].share) + lanes.load(&blocks[1].share);
+                let bouncing = motion.bouncing(lanes, inverse);
+                let centred = spring.centred(lanes, last[k] * lanes.splat(motion.dt_last), bouncing);
+                spring.forward = lanes.select(start.own[k], centred.forward, forward);
+                spring.lag = lanes.select(start.own[k], centred.lag, lag);
+            }
+            let closing = start.closing[k];
+            spring.stiffness = lanes.select(closing, one, stiffness);
+            let SoftSpring { rest, rate, kept } = spring.response(lanes.load(&start.stored[k]));
+            // Forces at once, but for a closure, of which a curve makes the force.
+            let share = lanes.select(closing, one, one / (one + kept));
+            lanes.store(rest * share, &mut self.answers[k].rest);
+            lanes.store(rate * share, &mut self.answers[k].rate);
+            lanes.store(kept * share, &mut self.answers[k].kept);
         }
-        a.mass_share[lane] -= std::mem::take(&mut b.mass_share[lane]);
-        for (i, j) in
-            (0..9).map(|k| (k / 3, k % 3)).filter(|&(i, j)| a.covers[i].index(lane) == b.covers[j].index(lane))
-        {
-            a.weights[i][lane] -= std::mem::take(&mut b.weights[j][lane]);
-        }
+    }
+
+    /// Normal and tangential velocities (m/s) of the first points relative to the second ones, in a field of the covers
+    /// of the part, while weights are those of positions.
+    #[inline(always)]
+    fn relative<L: Values>(&self, lanes: L, normal: [L::F; 2], field: &[Vector]) -> [L::F; 2] {
+        let (a, b) = (self.points[0].sample(lanes, field), self.points[1].sample(lanes, field));
+        along(normal, [a[0] - b[0], a[1] - b[1]])
     }
 
     /// Leaves force and state in the contact of a lane.
@@ -305,110 +332,17 @@ impl WideContact {
     }
 }
 
-impl Points {
-    #[inline(always)]
-    fn take(&mut self, lane: usize, pair: &Pair, k: usize, view: &SolverView, first_cover: CoverId) {
-        for (j, &cover) in pair.covers[k].iter().enumerate() {
-            let root = view.roots[cover];
-            self.covers[j].set(lane, cover.number() - first_cover.number());
-            self.weights[j][lane] = pair.weights[k][j] * root.x.max(root.y);
-            if root.x != root.y {
-                let axis = usize::from(root.y == 0.0);
-                self.held[j][axis] |= 1 << lane;
-                self.holds = true;
-            }
-        }
-        let (lever, mass_share) = lever_and_share(pair, k, view);
-        (self.lever[0][lane], self.lever[1][lane], self.mass_share[lane]) = (lever.x, lever.y, mass_share);
-    }
-
-    #[inline(always)]
-    fn leave_out(&mut self, lane: usize) {
-        for k in 0..3 {
-            self.covers[k].set(lane, self.covers[k].index(0));
-            self.weights[k][lane] = 0.0;
-        }
-        (self.lever[0][lane], self.lever[1][lane], self.mass_share[lane]) = (0.0, 0.0, 0.0);
-    }
-
-    /// What their covers have of their own: nothing where they are held, whatever was pushed there.
-    #[inline(always)]
-    fn cover_impulse<L: Values>(&self, lanes: L, cover_impulse: &[Vector]) -> [[L::F; 2]; 3] {
-        let mut found = [
-            lanes.gather_from(cover_impulse, &self.covers[0]),
-            lanes.gather_from(cover_impulse, &self.covers[1]),
-            lanes.gather_from(cover_impulse, &self.covers[2]),
-        ];
-        if self.holds {
-            for (found, held) in found.iter_mut().zip(&self.held) {
-                for (found, &held) in found.iter_mut().zip(held) {
-                    let mut values = [0.0; LANES];
-                    lanes.store(*found, &mut values);
-                    hold(&mut values, held);
-                    *found = lanes.load(&values);
-                }
-            }
-        }
-        found
-    }
-
-    /// Velocities (m/s) that all impulses so far give them.
-    #[inline(always)]
-    fn velocity<L: Values>(&self, lanes: L, cover_impulse: &[[L::F; 2]; 3], side: &WideBlock<L>) -> [L::F; 2] {
-        let [w, u, v] = [lanes.load(&self.weights[0]), lanes.load(&self.weights[1]), lanes.load(&self.weights[2])];
-        let share = side.common - lanes.load(&self.mass_share);
-        let turn = side.spin * side.moment;
-        let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
-        let x = (w * cover_impulse[0][0] + u * cover_impulse[1][0]) + v * cover_impulse[2][0];
-        let y = (w * cover_impulse[0][1] + u * cover_impulse[1][1]) + v * cover_impulse[2][1];
-        let common = [
-            side.impulse[0] * share - side.unit * side.weighted[0] + lever[0] * turn,
-            side.impulse[1] * share - side.unit * side.weighted[1] + lever[1] * turn,
-        ];
-        [x + common[0], y + common[1]]
-    }
-
-    /// They take impulses (N·s/m).
-    #[inline(always)]
-    fn push<L: Values>(
-        &self,
-        lanes: L,
-        [x, y]: [L::F; 2],
-        before: &[[L::F; 2]; 3],
-        side: &mut WideBlock<L>,
-        cover_impulse: &mut [Vector],
-    ) {
-        for (k, before) in before.iter().enumerate() {
-            let w = lanes.load(&self.weights[k]);
-            lanes.scatter_to([before[0] + w * x, before[1] + w * y], cover_impulse, &self.covers[k]);
-        }
-        let mass_share = lanes.load(&self.mass_share);
-        let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
-        side.impulse = [side.impulse[0] + side.unit * x, side.impulse[1] + side.unit * y];
-        side.weighted = [side.weighted[0] + mass_share * x, side.weighted[1] + mass_share * y];
-        side.moment = side.moment + (lever[0] * x + lever[1] * y);
-    }
+/// Normal and tangential components of vectors.
+#[inline(always)]
+fn along<T: Arithmetic>([x, y]: [T; 2], vector: [T; 2]) -> [T; 2] {
+    [vector[0] * x + vector[1] * y, x * vector[1] - y * vector[0]]
 }
 
 impl SoftSpring<F64x8> {
-    #[inline(always)]
-    fn take(&mut self, lane: usize, answer: &SoftSpring) {
-        (self.rest[lane], self.rate[lane], self.kept[lane]) = (answer.rest, answer.rate, answer.kept);
-    }
-
     /// What springs ask for at velocities (m/s) by all impulses so far.
     #[inline(always)]
     fn ask<L: Values>(&self, lanes: L, velocity: L::F, force: L::F) -> L::F {
         lanes.load(&self.rest) - lanes.load(&self.rate) * velocity + lanes.load(&self.kept) * force
-    }
-}
-
-/// Leaves nothing in lanes with a bit.
-#[cold]
-#[inline(never)]
-fn hold(values: &mut F64x8, held: u8) {
-    for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
-        values[lane] = 0.0;
     }
 }
 

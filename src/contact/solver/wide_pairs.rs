@@ -10,6 +10,7 @@ use super::SolverView;
 use super::anchor::{Accumulators, common_share};
 use super::wide_block::{F64x8, WideBlock, first, put_first};
 use super::wide_contact::{ContactView, WideContact};
+use super::wide_point::Bodies;
 
 /// Change of a force, over what counts as settled, from which its bodies have moved.
 const MOVES: f64 = 0.3;
@@ -30,11 +31,9 @@ pub struct WidePairs {
     /// block pairs without a free block have always something to answer, lanes without a block pair never.
     share: F64x8,
     shift: F64x8,
-    /// Both blocks of each block pair that keep its impulses, a free one in the place of a held one.
+    /// Blocks of the first and of the second points of each block pair.
     blocks: [[BlockId; LANES]; 2],
-    /// Block of the first points of its contacts.
-    first_block: [BlockId; LANES],
-    /// Where the sums of the blocks begin in a run of blocks.
+    /// Where the sums of the blocks begin in a run of blocks, those of a free one in the place of a held one.
     sums: [Places; 2],
     /// First row.
     pub first_row: u32,
@@ -71,7 +70,6 @@ impl WidePairs {
             wide: 0,
             contacts: 0,
             blocks: [[BlockId::default(); LANES]; 2],
-            first_block: [BlockId::default(); LANES],
             sums: [Places::default(); 2],
             common: [[0.0; LANES]; 2],
             spin: [[0.0; LANES]; 2],
@@ -96,7 +94,6 @@ impl WidePairs {
     fn take(&mut self, lane: usize, blocks: [BlockId; 2], contacts: u32, view: &SolverView) {
         let [a, b] = blocks;
         let free = blocks.map(|block| view.mass_matrix.is_free(block));
-        self.first_block[lane] = a;
         self.contacts += contacts;
         if lane == 1 {
             self.wide = contacts;
@@ -104,14 +101,13 @@ impl WidePairs {
         self.rows = self.rows.max(contacts);
         self.share[lane] = f64::from(free[0]);
         self.shift[lane] = if free[0] && contacts == 1 { 0.0 } else { -1.0 };
-        let keepers = [a, if free[1] { b } else { a }];
         for k in 0..2 {
-            self.blocks[k][lane] = keepers[k];
+            self.blocks[k][lane] = blocks[k];
             if k == 0 || a != b {
                 self.spin[k][lane] = view.mass_matrix.spin[blocks[k]];
             }
             if free[k] && a != b {
-                (self.common[k][lane], self.unit[k][lane]) = (common_share(view, blocks[k]), 1.0);
+                (self.common[k][lane], self.unit[k][lane]) = (common_share(view.mass_matrix, blocks[k]), 1.0);
             }
         }
     }
@@ -141,11 +137,21 @@ impl WidePairs {
         from: &ContactView,
         accumulators: &mut Accumulators,
     ) {
-        for (sums, blocks) in self.sums.iter_mut().zip(&self.blocks) {
-            (0..LANES).for_each(|lane| sums.set(lane, 3 * (blocks[lane].number() - accumulators.first_block.number())));
+        let SolverView { mass_matrix, .. } = from.view;
+        for lane in 0..LANES {
+            let [a, b] = [self.blocks[0][lane], self.blocks[1][lane]];
+            let keepers = [a, if mass_matrix.is_free(b) { b } else { a }];
+            let sums = keepers.map(|block| 3 * (block.number() - accumulators.first_block.number()));
+            (0..2).for_each(|k| self.sums[k].set(lane, sums[k]));
         }
-        for (row, ends) in rows.iter_mut().zip(first_turn.windows(2)) {
-            row.load(lanes, [ends[0], ends[1]], &self.first_block, from, accumulators.first_cover);
+        let blocks = [0, 1].map(|k: usize| Bodies::new(&self.blocks[k], mass_matrix, from.approach.motion));
+        for (k, (row, turns)) in rows.iter_mut().zip(first_turn.windows(2)).enumerate() {
+            let (turns, first_cover) = ([turns[0], turns[1]], accumulators.first_cover);
+            if k < self.wide as usize {
+                row.load(lanes, turns, &blocks, from, first_cover);
+            } else {
+                row.load(First, turns, &blocks, from, first_cover);
+            }
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
         let mut all = self.begin(lanes, accumulators);

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use crate::contact::{BoltView, OtherConstraints, SolverOptions, SolverReport};
+use crate::contact::{Approach, BoltView, OtherConstraints, SolverOptions, SolverReport};
 use crate::state::Workspace;
 
-use super::{REACH, Step, StepTimes};
+use super::{REACH, Regime, Step, StepTimes};
 
 impl Step<'_> {
     /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
@@ -15,7 +15,7 @@ impl Step<'_> {
 
     /// Contacts that take part in an explicit sub-step, and how they answer.
     pub(super) fn touch(&mut self, times: StepTimes) {
-        self.entrance(self.reach(times.dt), self.state.dt_last, Some(times));
+        self.entrance(self.reach(times.dt), times.dt);
     }
 
     /// How supports and bolts answer.
@@ -46,7 +46,8 @@ impl Step<'_> {
     pub(super) fn open_close(&mut self, times: StepTimes) -> SolverReport {
         let clock = Instant::now();
         let StepTimes { dt, kick, .. } = times;
-        let (model, workspace) = (self.model, &mut *self.workspace);
+        let damping = if let Regime::Dynamic { damping } = self.regime { Some(damping) } else { None };
+        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let Workspace {
             open_close,
             near_sides,
@@ -57,14 +58,25 @@ impl Step<'_> {
             increment,
             push,
             mass_matrix,
+            motion,
+            predicted,
             serial,
             ..
         } = workspace;
         let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
         let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        let (near, block_covers) = ((&self.state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);
+        let approach = Approach {
+            predicted,
+            velocity: &state.velocity,
+            dt_last: state.dt_last,
+            forward: model.theta_in(dt),
+            damping,
+            laws: &state.laws,
+            motion,
+        };
+        let (near, block_covers) = ((&state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);
         open_close.arrange(&model.boundary, near, mass_matrix, block_covers, &accepted.near_side);
-        let swept = open_close.run(mass_matrix, &options, contacts, &mut OtherConstraints { rows, bolts });
+        let swept = open_close.run(mass_matrix, &options, &approach, contacts, &mut OtherConstraints { rows, bolts });
         open_close.impulses(mass_matrix, increment, push);
         workspace.seconds.sweep += clock.elapsed().as_secs_f64();
         swept

@@ -182,8 +182,7 @@ impl Step<'_> {
         let workspace = &mut *self.workspace;
         workspace.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
-        let moved_for = if self.state.step > 0 { self.model.dt } else { 0.0 };
-        self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), moved_for, None);
+        self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), 0.0);
         self.load_supports(self.times(dt));
         let buffers = &mut self.workspace.implicit;
         buffers.forces_before.clear();
