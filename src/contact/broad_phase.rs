@@ -17,6 +17,8 @@ use grid::Grid;
 
 /// Nodes whose near edges are found as one run, and shared between threads as one.
 const RUN: usize = 1024;
+/// Runs that are searched before their near pairs are listed.
+const RUNS: usize = 64;
 
 /// A node and an edge that may meet before the next search.
 #[doc(alias = "candidate pair")]
@@ -72,18 +74,6 @@ impl NeighbourList {
     pub fn forget(&mut self) {
         self.found_at.clear();
     }
-
-    /// Collects the near pairs of all runs, and records the positions of the nodes.
-    fn take(&mut self, runs: &mut [Run], view: &SearchView) {
-        if let [run] = runs {
-            std::mem::swap(&mut self.pairs, &mut run.near_pairs);
-        } else {
-            self.pairs.clear();
-            runs.iter().for_each(|run| self.pairs.extend_from_slice(&run.near_pairs));
-        }
-        self.found_at.clear();
-        self.found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point]));
-    }
 }
 
 /// Inputs of a search.
@@ -119,18 +109,27 @@ impl SearchGrid {
 
     /// Finds all nodes within the cutoff of an edge of another block, or of the other side of a partial cut.
     pub fn search(&mut self, view: &SearchView, found: &mut NeighbourList) {
-        self.grid.lay(view);
+        let Self { grid, runs } = self;
+        grid.lay(view);
         let nodes = view.boundary.node_count();
         let length = if view.serial { nodes.max(1) } else { RUN };
-        self.runs.resize_with(nodes.div_ceil(length), Run::default);
-        let find = |(k, run)| {
-            let nodes = k * length..nodes.min((k + 1) * length);
-            dispatch(Find { grid: &self.grid, view, nodes, run });
+        runs.resize_with(nodes.div_ceil(length).min(RUNS), Run::default);
+        let find = |first: usize, k: usize, run: &mut Run| {
+            let from = first + k * length;
+            dispatch(Find { grid, view, nodes: from..nodes.min(from + length), run });
         };
-        match self.runs.as_mut_slice() {
-            [run] => find((0, run)),
-            runs => enmm_fork::each("search", runs.par_iter_mut().enumerate(), find),
+        let NeighbourList { pairs, found_at } = found;
+        pairs.clear();
+        // In pieces: the near pairs of all runs together would be as large as the list.
+        for first in (0..nodes).step_by(RUNS * length) {
+            let count = (nodes - first).div_ceil(length).min(RUNS);
+            match &mut runs[..count] {
+                [run] => find(first, 0, run),
+                runs => enmm_fork::each("search", runs.par_iter_mut().enumerate(), |(k, run)| find(first, k, run)),
+            }
+            runs[..count].iter().for_each(|run| pairs.extend_from_slice(&run.near_pairs));
         }
-        found.take(&mut self.runs, view);
+        found_at.clear();
+        found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point]));
     }
 }
