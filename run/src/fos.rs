@@ -2,10 +2,10 @@
 //!
 //! Nothing is written before the first trial has ended. Prints nothing: a closure hears of each trial.
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use std::{fs, io};
 
 use serde_json::{Value, json};
 
@@ -20,6 +20,9 @@ use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
     TOLERANCE, Trial, mechanisms,
 };
+
+/// Pictures of the trials and of the mechanism.
+const PICTURES: [&str; 2] = ["fos.png", "failure.png"];
 
 /// How to look for the factor of safety of a case, and where results go.
 #[derive(Debug)]
@@ -127,6 +130,8 @@ pub fn fos(
     if options.pictures {
         draw(directory, found.main()).map_err(FosError::Output)?;
         write_fos_page(directory, loaded, &found).map_err(FosError::Output)?;
+    } else {
+        remove_drawings(directory).map_err(FosError::Output)?;
     }
     Ok(found)
 }
@@ -170,8 +175,15 @@ fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<
 
 fn draw(directory: &Path, reduction: &Reduction) -> io::Result<()> {
     let title = &reduction.simulation.case().title;
-    trials_picture(title, reduction).write_png(&directory.join("fos.png"))?;
-    failure_picture(title, reduction).write_png(&directory.join("failure.png"))
+    trials_picture(title, reduction).write_png(&directory.join(PICTURES[0]))?;
+    failure_picture(title, reduction).write_png(&directory.join(PICTURES[1]))
+}
+
+/// Removes the pictures of an earlier search, and its page, unless a run has left one there.
+fn remove_drawings(directory: &Path) -> io::Result<()> {
+    let page = (!directory.join("summary.json").exists()).then_some("report.html");
+    let drawings = PICTURES.into_iter().chain(page).map(|name| directory.join(name));
+    drawings.filter(|path| path.exists()).try_for_each(|path| fs::remove_file(&path).map_err(at_path(&path)))
 }
 
 /// A word for how a search ended.
