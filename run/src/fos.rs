@@ -12,10 +12,12 @@ use serde_json::{Value, json};
 use super::bound::bound_record;
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
+use super::run::has_run;
 use enmm::engine_version;
 use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
+use enmm_report::PAGE;
 use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
     TOLERANCE, Trial, mechanisms,
@@ -181,7 +183,7 @@ fn draw(directory: &Path, reduction: &Reduction) -> io::Result<()> {
 
 /// Removes the pictures of an earlier search, and its page, unless a run has left one there.
 fn remove_drawings(directory: &Path) -> io::Result<()> {
-    let page = (!directory.join("summary.json").exists()).then_some("report.html");
+    let page = (!has_run(directory)).then_some(PAGE);
     let drawings = PICTURES.into_iter().chain(page).map(|name| directory.join(name));
     drawings.filter(|path| path.exists()).try_for_each(|path| fs::remove_file(&path).map_err(at_path(&path)))
 }

@@ -19,6 +19,7 @@ use enmm_io::LoadedCase;
 use enmm_io::checkpoint::CheckpointError;
 
 pub use results::draw_checked;
+pub(crate) use results::has_run;
 
 /// How to run a case.
 #[derive(Debug, Default)]

@@ -41,7 +41,12 @@ pub fn enter(directory: &Path) -> io::Result<bool> {
     fs::create_dir_all(directory).map_err(at_path(directory))?;
     sweep_temporaries(directory)?;
     sweep_temporaries(&directory.join("frames"))?;
-    Ok(TRACES.iter().any(|name| directory.join(name).exists()))
+    Ok(has_run(directory))
+}
+
+/// Whether a run has written into a directory.
+pub fn has_run(directory: &Path) -> bool {
+    TRACES.iter().any(|name| directory.join(name).exists())
 }
 
 /// Removes the frames and the pictures of stages of an earlier run in the directory.

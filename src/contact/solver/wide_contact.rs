@@ -273,11 +273,11 @@ impl WideContact {
             [self.points[0].cover_impulse(lanes, cover_impulse), self.points[1].cover_impulse(lanes, cover_impulse)];
         let a = self.points[0].velocity(lanes, &before[0], &sides[0]);
         let b = self.points[1].velocity(lanes, &before[1], &sides[1]);
-        let velocity = [a[0] - b[0], a[1] - b[1]];
         let [x, y] = [lanes.load(&self.normal[0]), lanes.load(&self.normal[1])];
+        let velocity = along([x, y], [a[0] - b[0], a[1] - b[1]]);
         let old = [lanes.load(&self.force[0]), lanes.load(&self.force[1])];
-        let mut normal = self.answers[0].ask(lanes, velocity[0] * x + velocity[1] * y, old[0]);
-        let shear = self.answers[1].ask(lanes, x * velocity[1] - y * velocity[0], old[1]);
+        let mut normal = self.answers[0].ask(lanes, velocity[0], old[0]);
+        let shear = self.answers[1].ask(lanes, velocity[1], old[1]);
         let zero = lanes.splat(0.0);
         let mut limit = lanes.max(normal * lanes.load(&self.friction) + lanes.load(&self.cohesion), zero);
         if self.curved {

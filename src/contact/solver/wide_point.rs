@@ -183,13 +183,9 @@ impl Points {
             lanes.gather_from(cover_impulse, &self.covers[2]),
         ];
         if self.holds {
+            let zero = lanes.splat(0.0);
             for (found, held) in found.iter_mut().zip(&self.held) {
-                for (found, &held) in found.iter_mut().zip(held) {
-                    let mut values = [0.0; LANES];
-                    lanes.store(*found, &mut values);
-                    hold(&mut values, held);
-                    *found = lanes.load(&values);
-                }
+                *found = [lanes.select(held[0], zero, found[0]), lanes.select(held[1], zero, found[1])];
             }
         }
         found
@@ -230,14 +226,5 @@ impl Points {
         side.impulse = [side.impulse[0] + side.unit * x, side.impulse[1] + side.unit * y];
         side.weighted = [side.weighted[0] + mass_share * x, side.weighted[1] + mass_share * y];
         side.moment = side.moment + (lever[0] * x + lever[1] * y);
-    }
-}
-
-/// Leaves nothing in lanes with a bit.
-#[cold]
-#[inline(never)]
-fn hold(values: &mut F64x8, held: u8) {
-    for lane in (0..LANES).filter(|lane| held >> lane & 1 == 1) {
-        values[lane] = 0.0;
     }
 }
