@@ -3,7 +3,7 @@
 mod common;
 
 use common::simulation;
-use enmm::contact::{Approach, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
+use enmm::contact::{Approach, ContactSetting, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
 use enmm::model::Simulation;
 
 /// Both solvers sweep until no force changes by more than this share of itself.
@@ -82,11 +82,19 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         dt_last: state.dt_last,
         forward: model.theta_in(dt),
         damping: (state.stage > 0).then_some(0.1),
-        laws: &state.laws,
+        setting: ContactSetting {
+            boundary: &model.boundary,
+            frames: &workspace.frames,
+            laws: &state.laws,
+            strength: workspace.strength,
+        },
         motion: &workspace.motion,
     };
     let mut plain = workspace.contacts.clone();
-    assert!(plain.iter().any(|contact| contact.is_curved()) || state.stage > 0, "no contact of the master joint");
+    assert!(
+        plain.iter().any(|contact| contact.limits(&approach.setting).is_curved()) || state.stage > 0,
+        "no contact of the master joint"
+    );
     let (expected, report) = reference::solve(masses, &options, &approach, &mut plain);
     assert!(report.unsettled <= SETTLED, "the reference has not settled: {report:?}");
 

@@ -30,11 +30,13 @@ fn strength(ends: &[[f64; 2]], mesh: f64) -> [f64; 2] {
     .expect("a case");
     let simulation = Simulation::new(case).unwrap_or_else(|error| panic!("{error}"));
     let mut sums = [0.0; 2];
-    simulation.each_contact(|contact| {
-        if let Limits::MohrCoulomb { cohesion, tension, .. } = contact.limits {
+    let (state, workspace) = simulation.look_ahead();
+    let setting = workspace.setting(simulation.model(), &state);
+    for contact in &workspace.contacts {
+        if let Limits::MohrCoulomb { cohesion, tension, .. } = contact.limits(&setting) {
             sums = [sums[0] + cohesion, sums[1] + tension];
         }
-    });
+    }
     sums
 }
 

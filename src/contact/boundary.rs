@@ -152,6 +152,7 @@ impl Boundary {
     }
 
     /// A cover field at point `k`.
+    #[inline(always)]
     pub fn sample(&self, k: EdgeId, field: &[Vector]) -> Vector {
         cover::sample(&self.covers[k], &self.weights[k], field)
     }

@@ -5,6 +5,7 @@
 mod bolt;
 mod boundary;
 mod broad_phase;
+mod frame;
 mod law;
 mod narrow_phase;
 mod pair;
@@ -16,9 +17,10 @@ mod vertex_edge;
 pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
+pub use frame::Frames;
 pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
 pub use narrow_phase::{
-    AcceptedPairs, ContactCache, EntranceRule, Frames, NarrowPhase, NearSides, PenetratingContacts, entrance_edges,
+    AcceptedPairs, ContactCache, EntranceRule, NarrowPhase, NearSides, PenetratingContacts, entrance_edges,
 };
 pub use pair::Pair;
 #[doc(hidden)]
@@ -26,4 +28,4 @@ pub use solver::reference;
 pub use solver::{Approach, BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
-pub use vertex_edge::{ContactHistory, ContactState, VertexEdge};
+pub use vertex_edge::{ContactHistory, ContactSetting, ContactState, VertexEdge};

@@ -25,7 +25,7 @@ use self::order::{Sequence, SolverOrder};
 use self::subdomain::{PassKind, Subdomain, SubdomainPass};
 use self::support::SupportSystem;
 use self::wide_contact::{ContactView, WideContact};
-use super::{BoltRow, Boundary, JointLaw, NearPair, NearSides, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, ContactSetting, NearPair, NearSides, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
 const CONTACTS: usize = 1024;
@@ -82,8 +82,8 @@ pub struct Approach<'a> {
     pub forward: f64,
     /// Damping ratio of a dynamic stage.
     pub damping: Option<f64>,
-    /// Joint laws.
-    pub laws: &'a [JointLaw],
+    /// What contacts follow from.
+    pub setting: ContactSetting<'a>,
     /// Centroids of the blocks.
     pub motion: &'a [BlockMotion],
 }
@@ -211,7 +211,7 @@ impl OpenClose {
             apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
         let report = self.sweeps(inputs, contacts, others);
-        self.finish(contacts, options.serial);
+        self.finish(contacts, &approach.setting, options.serial);
         self.supports.finish(others.rows);
         report
     }
@@ -310,11 +310,11 @@ impl OpenClose {
     }
 
     /// Forces and states of all contacts.
-    fn finish(&self, contacts: &mut [VertexEdge], serial: bool) {
+    fn finish(&self, contacts: &mut [VertexEdge], setting: &ContactSetting, serial: bool) {
         let finish = |(contacts, slots): (&mut [VertexEdge], &[u32])| {
             for (contact, &slot) in contacts.iter_mut().zip(slots) {
                 let slot = slot as usize;
-                self.rows[slot / LANES].finish(slot % LANES, contact);
+                self.rows[slot / LANES].finish(slot % LANES, contact, setting);
             }
         };
         let slots = &self.sequence.slots;

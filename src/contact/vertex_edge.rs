@@ -1,9 +1,10 @@
 //! One contact between a boundary node and an edge: its data in a step (`VertexEdge`) and between steps
 //! (`ContactHistory`). The narrow phase makes it, the solver finds its forces.
 
-use crate::geometry::{Point, Vector};
+use crate::cover::{self, BlockId, CoverId, Weights};
+use crate::geometry::Vector;
 
-use super::{Closure, EdgeId, LawId, Limits, NodeId, Pair, SideId};
+use super::{Boundary, Closure, EdgeId, Frames, JointLaw, LawId, Limits, NodeId, Pair, SideId};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -52,30 +53,29 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// A contact during one step: geometry, springs and forces.
+/// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on and
+/// the law of its joint, is in the [`ContactSetting`].
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VertexEdge {
-    /// The node and the position on the edge that it faces.
-    pub pair: Pair,
-    /// Position of the node.
-    pub point: Point,
-    /// Outward unit normal of the edge.
-    pub normal: Vector,
-    /// Limits of the joint law for this length.
-    pub limits: Limits,
-    /// Greatest closure of the normal spring (m); infinite for a linear one.
-    pub closure_max: f64,
     /// Data that pass to the next step; the sweeps update the forces.
     pub history: ContactHistory,
+    /// Boundary point of the node.
+    pub point: EdgeId,
+    /// Covers at the position on the edge that the node faces, and their weights there.
+    pub covers: [CoverId; 3],
+    pub weights: Weights,
+    /// Outward unit normal of the edge.
+    pub normal: Vector,
     /// Springs normal (initial stiffness) and shear (N/m per metre).
     pub stiffness: [f64; 2],
     /// Gap of the springs along the normal (m); negative in penetration.
     pub gap: f64,
-    /// Tributary length (m).
+    /// Tributary length (m), and the part of it that bears cohesion and tension.
     pub length: f64,
+    pub bonded: f64,
     /// Law of the joint.
     pub law: LawId,
     /// Whether the contact failed in tension in this step.
@@ -85,7 +85,18 @@ pub struct VertexEdge {
 }
 
 // Large slopes have a million of them and more.
-const _: () = assert!(size_of::<VertexEdge>() <= 288);
+const _: () = assert!(size_of::<VertexEdge>() <= 192);
+
+/// What the contacts of a step share.
+#[derive(Clone, Copy)]
+pub struct ContactSetting<'a> {
+    /// Boundary of the blocks, and its edges and nodes at their current positions.
+    pub boundary: &'a Boundary,
+    pub frames: &'a Frames,
+    /// Joint laws, and the factor on the strength of all joints.
+    pub laws: &'a [JointLaw],
+    pub strength: f64,
+}
 
 /// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
 const EXPECTED: f64 = 0.5;
@@ -97,33 +108,44 @@ impl VertexEdge {
         Vector::new(-self.normal.y, self.normal.x)
     }
 
-    /// Whether the normal spring follows a curve.
+    /// Blocks of the node and of the edge.
     #[inline(always)]
-    pub fn closes_on_a_curve(&self) -> bool {
-        self.closure_max.is_finite()
+    pub fn blocks(&self, boundary: &Boundary) -> [BlockId; 2] {
+        [self.point, self.history.edge].map(|point| boundary.block[point])
     }
 
-    /// Whether spring or strength follow a curve.
+    /// The node and the position on the edge that it faces.
     #[inline(always)]
-    pub fn is_curved(&self) -> bool {
-        self.closes_on_a_curve() || self.limits.is_curved()
+    pub fn pair(&self, boundary: &Boundary) -> Pair {
+        Pair {
+            blocks: self.blocks(boundary),
+            covers: [boundary.covers[self.point], self.covers],
+            weights: [boundary.weights[self.point], self.weights],
+        }
+    }
+
+    /// Limits of the joint law for the length of the contact.
+    #[inline(always)]
+    pub fn limits(&self, setting: &ContactSetting) -> Limits {
+        setting.laws[self.law].limits(self.bonded, self.history.intact).times(setting.strength)
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
     #[inline(always)]
-    pub fn shear_limit(&self, normal: f64) -> f64 {
-        self.limits.shear(normal, self.length)
+    pub fn shear_limit(&self, normal: f64, setting: &ContactSetting) -> f64 {
+        self.limits(setting).shear(normal, self.length)
     }
 
     /// The normal spring.
-    pub fn closure(&self) -> Closure {
-        Closure { stiffness: self.stiffness[0], most: self.closure_max }
+    #[inline(always)]
+    pub fn closure(&self, setting: &ContactSetting) -> Closure {
+        Closure { stiffness: self.stiffness[0], most: setting.laws[self.law].closure_max }
     }
 
     /// Energy (J/m) that the springs store at the step's start.
-    pub fn stored_energy(&self) -> f64 {
+    pub fn stored_energy(&self, setting: &ContactSetting) -> f64 {
         let closure = if self.gap < 0.0 || self.history.state != ContactState::Open { -self.gap } else { 0.0 };
-        self.closure().energy(closure) + 0.5 * self.stiffness[1] * self.history.sheared.powi(2)
+        self.closure(setting).energy(closure) + 0.5 * self.stiffness[1] * self.history.sheared.powi(2)
     }
 
     /// Shear force (N/m) that the spring has stored.
@@ -146,31 +168,31 @@ impl VertexEdge {
 
     /// Normal and shear component of a cover field at the node relative to the edge.
     #[inline(always)]
-    pub fn relative(&self, field: &[Vector]) -> [f64; 2] {
-        let relative = self.pair.difference(field);
+    pub fn relative(&self, boundary: &Boundary, field: &[Vector]) -> [f64; 2] {
+        let relative = boundary.sample(self.point, field) - cover::sample(&self.covers, &self.weights, field);
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
     /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) (Eq. 15).
     #[inline(always)]
-    pub fn shear_after(&self, shear: f64) -> (f64, f64) {
+    pub fn shear_after(&self, shear: f64, setting: &ContactSetting) -> (f64, f64) {
         if self.history.state == ContactState::Open {
             return (0.0, 0.0);
         }
-        let limit = self.shear_limit(self.history.normal_force);
+        let limit = self.shear_limit(self.history.normal_force, setting);
         let trial = self.shear_stored() - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
         (stored, (trial - stored).abs() / self.stiffness[1])
     }
 
     /// Warm start: a contact that stays closed begins with its last force plus half of its last change, within its
-    /// limit.
+    /// `limits`.
     #[inline(always)]
-    pub fn expected(&self) -> [f64; 2] {
+    pub fn expected(&self, limits: &Limits) -> [f64; 2] {
         let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
         let normal = normal_force + EXPECTED * trend[0];
         if normal > 0.0 && normal_force > trend[0].max(0.0) {
-            let limit = self.shear_limit(normal);
+            let limit = limits.shear(normal, self.length);
             return [normal, (shear_force + EXPECTED * trend[1]).min(limit).max(-limit)];
         }
         [normal_force, shear_force]
@@ -178,17 +200,17 @@ impl VertexEdge {
 
     /// Stores the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and their change.
     #[inline(always)]
-    pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool) {
+    pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, setting: &ContactSetting) {
         let ContactHistory { normal_force, shear_force, .. } = self.history;
-        self.bear(forces, bears, torn);
+        self.bear(forces, bears, torn, self.shear_limit(forces[0], setting));
         self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
     }
 
-    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`; `torn` after a failure in tension. No
-    /// branch depends on their values, which are hard to predict.
+    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`, under a limit of shear (N/m); `torn` after a
+    /// failure in tension. No branch depends on their values, which are hard to predict.
     #[inline(always)]
-    pub fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool) {
-        let slips = shear.abs() >= self.shear_limit(normal);
+    fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool, limit: f64) {
+        let slips = shear.abs() >= limit;
         let states = [ContactState::Open, ContactState::Open, ContactState::Lock, ContactState::Slip];
         self.history.state = states[2 * usize::from(bears) + usize::from(slips)];
         // The sum turns a zero from below into zero.
@@ -198,11 +220,12 @@ impl VertexEdge {
 
     /// Clamps the forces of the springs to the limits of the joint.
     #[inline(always)]
-    pub fn decide(&mut self, normal: f64, shear: f64) {
-        let torn = normal < -self.limits.tension();
-        let bears = !torn && (normal > 0.0 || self.limits.tension() > 0.0);
-        let limit = self.shear_limit(normal);
+    pub fn decide(&mut self, normal: f64, shear: f64, setting: &ContactSetting) {
+        let limits = self.limits(setting);
+        let torn = normal < -limits.tension();
+        let bears = !torn && (normal > 0.0 || limits.tension() > 0.0);
+        let limit = limits.shear(normal, self.length);
         let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0; 2] };
-        self.bear(force, bears, torn);
+        self.bear(force, bears, torn, limit);
     }
 }

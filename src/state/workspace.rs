@@ -1,14 +1,14 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, Frames, LawId, NearSides, OpenClose, PenetratingContacts,
-    SearchGrid, SupportRow, VertexEdge,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
+    PenetratingContacts, SearchGrid, SupportRow, VertexEdge,
 };
 use crate::geometry::{Point, Vector};
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
 
-use super::ImplicitWorkspace;
+use super::{ImplicitWorkspace, Model, State};
 
 /// Buffers, sized at the first step and reused.
 #[doc(alias = "scratch buffers")]
@@ -52,6 +52,8 @@ pub struct Workspace {
     pub penetrating: PenetratingContacts,
     /// Buffers of the search for near pairs.
     pub search: SearchGrid,
+    /// Factor on the strength of all joints in this step.
+    pub strength: f64,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
     /// What they did in this step, by run.
@@ -84,6 +86,14 @@ pub struct Workspace {
     pub serial: bool,
     /// Seconds spent in each part of the step.
     pub seconds: Seconds,
+}
+
+impl Workspace {
+    /// What the contacts of this step share.
+    pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
+        let Self { frames, strength, .. } = self;
+        ContactSetting { boundary: &model.boundary, frames, laws: &state.laws, strength: *strength }
+    }
 }
 
 /// What a run of contacts did in a step.

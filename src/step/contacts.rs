@@ -71,18 +71,17 @@ impl Step<'_> {
         let clock = Instant::now();
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let size = model.covers.mesh.size;
+        workspace.strength = state.drive.strength_factor(state.drive.share(self.time));
         workspace.near_sides.list(&state.neighbours.pairs);
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
         let narrow = NarrowPhase {
             boundary: &model.boundary,
-            position: &workspace.position,
             frames: &workspace.frames,
             star: &model.covers.star_position,
             displacement: &state.displacement,
             laws: &state.laws,
             trace_law: &workspace.trace_law,
-            strength: state.drive.strength_factor(state.drive.share(self.time)),
             default_law: state.law_switch[model.default_law],
             velocity: &state.velocity,
             history: &state.contacts,

@@ -69,9 +69,9 @@ impl Step<'_> {
         }
         match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
             Some(contact) => {
-                let position = workspace.position[model.boundary.node_point[contact.history.node]];
+                let position = workspace.frames.position(contact.point);
                 let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
-                Err(self.failed(contact.pair.blocks[0], position, failure))
+                Err(self.failed(contact.blocks(&model.boundary)[0], position, failure))
             }
             None => Ok(()),
         }

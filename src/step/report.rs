@@ -1,6 +1,6 @@
 //! Energies, momenta and what a step reports.
 
-use crate::contact::{BoltSegment, BoltState, Support, VertexEdge};
+use crate::contact::{BoltSegment, BoltState, Support};
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, BlockCovers, MassMatrix};
@@ -77,7 +77,8 @@ pub(super) fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64
         }
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness
     };
-    let contacts = workspace.contacts.iter().map(VertexEdge::stored_energy).sum::<f64>();
+    let setting = workspace.setting(model, state);
+    let contacts = workspace.contacts.iter().map(|contact| contact.stored_energy(&setting)).sum::<f64>();
     let supports = workspace.rows.iter().map(support).sum::<f64>();
     let kept = |(k, s): (usize, &Support)| 0.5 * state.support_force[k].powi(2) / s.stiffness;
     contacts + supports + quiet::frozen(model, state).map(kept).sum::<f64>()

@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{ContactHistory, ContactState, JointLaw, VertexEdge};
+use crate::contact::{ContactHistory, ContactSetting, ContactState, JointLaw, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Workspace};
 
@@ -19,7 +19,7 @@ struct Settle<'a> {
     contacts: &'a [VertexEdge],
     histories: &'a mut [ContactHistory],
     outcome: &'a mut ContactOutcome,
-    laws: &'a [JointLaw],
+    setting: ContactSetting<'a>,
     /// Velocities (m/s) of the covers before and after the forces.
     velocities: [&'a [Vector]; 2],
     dt: f64,
@@ -33,14 +33,15 @@ impl Kernel for Settle<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { outcome, laws, velocities, dt, kick, fade, .. } = self;
+        let Self { outcome, setting, velocities, dt, kick, fade, .. } = self;
         *outcome = ContactOutcome::default();
         for (contact, history) in self.contacts.iter().zip(self.histories) {
-            let [before, after] = velocities.map(|velocity| contact.relative(velocity));
-            let (stored, slipped) = contact.shear_after(after[1] * dt);
+            let relative = |velocity: &[Vector]| contact.relative(setting.boundary, velocity);
+            let [before, after] = [relative(velocities[0]), relative(velocities[1])];
+            let (stored, slipped) = contact.shear_after(after[1] * dt, &setting);
             add_works(outcome, contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
             add_depths(outcome, contact);
-            *history = history_of(contact, &laws[contact.law], stored, slipped);
+            *history = history_of(contact, &setting.laws[contact.law], stored, slipped);
             history.offset *= fade;
         }
     }
@@ -82,13 +83,15 @@ impl Step<'_> {
     /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
     pub(super) fn settle_contacts(&mut self, StepTimes { dt, kick, .. }: StepTimes) {
         let state = &mut *self.state;
-        let Workspace { contacts, predicted, outcomes, serial, .. } = &mut *self.workspace;
+        let Workspace { contacts, predicted, outcomes, frames, strength, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
-        let (laws, velocities) = (&state.laws, [&state.velocity[..], predicted]);
+        let boundary = &self.model.boundary;
+        let setting = ContactSetting { boundary, frames, laws: &state.laws, strength: *strength };
+        let velocities = [&state.velocity[..], predicted];
         let fade = libm::exp(-dt / OFFSET_FADE);
         let settle = |((contacts, histories), outcome)| {
-            dispatch(Settle { contacts, histories, outcome, laws, velocities, dt, kick, fade });
+            dispatch(Settle { contacts, histories, outcome, setting, velocities, dt, kick, fade });
         };
         if *serial || contacts.len() <= CONTACTS {
             let runs = contacts.chunks(CONTACTS).zip(state.contacts.chunks_mut(CONTACTS));

@@ -27,7 +27,8 @@ impl Overlap {
     /// most deeply pressed contact between the two blocks, which is force over stiffness, and what that contact was
     /// first seen with.
     pub fn unheld(&self, simulation: &Simulation) -> [f64; 2] {
-        let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.pair.blocks.contains(block));
+        let boundary = &simulation.model().boundary;
+        let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.blocks(boundary).contains(block));
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
         let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
         let contacts = simulation.workspace().contacts.iter().filter(is_between);

@@ -36,6 +36,12 @@ pub struct Closure {
 }
 
 impl Closure {
+    /// Whether it is not the linear spring.
+    #[inline(always)]
+    pub fn is_curved(&self) -> bool {
+        self.most.is_finite()
+    }
+
     /// Closure (m) under a normal force (N/m): v = N/(k + N/v_max).
     pub fn under(&self, force: f64) -> f64 {
         force / (self.stiffness + force.max(0.0) / self.most)

@@ -80,7 +80,7 @@ impl Limits {
     /// Greatest shear force (N/m) of a contact of tributary `length` (m) under a normal force (N/m, compression
     /// positive).
     #[inline(always)]
-    pub fn shear(&self, normal: f64, length: f64) -> f64 {
+    pub fn shear(self, normal: f64, length: f64) -> f64 {
         match self {
             Self::MohrCoulomb { friction, cohesion, .. } => (normal * friction + cohesion).max(0.0),
             Self::BartonBandis { .. } if normal <= 0.0 => 0.0,

@@ -3,12 +3,13 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
+use crate::contact::frame::right_of;
 use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
-use super::{CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase, right_of};
+use super::{CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase};
 
 /// Makes contacts from accepted candidates: compiled for every kind of lanes.
 struct Make<'a> {
@@ -48,11 +49,10 @@ impl NarrowPhase<'_> {
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
         let (boundary, node) = (self.boundary, candidate.node);
         let (point, edge) = (boundary.node_point[node], candidate.edge);
-        let p = self.position[point];
+        let p = self.node_position(node);
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let blocks = [boundary.block[point], boundary.block[edge]];
         let Tributary { length, bonded, penalty, share } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law].stiffness(length, penalty);
@@ -64,21 +64,22 @@ impl NarrowPhase<'_> {
         };
         let history = ContactHistory { edge: candidate.edge, share, ..history };
         let gap = candidate.gap + history.offset;
-        let pair = Pair { blocks, covers, weights };
         if self.laws[law].penalty[0] {
-            stiffness[0] *= self.hardening(gap, pair.difference(self.velocity).dot(&normal));
+            let blocks = [point, edge].map(|point| boundary.block[point]);
+            let opens = Pair { blocks, covers, weights }.difference(self.velocity);
+            stiffness[0] *= self.hardening(gap, opens.dot(&normal));
         }
         let gap = gap - history.rest;
         *contact = VertexEdge {
-            pair,
-            point: p,
-            normal,
-            limits: self.laws[law].limits(bonded, history.intact).times(self.strength),
-            closure_max,
-            gap,
             history,
+            point,
+            covers: covers[1],
+            weights: weights[1],
+            normal,
             stiffness,
+            gap,
             length,
+            bonded,
             law,
             torn: false,
             fresh: candidate.held.is_none(),

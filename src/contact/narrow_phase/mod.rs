@@ -2,7 +2,6 @@
 //! decides which edge a node may enter; then geometry, length, springs and history of the contact follow.
 
 mod constants;
-mod frame;
 mod make_contact;
 mod near_sides;
 mod nearest;
@@ -18,14 +17,13 @@ use rayon::prelude::*;
 use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::StressField;
 
-use frame::EdgeFrame;
 use near_sides::{NearRun, NearSide};
 use nearest::{CARRIED, ENTERS, FindNearest, Nearest, OVER};
 
+use super::frame::{EdgeFrame, Frames};
 use super::{Boundary, ContactHistory, ContactState, EdgeId, JointLaw, LawId, NearPair, NodeId, SideId, VertexEdge};
 
 pub use constants::EntranceRule;
-pub use frame::Frames;
 pub use near_sides::NearSides;
 pub use penetrating::PenetratingContacts;
 
@@ -48,9 +46,7 @@ const TIE_TOLERANCE: f64 = 1e-6;
 pub struct NarrowPhase<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
-    /// Current positions of the boundary points (m).
-    pub position: &'a [Point],
-    /// Edges and nodes at these positions.
+    /// Its edges and nodes at their current positions.
     pub frames: &'a Frames,
     /// Star positions (m).
     pub star: &'a [Point],
@@ -60,8 +56,6 @@ pub struct NarrowPhase<'a> {
     pub laws: &'a [JointLaw],
     /// Law of each joint trace, after switches.
     pub trace_law: &'a [LawId],
-    /// Factor on the strength of all joints.
-    pub strength: f64,
     /// Law of contacts between faces that were no joints.
     pub default_law: LawId,
     /// Velocities (m/s) of the covers during the last step.
@@ -350,7 +344,7 @@ impl NarrowPhase<'_> {
         let next = |point: EdgeId| self.boundary.next[point];
         let (mut point, mut area, mut turns, mut nearest) = (edge, 0.0, 0, (f64::INFINITY, edge));
         loop {
-            let ends = [point, next(point)].map(|point| self.position[point]);
+            let ends = [point, next(point)].map(|point| self.frames.position(point));
             let [a, b] = ends.map(|end| end - p);
             area += a.perp(&b);
             if (a.y > 0.0) != (b.y > 0.0) && (a.perp(&b) > 0.0) == (b.y > 0.0) {
@@ -420,9 +414,4 @@ fn list_entering(verdicts: &[u8], entering: &mut Vec<u32>) {
         count += usize::from((verdict & ENTERS != 0) & is_considered(verdict));
     }
     entering.truncate(count);
-}
-
-/// The direction a quarter turn to the right: outward where rock is on the left.
-fn right_of(along: Vector) -> Vector {
-    Vector::new(along.y, -along.x)
 }

@@ -2,9 +2,8 @@
 
 use enmm_lanes::{LANES, Places};
 
+use crate::contact::frame::{EDGE_PAIRS, NODE_PAIRS};
 use crate::contact::{ContactHistory, NearPair, NodeId, SideId};
-
-use super::frame::{EDGE_PAIRS, NODE_PAIRS};
 
 /// Near pairs in a run, which one thread takes: fixed, so that the order does not depend on threads.
 const RUN: usize = 4096;

@@ -1,10 +1,11 @@
 //! The vertex rule (theory §5): which of the sides near a node it may enter. A wrong choice locks blocks that should
 //! slide. Rule 1 is applied in `nearest.rs`, eight near sides at once.
 
+use crate::contact::frame::right_of;
 use crate::contact::{ContactState, Corner, EdgeId, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
 
-use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE, right_of};
+use super::{ContactCandidate, NarrowPhase, TIE_TOLERANCE};
 
 /// One end of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +38,7 @@ impl NarrowPhase<'_> {
             if missed && !self.is_kept(node, candidate, end) {
                 return None;
             }
-            let corner = self.position[at.point];
+            let corner = self.frames.position(at.point);
             if (p - corner).norm_squared() < self.size * self.size {
                 overlap[end as usize] = self.overlap_round(node, candidate, p, end)?;
             }
@@ -57,7 +58,7 @@ impl NarrowPhase<'_> {
         let boundary = self.boundary;
         let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side][end as usize];
         let meets = boundary.node_before[corner];
-        let (q, outward) = (self.position[corner], self.frames.edge(round).normal());
+        let (q, outward) = (self.frames.position(corner), self.frames.edge(round).normal());
         let frame = self.frames.node(node);
         let (own, distance) = (frame.to[end as usize], frame.distance[end as usize]);
         let facing = if end == End::Start { right_of(-own) } else { right_of(own) } / distance;
@@ -107,7 +108,7 @@ impl NarrowPhase<'_> {
     pub(super) fn overlap_at(&self, node: NodeId, candidate: &ContactCandidate, end: End) -> f64 {
         let at = self.boundary.side_ends[candidate.side][end as usize];
         let frame = self.frames.node(node);
-        let to = self.position[at.point] - frame.position;
+        let to = self.frames.position(at.point) - frame.position;
         let inside = to.dot(&self.frames.edge(at.round).normal());
         let depths = [to.perp(&frame.to[0]) / frame.distance[0], frame.to[1].perp(&to) / frame.distance[1]];
         let depth = depths[0].min(depths[1]);

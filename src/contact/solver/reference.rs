@@ -7,7 +7,7 @@
 
 use enmm_lanes::First;
 
-use crate::contact::{Pair, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Closure, ContactSetting, Pair, SoftSpring, Spring, VertexEdge};
 use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
@@ -17,23 +17,29 @@ use super::{Approach, BlockImpulse, LIGHT, SolverOptions, SolverReport};
 /// What a contact answers with in a step, beside what [`VertexEdge`] says of it.
 #[derive(Debug, Clone)]
 struct Equation {
+    /// The node and the position on the edge that it faces.
+    pair: Pair,
     /// Arms from the centroids of the blocks to the node (m).
     arms: [Vector; 2],
     /// z = Σwμ/m of both blocks.
     z: [f64; 2],
     /// Responses of the normal and of the shear spring.
     answers: [SoftSpring; 2],
+    /// Curve of the normal spring.
+    closure: Closure,
 }
 
 impl Equation {
     fn new(contact: &VertexEdge, masses: &MassMatrix, options: &SolverOptions, approach: &Approach) -> Self {
-        let (pair, axes) = (&contact.pair, [contact.normal, contact.tangent()]);
-        let arms = pair.blocks.map(|block| contact.point - approach.motion[block].centre);
+        let setting = &approach.setting;
+        let (pair, axes) = (contact.pair(setting.boundary), [contact.normal, contact.tangent()]);
+        let point = setting.frames.position(contact.point);
+        let arms = pair.blocks.map(|block| point - approach.motion[block].centre);
         let compliance = axes.map(|axis| pair.compliance(masses, &arms, axis));
-        let speed = contact.relative(approach.predicted);
-        let last = contact.relative(approach.velocity).map(|v| v * approach.dt_last);
+        let speed = contact.relative(setting.boundary, approach.predicted);
+        let last = contact.relative(setting.boundary, approach.velocity).map(|v| v * approach.dt_last);
         let inverse: f64 = pair.blocks.map(|block| masses.inverse_total[block]).iter().sum();
-        let penalty = approach.laws[contact.law].penalty;
+        let penalty = setting.laws[contact.law].penalty;
         let spring = |axis: usize| {
             let (stiffness, compliance, speed) = (contact.stiffness[axis], compliance[axis], speed[axis]);
             let SolverOptions { dt, kick, .. } = *options;
@@ -42,13 +48,14 @@ impl Equation {
             if is_centred { own.centred(First, last[axis], approach.bouncing(First, inverse)) } else { own }
         };
         let normal = spring(0);
-        let closing = if contact.closes_on_a_curve() {
+        let closure = contact.closure(setting);
+        let closing = if closure.is_curved() {
             Spring { stiffness: 1.0, ..normal }.response(-contact.gap)
         } else {
             normal.response(-contact.stiffness[0] * contact.gap)
         };
         let answers = [closing, spring(1).response(contact.shear_stored())];
-        Self { arms, z: [0, 1].map(|k| pair.z(k, masses)), answers }
+        Self { pair, arms, z: [0, 1].map(|k| pair.z(k, masses)), answers, closure }
     }
 }
 
@@ -72,8 +79,9 @@ impl<'a> Impulses<'a> {
         }
     }
 
-    /// Velocity (m/s) that they give to point `k` of a pair: all of Eq. 17 but v* of the start, which the springs know.
-    fn velocity(&self, pair: &Pair, k: usize, equation: &Equation) -> Vector {
+    /// Velocity (m/s) that they give to point `k` of a contact: all of Eq. 17 but v* of the start, which the springs know.
+    fn velocity(&self, k: usize, equation: &Equation) -> Vector {
+        let pair = &equation.pair;
         let own = cover::sample(&pair.covers[k], &pair.weights[k], &self.increment);
         let (block, masses) = (pair.blocks[k], self.mass_matrix);
         if !masses.is_free(block) {
@@ -85,8 +93,9 @@ impl<'a> Impulses<'a> {
         own + shift + turned(equation.arms[k]) * (masses.spin[block] * moment)
     }
 
-    /// Point `k` of a pair takes an impulse (N·s/m).
-    fn push(&mut self, pair: &Pair, k: usize, equation: &Equation, impulse: Vector) {
+    /// Point `k` of a contact takes an impulse (N·s/m).
+    fn push(&mut self, k: usize, equation: &Equation, impulse: Vector) {
+        let pair = &equation.pair;
         for (&i, weight) in pair.covers[k].iter().zip(pair.weights[k]) {
             self.increment[i] += self.mass_matrix.inverse[i].component_mul(&impulse) * weight;
         }
@@ -102,8 +111,8 @@ impl<'a> Impulses<'a> {
     /// Both bodies of a contact take the impulses of forces (N/m) normal and shear that act for `kick` (s).
     fn push_both(&mut self, contact: &VertexEdge, equation: &Equation, [normal, shear]: [f64; 2], kick: f64) {
         let impulse = (contact.normal * normal + contact.tangent() * shear) * kick;
-        self.push(&contact.pair, 0, equation, impulse);
-        self.push(&contact.pair, 1, equation, -impulse);
+        self.push(0, equation, impulse);
+        self.push(1, equation, -impulse);
     }
 }
 
@@ -119,7 +128,7 @@ pub fn solve<'a>(
     let equation = |contact: &VertexEdge| Equation::new(contact, mass_matrix, options, approach);
     let equations: Vec<Equation> = contacts.iter().map(equation).collect();
     for (contact, equation) in contacts.iter_mut().zip(&equations) {
-        let expected = contact.expected();
+        let expected = contact.expected(&contact.limits(&approach.setting));
         [contact.history.normal_force, contact.history.shear_force] = expected;
         impulses.push_both(contact, equation, expected, options.kick);
     }
@@ -127,7 +136,7 @@ pub fn solve<'a>(
     let mut changes = vec![0.0; contacts.len()];
     while report.sweeps < options.sweeps_max {
         for ((contact, equation), change) in contacts.iter_mut().zip(&equations).zip(&mut changes) {
-            *change = solve_contact(contact, equation, &mut impulses, options.kick);
+            *change = solve_contact(contact, equation, &approach.setting, &mut impulses, options.kick);
         }
         report.sweeps += 1;
         report.contacts_solved += contacts.len() as u64;
@@ -140,11 +149,17 @@ pub fn solve<'a>(
 }
 
 /// One contact takes its new forces: open, slip or lock; returns the larger of their changes (N/m).
-fn solve_contact(contact: &mut VertexEdge, equation: &Equation, impulses: &mut Impulses, kick: f64) -> f64 {
-    let velocity = impulses.velocity(&contact.pair, 0, equation) - impulses.velocity(&contact.pair, 1, equation);
+fn solve_contact(
+    contact: &mut VertexEdge,
+    equation: &Equation,
+    setting: &ContactSetting,
+    impulses: &mut Impulses,
+    kick: f64,
+) -> f64 {
+    let velocity = impulses.velocity(0, equation) - impulses.velocity(1, equation);
     let before = forces(contact);
     let [normal, shear] = asked(contact, equation, velocity);
-    contact.decide(normal, shear);
+    contact.decide(normal, shear, setting);
     let after = forces(contact);
     let change = [after[0] - before[0], after[1] - before[1]];
     impulses.push_both(contact, equation, change, kick);
@@ -165,9 +180,8 @@ fn asked(contact: &VertexEdge, equation: &Equation, u: Vector) -> [f64; 2] {
     });
     let [kept_normal, kept_shear] = [equation.answers[0].kept, equation.answers[1].kept];
     // Of a joint that closes on a curve the sum above is the closure from which the force follows (Eq. 35).
-    let curve = contact.closure();
-    let normal =
-        if contact.closes_on_a_curve() { curve.solve(normal, kept_normal) } else { normal / (1.0 + kept_normal) };
+    let curve = equation.closure;
+    let normal = if curve.is_curved() { curve.solve(normal, kept_normal) } else { normal / (1.0 + kept_normal) };
     [normal, shear / (1.0 + kept_shear)]
 }
 

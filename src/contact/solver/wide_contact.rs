@@ -2,9 +2,9 @@
 
 use enmm_lanes::{Arithmetic, LANES, Values, prefetch};
 
-use crate::contact::{Limits, SoftSpring, Spring, VertexEdge};
+use crate::contact::{ContactSetting, Limits, SoftSpring, Spring, VertexEdge};
 use crate::cover::CoverId;
-use crate::geometry::Vector;
+use crate::geometry::{Point, Vector};
 
 use super::wide_block::{F64x8, WideBlock};
 use super::wide_point::{Bodies, Points};
@@ -56,19 +56,18 @@ struct Start {
 
 impl Start {
     #[inline(always)]
-    fn take(&mut self, lane: usize, contact: &VertexEdge, approach: &Approach) {
-        let VertexEdge { pair, point, stiffness, gap, .. } = contact;
-        let closes_on_a_curve = contact.closes_on_a_curve();
+    fn take(&mut self, lane: usize, contact: &VertexEdge, at: Point, approach: &Approach) {
+        let VertexEdge { stiffness, gap, .. } = contact;
+        let closes_on_a_curve = contact.closure(&approach.setting).is_curved();
         let stored = [if closes_on_a_curve { -gap } else { -stiffness[0] * gap }, contact.shear_stored()];
         for k in 0..2 {
-            self.point[k][lane] = point[k];
+            self.point[k][lane] = at[k];
             self.stiffness[k][lane] = stiffness[k];
             self.stored[k][lane] = stored[k];
         }
         self.closing[0] |= u8::from(closes_on_a_curve) << lane;
-        self.joined |= u8::from(pair.blocks[0] == pair.blocks[1]) << lane;
         if approach.damping.is_some() {
-            let penalty = approach.laws[contact.law].penalty;
+            let penalty = approach.setting.laws[contact.law].penalty;
             (0..2).for_each(|k| self.own[k] |= u8::from(!penalty[k]) << lane);
         }
     }
@@ -96,6 +95,20 @@ impl ContactView<'_> {
             prefetch(&self.contacts[contact as usize..=contact as usize]);
         }
     }
+
+    /// Asks the memory for the points of the contacts of some turns.
+    #[inline(always)]
+    fn fetch_points(&self, [first, end]: [usize; 2]) {
+        let count = self.turns.len();
+        let setting = &self.approach.setting;
+        for &contact in &self.turns[first.min(count)..end.min(count)] {
+            let point = self.contacts[contact as usize].point.index();
+            prefetch(&setting.boundary.covers[point..=point]);
+            prefetch(&setting.boundary.weights[point..=point]);
+            prefetch(&setting.boundary.block[point..=point]);
+            setting.frames.fetch(point);
+        }
+    }
 }
 
 impl WideContact {
@@ -116,7 +129,8 @@ impl WideContact {
         let mut start = Start::default();
         let contacts = self.of(from.turns);
         if from.turns.len() > FAR {
-            from.fetch(turns.map(|turn| turn as usize + AHEAD));
+            from.fetch(turns.map(|turn| turn as usize + 2 * AHEAD));
+            from.fetch_points(turns.map(|turn| turn as usize + AHEAD));
         }
         for (lane, &contact) in contacts.iter().enumerate() {
             self.take(lane, &from.contacts[contact as usize], &mut start, blocks, from, first_cover);
@@ -152,22 +166,28 @@ impl WideContact {
         from: &ContactView,
         first_cover: CoverId,
     ) {
-        let pair = &contact.pair;
-        let turned = pair.blocks[0] != blocks[0].blocks[lane];
-        let [first, second] = if turned { [1, 0] } else { [0, 1] };
-        self.points[0].take(lane, pair, first, first_cover);
-        self.points[1].take(lane, pair, second, first_cover);
-        let normal = if turned { -contact.normal } else { contact.normal };
+        let setting = &from.approach.setting;
+        let (boundary, point) = (setting.boundary, contact.point);
+        let mut points = [(&boundary.covers[point], &boundary.weights[point]), (&contact.covers, &contact.weights)];
+        let mut normal = contact.normal;
+        if boundary.block[point] != blocks[0].blocks[lane] {
+            points.swap(0, 1);
+            normal = -normal;
+        }
+        self.points[0].take(lane, points[0], first_cover);
+        self.points[1].take(lane, points[1], first_cover);
         (self.normal[0][lane], self.normal[1][lane]) = (normal.x, normal.y);
-        [self.force[0][lane], self.force[1][lane]] = contact.expected();
-        start.take(lane, contact, from.approach);
-        let (friction, cohesion, tension) = match contact.limits {
+        let limits = contact.limits(setting);
+        [self.force[0][lane], self.force[1][lane]] = contact.expected(&limits);
+        start.take(lane, contact, setting.frames.position(point), from.approach);
+        start.joined |= u8::from(blocks[0].blocks[lane] == blocks[1].blocks[lane]) << lane;
+        let (friction, cohesion, tension) = match limits {
             Limits::MohrCoulomb { friction, cohesion, tension } => (friction, cohesion, tension),
             Limits::BartonBandis { .. } => (0.0, 0.0, 0.0),
         };
         (self.friction[lane], self.cohesion[lane]) = (friction, cohesion);
         self.open[lane] = if tension > 0.0 { (-tension).next_down() } else { 0.0 };
-        self.curved |= contact.is_curved();
+        self.curved |= limits.is_curved() | (start.closing[0] != 0);
     }
 
     /// Leaves a lane without contact.
@@ -235,10 +255,10 @@ impl WideContact {
 
     /// Leaves force and state in the contact of a lane.
     #[inline(always)]
-    pub fn finish(&self, lane: usize, contact: &mut VertexEdge) {
+    pub fn finish(&self, lane: usize, contact: &mut VertexEdge, setting: &ContactSetting) {
         let bears = self.shut >> lane & 1 == 0;
         let torn = !bears & (self.pressed >> lane & 1 == 0);
-        contact.end([self.force[0][lane], self.force[1][lane]], bears, torn);
+        contact.end([self.force[0][lane], self.force[1][lane]], bears, torn, setting);
     }
 
     /// Pushes with the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
@@ -321,12 +341,13 @@ impl WideContact {
     #[inline(never)]
     fn follow(&self, from: &ContactView, asked: &mut F64x8, limits: &mut F64x8) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
-            let contact = &from.contacts[contact as usize];
-            if contact.closes_on_a_curve() {
-                asked[lane] = contact.closure().solve(asked[lane], self.answers[0].kept[lane]);
+            let (contact, setting) = (&from.contacts[contact as usize], &from.approach.setting);
+            let closure = contact.closure(setting);
+            if closure.is_curved() {
+                asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);
             }
-            if contact.is_curved() {
-                limits[lane] = contact.shear_limit(asked[lane]);
+            if closure.is_curved() || contact.limits(setting).is_curved() {
+                limits[lane] = contact.shear_limit(asked[lane], setting);
             }
         }
     }

@@ -2,8 +2,7 @@
 
 use enmm_lanes::{LANES, Places, Values};
 
-use crate::contact::Pair;
-use crate::cover::{BlockId, CoverId};
+use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::{BlockMotion, MassMatrix};
 
@@ -65,12 +64,12 @@ impl Points {
         (self.covers, self.holds) = ([Places::default(); 3], false);
     }
 
-    /// Takes covers and weights of point `k` of a pair; covers count from the first one of the part of the order on.
+    /// Takes covers and weights of a point; covers count from the first one of the part of the order on.
     #[inline(always)]
-    pub fn take(&mut self, lane: usize, pair: &Pair, k: usize, first_cover: CoverId) {
-        for (j, &cover) in pair.covers[k].iter().enumerate() {
-            self.covers[j].set(lane, cover.number() - first_cover.number());
-            self.weights[j][lane] = pair.weights[k][j];
+    pub fn take(&mut self, lane: usize, (covers, weights): (&[CoverId; 3], &Weights), first_cover: CoverId) {
+        for k in 0..3 {
+            self.covers[k].set(lane, covers[k].number() - first_cover.number());
+            self.weights[k][lane] = weights[k];
         }
     }
 

@@ -1,6 +1,6 @@
 //! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
 
-use crate::contact::{ContactState, VertexEdge};
+use crate::contact::{Boundary, ContactState, Pair, VertexEdge};
 use crate::cover::CoverId;
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_block};
@@ -15,12 +15,12 @@ impl Step<'_> {
         if self.workspace.implicit.matrix.is_empty() {
             self.set_pattern();
         }
-        let workspace = &mut *self.workspace;
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut workspace.implicit;
         let matrix = &buffers.matrix;
         buffers.contact_slots.clear();
         buffers.contact_slots.extend(workspace.contacts.iter().map(|contact| {
-            let ids = six(contact);
+            let ids = six(&contact.pair(boundary));
             std::array::from_fn(|k| {
                 let (row, column) = (ids[k / 6], ids[k % 6]);
                 if row < column { UNCOUPLED } else { matrix.slot(row, column) }
@@ -105,20 +105,20 @@ impl Step<'_> {
 
     /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
     fn add_contacts(&mut self) {
-        let workspace = &mut *self.workspace;
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut workspace.implicit;
         buffers.factored.clear();
         for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,
-                ContactState::Slip if buffers.cautious => secant(contact, &buffers.moved),
+                ContactState::Slip if buffers.cautious => secant(contact, boundary, &buffers.moved),
                 ContactState::Slip => 0.0,
                 ContactState::Lock => contact.stiffness[1],
             };
             let spring = spring(contact, shear);
-            let ids = six(contact);
-            let weights = six_weights(contact);
+            let pair = contact.pair(boundary);
+            let (ids, weights) = (six(&pair), six_weights(&pair));
             for (k, &slot) in slots.iter().enumerate().filter(|(_, slot)| **slot != UNCOUPLED) {
                 let (a, b) = (k / 6, k % 6);
                 let block = spring.map(|v| v * weights[a] * weights[b]);
@@ -147,19 +147,19 @@ impl Step<'_> {
 }
 
 /// Covers of the node and of the edge.
-fn six(contact: &VertexEdge) -> [CoverId; 6] {
-    std::array::from_fn(|k| contact.pair.covers[k / 3][k % 3])
+fn six(pair: &Pair) -> [CoverId; 6] {
+    std::array::from_fn(|k| pair.covers[k / 3][k % 3])
 }
 
 /// Their weights, those of the edge negative.
-fn six_weights(contact: &VertexEdge) -> [f64; 6] {
-    std::array::from_fn(|k| contact.pair.weights[k / 3][k % 3] * if k < 3 { 1.0 } else { -1.0 })
+fn six_weights(pair: &Pair) -> [f64; 6] {
+    std::array::from_fn(|k| pair.weights[k / 3][k % 3] * if k < 3 { 1.0 } else { -1.0 })
 }
 
 /// Shear force over the way that its spring alone would have taken (N/m per m): between no spring, which lets a block
 /// go in one iteration that is held in the next, and the spring of a contact that does not slip.
-fn secant(contact: &VertexEdge, moved: &[Vector]) -> f64 {
-    let asked = (contact.shear_stored() - contact.stiffness[1] * contact.relative(moved)[1]).abs();
+fn secant(contact: &VertexEdge, boundary: &Boundary, moved: &[Vector]) -> f64 {
+    let asked = (contact.shear_stored() - contact.stiffness[1] * contact.relative(boundary, moved)[1]).abs();
     contact.stiffness[1] * (contact.history.shear_force.abs() / asked.max(f64::MIN_POSITIVE)).min(1.0)
 }
 

@@ -1,8 +1,9 @@
 //! Forces out of balance: inertia, elements, contacts and supports at the positions reached.
 
-use crate::contact::VertexEdge;
+use crate::contact::{Boundary, ContactSetting, Pair, VertexEdge};
 use crate::geometry::Vector;
 use crate::mechanics::{self, Deformation, push_mass};
+use crate::state::{ImplicitWorkspace, Workspace};
 
 use super::{Inertia, Step};
 
@@ -27,11 +28,10 @@ impl Step<'_> {
 
     /// Updates all contacts to the positions reached; returns whether one is not as the factor holds it.
     pub(super) fn update_contacts(&mut self) -> bool {
-        let workspace = &mut *self.workspace;
-        let buffers = &workspace.implicit;
-        let mut changed = buffers.factored.len() != workspace.contacts.len();
-        for (k, contact) in workspace.contacts.iter_mut().enumerate() {
-            update(contact, &buffers.moved);
+        let (setting, contacts, buffers) = self.contacts_and_buffers();
+        let mut changed = buffers.factored.len() != contacts.len();
+        for (k, contact) in contacts.iter_mut().enumerate() {
+            update(contact, &setting, &buffers.moved);
             changed |= buffers.factored.get(k) != Some(&contact.history.state);
         }
         self.bear();
@@ -40,12 +40,18 @@ impl Step<'_> {
 
     /// Forces of all contacts at the positions reached, friction under the pressure kept in `pressing`.
     pub(super) fn implicit_probe(&mut self) {
-        let workspace = &mut *self.workspace;
-        let buffers = &workspace.implicit;
-        for (contact, pressing) in workspace.contacts.iter_mut().zip(&buffers.pressing) {
-            update_under(contact, &buffers.moved, *pressing);
+        let (setting, contacts, buffers) = self.contacts_and_buffers();
+        for (contact, pressing) in contacts.iter_mut().zip(&buffers.pressing) {
+            update_under(contact, &setting, &buffers.moved, *pressing);
         }
         self.bear();
+    }
+
+    /// The contacts of the sub-step, what they share, and the buffers of the integrator.
+    fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitWorkspace) {
+        let Workspace { implicit, contacts, frames, strength, .. } = &mut *self.workspace;
+        let (boundary, laws) = (&self.model.boundary, &self.state.laws);
+        (ContactSetting { boundary, frames, laws, strength: *strength }, contacts, implicit)
     }
 
     /// Forces of all supports at the positions reached.
@@ -115,8 +121,9 @@ impl Step<'_> {
                 continue;
             }
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            mechanics::spread(&contact.pair.covers[0], &contact.pair.weights[0], force, residual);
-            mechanics::spread(&contact.pair.covers[1], &contact.pair.weights[1], -force, residual);
+            let Pair { covers, weights, .. } = contact.pair(&self.model.boundary);
+            mechanics::spread(&covers[0], &weights[0], force, residual);
+            mechanics::spread(&covers[1], &weights[1], -force, residual);
         }
         for row in &workspace.rows {
             let support = &self.model.supports[row.support as usize];
@@ -127,22 +134,22 @@ impl Step<'_> {
 
 /// Forces and state of a contact after displacements of its covers (Eq. 70): the springs at the positions reached,
 /// within what the joint can carry.
-fn update(contact: &mut VertexEdge, moved: &[Vector]) {
-    let [normal, shear] = springs(contact, moved);
-    contact.decide(normal, shear);
+fn update(contact: &mut VertexEdge, setting: &ContactSetting, moved: &[Vector]) {
+    let [normal, shear] = springs(contact, setting.boundary, moved);
+    contact.decide(normal, shear, setting);
 }
 
 /// The same with the shear limit of an earlier normal force.
-fn update_under(contact: &mut VertexEdge, moved: &[Vector], pressing: f64) {
-    let [normal, shear] = springs(contact, moved);
-    let limit = contact.shear_limit(pressing);
-    contact.decide(normal, shear);
+fn update_under(contact: &mut VertexEdge, setting: &ContactSetting, moved: &[Vector], pressing: f64) {
+    let [normal, shear] = springs(contact, setting.boundary, moved);
+    let limit = contact.shear_limit(pressing, setting);
+    contact.decide(normal, shear, setting);
     contact.history.shear_force = shear.clamp(-limit, limit);
 }
 
 /// Normal and shear force (N/m) that the springs of a contact ask for.
-fn springs(contact: &VertexEdge, moved: &[Vector]) -> [f64; 2] {
-    let [opened, sheared] = contact.relative(moved);
+fn springs(contact: &VertexEdge, boundary: &Boundary, moved: &[Vector]) -> [f64; 2] {
+    let [opened, sheared] = contact.relative(boundary, moved);
     let shear = contact.shear_stored() - contact.stiffness[1] * sheared;
     [-contact.stiffness[0] * (contact.gap + opened), shear]
 }

@@ -70,13 +70,14 @@ impl Step<'_> {
         let workspace = &*self.workspace;
         let buffers = &workspace.implicit;
         let mut works = Ledger::default();
+        let setting = workspace.setting(self.model, self.state);
         let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
         for (contact, before) in workspace.contacts.iter().zip(&buffers.forces_before) {
-            let [opened, sheared] = contact.relative(&buffers.moved);
+            let [opened, sheared] = contact.relative(setting.boundary, &buffers.moved);
             let shear = mean(contact.history.shear_force, before[1]) * sheared;
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
             if contact.history.state == ContactState::Slip {
-                let (kept, _) = contact.shear_after(sheared);
+                let (kept, _) = contact.shear_after(sheared, &setting);
                 let old = contact.shear_stored();
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }

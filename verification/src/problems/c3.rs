@@ -128,7 +128,8 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
                 continue;
             }
             report = found;
-            let between = |c: &&VertexEdge| c.pair.blocks.iter().all(|b| blocks.contains(b));
+            let boundary = &simulation.model().boundary;
+            let between = |c: &&VertexEdge| c.blocks(boundary).iter().all(|b| blocks.contains(b));
             let push: f64 =
                 simulation.workspace().contacts.iter().filter(between).map(|c| c.history.normal_force).sum();
             if window > 0 {

@@ -68,7 +68,7 @@ pub struct JointState {
 
 /// The joints of a model as the last step left them.
 pub fn joint_state(simulation: &Simulation) -> JointState {
-    let contacts = simulation.contacts();
+    let (contacts, boundary) = (simulation.contacts(), &simulation.model().boundary);
     let length: f64 = contacts.iter().map(|c| c.length).sum();
     // A node on one body and one on the other look at each other: what they do along the edge has the same sign.
     let along = |f: f64| f / length;
@@ -76,7 +76,7 @@ pub fn joint_state(simulation: &Simulation) -> JointState {
     JointState {
         normal: along(contacts.iter().map(|c| c.history.normal_force).sum()),
         shear: along(contacts.iter().map(|c| c.history.shear_force).sum::<f64>()).abs(),
-        slip: along(contacts.iter().map(|c| c.relative(displacement)[1] * c.length).sum::<f64>()).abs(),
+        slip: along(contacts.iter().map(|c| c.relative(boundary, displacement)[1] * c.length).sum::<f64>()).abs(),
         closure: along(contacts.iter().map(|c| -c.gap * c.length).sum()),
     }
 }

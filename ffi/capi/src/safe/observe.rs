@@ -36,8 +36,8 @@ impl Model {
         let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
         let contacts = self.inner.contacts();
         let of = |contact: &engine::contact::VertexEdge| {
-            let history = &contact.history;
-            let position = places[boundary.node_point[history.node]];
+            let (history, [node_block, edge_block]) = (&contact.history, contact.blocks(boundary));
+            let position = places[contact.point];
             enmm_contact {
                 struct_size: size_of::<enmm_contact>(),
                 state: match history.state {
@@ -46,8 +46,8 @@ impl Model {
                     ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
                 },
                 law: contact.law.number(),
-                node_block: contact.pair.blocks[0].number(),
-                edge_block: contact.pair.blocks[1].number(),
+                node_block: node_block.number(),
+                edge_block: edge_block.number(),
                 position_x: position.x,
                 position_y: position.y,
                 normal_x: contact.normal.x,

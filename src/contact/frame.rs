@@ -1,12 +1,11 @@
-//! Current positions and directions of edges and nodes, computed once a step for the narrow phase.
+//! Current positions and directions of edges and nodes, computed once a step.
 
 use enmm_lanes::Pair;
 use rayon::prelude::*;
 
-use crate::contact::{Boundary, EdgeId, NodeId};
 use crate::geometry::{Point, Vector};
 
-use super::right_of;
+use super::{Boundary, EdgeId, NodeId};
 
 /// Edges or nodes that a thread takes at least.
 const GRAIN: usize = 2048;
@@ -81,6 +80,17 @@ impl Frames {
         NodeFrame { position, to: [previous, next], distance: [distance.x, distance.y] }
     }
 
+    #[inline(always)]
+    pub(super) fn fetch(&self, point: usize) {
+        enmm_lanes::prefetch(&self.edges[point..=point]);
+    }
+
+    /// Position of a boundary point (m).
+    #[inline(always)]
+    pub fn position(&self, point: EdgeId) -> Point {
+        self.edges[point.index()][0]
+    }
+
     /// The pairs of all edges.
     pub(super) fn edge_pairs(&self) -> &[Pair] {
         self.edges.as_flattened()
@@ -118,4 +128,9 @@ impl Frames {
             enmm_fork::spread("frames", length, GRAIN, || nodes.map(node).collect_into_vec(&mut self.nodes));
         }
     }
+}
+
+/// The direction a quarter turn to the right: outward where rock is on the left.
+pub(super) fn right_of(along: Vector) -> Vector {
+    Vector::new(along.y, -along.x)
 }
