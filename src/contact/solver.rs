@@ -65,8 +65,6 @@ pub struct SolverReport {
 struct SolverView<'a> {
     /// Masses.
     mass_matrix: &'a MassMatrix,
-    /// 1/√m of the covers along each axis, 0 where held.
-    roots: &'a [Vector],
     /// 1/√m of the covers, negative where held along one axis alone, and μ/m, 0 where held along x.
     masses: &'a [Vector],
 }
@@ -130,7 +128,6 @@ pub struct OpenClose {
     /// First block and first cover of each run of blocks.
     cuts: Vec<(BlockId, CoverId)>,
     /// What a [`SolverView`] has of the covers.
-    roots: Vec<Vector>,
     masses: Vec<Vector>,
 }
 
@@ -143,7 +140,7 @@ impl OpenClose {
             + size_of_val(first_turn.as_slice())
             + size_of_val(contacts.as_slice())
             + size_of_val(slots.as_slice());
-        let masses = size_of_val(self.roots.as_slice()) + size_of_val(self.masses.as_slice());
+        let masses = size_of_val(self.masses.as_slice());
         let cover_impulse = size_of_val(self.cover_impulse.as_slice());
         let block_impulse = size_of_val(self.block_impulse.as_slice());
         size_of_val(self.rows.as_slice())
@@ -158,15 +155,13 @@ impl OpenClose {
     /// Forgets the order, and takes the masses of a stage.
     pub fn prepare(&mut self, mass_matrix: &MassMatrix, supports: &[Support], rows: &[SupportRow]) {
         self.order.clear();
-        self.roots.clear();
-        self.roots.extend(mass_matrix.inverse.iter().map(|inverse| inverse.map(f64::sqrt)));
         let masses = mass_matrix.inverse.iter().zip(&mass_matrix.inertial).map(|(inverse, inertial)| {
             let sign = if inverse.x == inverse.y { 1.0 } else { -1.0 };
             Vector::new(sign * inverse.max().sqrt(), inertial * inverse.x)
         });
         self.masses.clear();
         self.masses.extend(masses);
-        self.supports.prepare(supports, rows, &self.roots);
+        self.supports.prepare(supports, rows, &mass_matrix.inverse);
     }
 
     /// Makes the next step order the near pairs anew.
@@ -183,7 +178,7 @@ impl OpenClose {
         block_covers: &[u32],
         contacts: &[u32],
     ) {
-        let view = SolverView { mass_matrix, roots: &self.roots, masses: &self.masses };
+        let view = SolverView { mass_matrix, masses: &self.masses };
         if self.order.is_empty() {
             self.order.order(boundary, near_pairs, near_sides, &view);
             self.cuts.clear();
@@ -219,10 +214,10 @@ impl OpenClose {
     /// Nothing has moved but by supports.
     fn begin(&mut self, inputs: SolverInputs, others: &OtherConstraints) {
         let SolverInputs { mass_matrix, options, .. } = inputs;
-        let view = SolverView { mass_matrix, roots: &self.roots, masses: &self.masses };
+        let view = SolverView { mass_matrix, masses: &self.masses };
         self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
         self.cover_impulse.clear();
-        self.cover_impulse.resize(self.roots.len(), Vector::zeros());
+        self.cover_impulse.resize(self.masses.len(), Vector::zeros());
         self.block_impulse.clear();
         self.block_impulse.resize(mass_matrix.total.len(), PackedImpulse::default());
         self.bolts.clear();
@@ -240,7 +235,7 @@ impl OpenClose {
         let from = ContactView {
             contacts,
             turns: &self.sequence.contacts,
-            view: SolverView { mass_matrix, roots: &self.roots, masses: &self.masses },
+            view: SolverView { mass_matrix, masses: &self.masses },
             options,
             approach,
         };
@@ -328,8 +323,10 @@ impl OpenClose {
 
     /// Writes the velocity increments (m/s) of the covers by their own impulses, and the impulse sums of the blocks.
     pub fn impulses(&self, mass_matrix: &MassMatrix, increment: &mut [Vector], block_impulse: &mut [BlockImpulse]) {
-        for ((increment, cover_impulse), root) in increment.iter_mut().zip(&self.cover_impulse).zip(&self.roots) {
-            *increment = cover_impulse.component_mul(root);
+        let covers = self.cover_impulse.iter().zip(&self.masses).zip(&mass_matrix.inverse);
+        for (increment, ((cover_impulse, masses), inverse)) in increment.iter_mut().zip(covers) {
+            let root = if masses.x < 0.0 { inverse.map(f64::sqrt) } else { Vector::repeat(masses.x) };
+            *increment = cover_impulse.component_mul(&root);
         }
         for ((block_impulse, sums), total) in block_impulse.iter_mut().zip(&self.block_impulse).zip(&mass_matrix.total)
         {

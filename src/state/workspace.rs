@@ -22,7 +22,7 @@ pub struct Workspace {
     pub is_loaded: bool,
     /// Velocities without contact forces (m/s); between steps those before the last one.
     pub predicted: Vec<Vector>,
-    /// Velocities after damping and before any force (m/s): only where a report or the start of a stage asks.
+    /// Velocities (m/s) of the covers of one block after damping and before any force.
     pub damped: Vec<Vector>,
     /// Centroid and spin of each block.
     pub motion: Vec<BlockMotion>,

@@ -85,11 +85,11 @@ pub struct Anchor {
 impl Anchor {
     /// Point `k` of a pair, at the end of an `arm` (m) from the centroid of its block.
     pub fn new(pair: &Pair, k: usize, arm: Vector, view: &SolverView) -> Self {
-        let SolverView { mass_matrix, roots, .. } = view;
+        let SolverView { mass_matrix, .. } = view;
         let (block, covers) = (pair.blocks[k], pair.covers[k]);
         let mut weights = [Vector::zeros(); 3];
         for j in 0..3 {
-            weights[j] = roots[covers[j]] * pair.weights[k][j];
+            weights[j] = mass_matrix.inverse[covers[j]].map(f64::sqrt) * pair.weights[k][j];
         }
         if !mass_matrix.is_free(block) {
             return Self { covers, weights, block: None, ..Self::default() };

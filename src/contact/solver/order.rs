@@ -180,7 +180,7 @@ impl SolverOrder {
         let Self { entries, block_pairs, pushed, groups, .. } = self;
         let blocks = view.mass_matrix.total.len();
         groups.pushing.clear();
-        groups.pushing.resize(blocks + view.roots.len(), 0);
+        groups.pushing.resize(blocks + view.masses.len(), 0);
         block_pairs.clear();
         pushed.clear();
         let mut first = 0;

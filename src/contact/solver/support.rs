@@ -62,20 +62,20 @@ impl SupportEquation {
 }
 
 impl SupportSystem {
-    /// Takes the supports of a stage; `roots` are 1/√m of the covers along each axis.
-    pub fn prepare(&mut self, supports: &[Support], rows: &[SupportRow], roots: &[Vector]) {
+    /// Takes the supports of a stage; `inverse` is 1/m of the covers along each axis.
+    pub fn prepare(&mut self, supports: &[Support], rows: &[SupportRow], inverse: &[Vector]) {
         self.rows.clear();
         self.rows.extend((0..).zip(rows).map(|(k, row)| {
             let support = &supports[row.support as usize];
-            let along = |j: usize| roots[support.covers[j]].component_mul(&support.direction);
+            let along = |j: usize| inverse[support.covers[j]].map(f64::sqrt).component_mul(&support.direction);
             let weights = [0, 1, 2].map(|j| along(j) * support.weights[j]);
             SupportEquation { row: k, covers: support.covers, weights, ..SupportEquation::default() }
         }));
-        let order = order_along_boundary(&self.rows, roots.len());
+        let order = order_along_boundary(&self.rows, inverse.len());
         let sorted: Vec<SupportEquation> = order.iter().map(|&k| self.rows[k]).collect();
         self.rows = sorted;
         // First row of each cover.
-        let mut seen = vec![None; roots.len()];
+        let mut seen = vec![None; inverse.len()];
         self.first.clear();
         self.end.clear();
         let mut end = 0;

@@ -219,7 +219,7 @@ impl WideContact {
             last = self.relative(lanes, normal, &motion.velocity[part.clone()]);
         }
         let at = [lanes.load(&start.point[0]), lanes.load(&start.point[1])];
-        let tables = [&view.roots[part.clone()], &view.masses[part]];
+        let tables = [&view.mass_matrix.inverse[part.clone()], &view.masses[part]];
         let a = self.points[0].weigh(lanes, at, normal, &blocks[0], tables);
         let b = self.points[1].weigh(lanes, at, normal, &blocks[1], tables);
         let (dt, kick, one) = (lanes.splat(options.dt), lanes.splat(options.kick), lanes.splat(1.0));

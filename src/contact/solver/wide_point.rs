@@ -94,8 +94,8 @@ impl Points {
     }
 
     /// Divides the weights by the roots of the covers' masses, and finds levers and shares of points at `at` (m);
-    /// returns the inverse effective masses (m/kg) along the normals and along the tangents (Eq. 4). `roots` and
-    /// `masses` are those of the [`SolverView`](super::SolverView).
+    /// returns the inverse effective masses (m/kg) along the normals and along the tangents (Eq. 4). `inverse` is 1/m of
+    /// the covers, and `masses` those of the [`SolverView`](super::SolverView).
     #[inline(always)]
     pub fn weigh<L: Values>(
         &mut self,
@@ -103,7 +103,7 @@ impl Points {
         at: [L::F; 2],
         [x, y]: [L::F; 2],
         blocks: &Bodies,
-        [roots, masses]: [&[Vector]; 2],
+        [inverse, masses]: [&[Vector]; 2],
     ) -> [L::F; 2] {
         let zero = lanes.splat(0.0);
         let (mut own, mut z) = ([zero; 2], zero);
@@ -115,7 +115,7 @@ impl Points {
             self.held[k] = [0; 2];
             let half = lanes.at_most(root, zero) & !lanes.at_most(zero, root);
             if half != 0 {
-                self.hold(k, half, roots);
+                self.hold(k, half, inverse);
                 along_x = lanes.select(self.held[k][0], zero, along_x);
                 along_y = lanes.select(self.held[k][1], zero, along_y);
             }
@@ -141,10 +141,10 @@ impl Points {
     /// Notes along which axis the `k`-th covers of some lanes are held.
     #[cold]
     #[inline(never)]
-    fn hold(&mut self, k: usize, lanes: u8, roots: &[Vector]) {
+    fn hold(&mut self, k: usize, lanes: u8, inverse: &[Vector]) {
         self.holds = true;
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            let axis = usize::from(roots[self.covers[k].index(lane) as usize].y == 0.0);
+            let axis = usize::from(inverse[self.covers[k].index(lane) as usize].y == 0.0);
             self.held[k][axis] |= 1 << lane;
         }
     }

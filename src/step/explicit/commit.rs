@@ -87,24 +87,25 @@ impl Step<'_> {
         self.workspace.sums.iter_mut().for_each(|sums| sums.is_near = false);
     }
 
-    /// Velocities after damping and before any force.
-    fn fill_damped(&mut self) {
+    /// Changes of the velocities (m/s) of each cover by all forces, cover by cover: what is more than damping leaves.
+    fn each_change(&mut self, mut see: impl FnMut(usize, Vector)) {
         let (model, state) = (self.model, &*self.state);
-        let Workspace { mass_matrix, damped, .. } = &mut *self.workspace;
+        let Workspace { mass_matrix, damped, predicted, .. } = &mut *self.workspace;
         for block in model.covers.blocks() {
-            let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
-            let out = &mut damped[model.covers.covers_of(block)];
-            if mass_matrix.fixed[block] {
-                out.fill(Vector::zeros());
-            } else {
-                mechanics::damp(&covers, blocks::block_damping(model, mass_matrix, self.damping, block), out);
+            let own = model.covers.covers_of(block);
+            damped.clear();
+            damped.resize(own.len(), Vector::zeros());
+            if !mass_matrix.fixed[block] {
+                let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
+                mechanics::damp(&covers, blocks::block_damping(model, mass_matrix, self.damping, block), damped);
             }
+            own.zip(&*damped).for_each(|(i, damped)| see(i, predicted[i] - damped));
         }
     }
 
     /// Energies at the start of this sub-step and the unbalanced ratio.
     fn report(&mut self, times: StepTimes, works: &Ledger) -> StepReport {
-        self.fill_damped();
+        let unbalanced = self.unbalanced(times);
         let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
         let kinetic =
             |velocity: &[Vector]| report::kinetic(model, &workspace.mass_matrix, &state.displacement, velocity);
@@ -121,7 +122,7 @@ impl Step<'_> {
             time: self.time,
             dt: times.dt,
             ledger,
-            unbalanced: self.unbalanced(times),
+            unbalanced,
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
             penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
@@ -130,14 +131,13 @@ impl Step<'_> {
     }
 
     /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
-    fn unbalanced(&self, StepTimes { kick, window, .. }: StepTimes) -> f64 {
-        let (mass_matrix, workspace) = (&self.model.mass_matrix, &*self.workspace);
+    fn unbalanced(&mut self, StepTimes { kick, window, .. }: StepTimes) -> f64 {
+        let mass_matrix = &self.model.mass_matrix;
         let acceleration = self.acceleration(window);
-        let (mut net, mut applied) = (0.0, 0.0);
-        for i in 0..mass_matrix.mass.len() {
-            net += ((workspace.predicted[i] - workspace.damped[i]) * (mass_matrix.mass[i] / kick)).norm_squared();
-            applied += (workspace.load_force[i] + acceleration * mass_matrix.row_sum[i]).norm_squared();
-        }
+        let loads = self.workspace.load_force.iter().zip(&mass_matrix.row_sum);
+        let applied: f64 = loads.map(|(force, mass)| (force + acceleration * *mass).norm_squared()).sum();
+        let mut net = 0.0;
+        self.each_change(|i, change| net += (change * (mass_matrix.mass[i] / kick)).norm_squared());
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
         report::unbalanced(net, applied.max(stage)).sqrt()
     }
@@ -148,10 +148,9 @@ impl Step<'_> {
         if self.state.stage_step > 0 || !matches!(self.regime, Regime::Static { ramp: 0.0 }) {
             return;
         }
-        self.fill_damped();
-        let workspace = &*self.workspace;
-        for (i, force) in self.state.stage_force.iter_mut().enumerate() {
-            *force = (workspace.predicted[i] - workspace.damped[i]) * (self.model.mass_matrix.mass[i] / kick);
-        }
+        let mass = &self.model.mass_matrix.mass;
+        let mut stage_force = std::mem::take(&mut self.state.stage_force);
+        self.each_change(|i, change| stage_force[i] = change * (mass[i] / kick));
+        self.state.stage_force = stage_force;
     }
 }
