@@ -75,7 +75,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         physical_covers: covers.cover_count(),
         stars: stars_by_cover_count.values().sum(),
         stars_by_cover_count,
-        cover_masses: sorted(model.mass_matrix.row_sum.clone()),
+        cover_masses: sorted(model.mass_matrix.row_sum.to_vec()),
         vertices: distinct(&covers.polygon_points),
         boundary_edges: built.boundary_pieces,
         initial_contacts: workspace.contacts.len(),

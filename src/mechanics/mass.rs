@@ -1,5 +1,7 @@
 //! Mass matrix: equal-thirds lumped mass of the covers with the rigid-exact correction of free blocks (Eqs. 2–4).
 
+use std::sync::Arc;
+
 use crate::cover::{BlockId, CoverId, Covers};
 use crate::geometry::{Point, Vector};
 
@@ -15,9 +17,9 @@ use super::Elasticity;
 #[derive(Debug, Clone, Default)]
 pub struct MassMatrix {
     /// Lumped mass m of each cover (kg/m).
-    pub mass: Vec<f64>,
+    pub mass: Arc<[f64]>,
     /// Row-sum mass ∫ρw of each cover (kg/m): the mass that gravity acts on.
-    pub row_sum: Vec<f64>,
+    pub row_sum: Arc<[f64]>,
     /// Mass of a cover for the centroid of its block: row-sum in a free block, lumped in a fixed one.
     pub inertial: Vec<f64>,
     /// 1/m along x and y, 0 where fixed.
@@ -44,19 +46,19 @@ pub struct MassMatrix {
 impl MassMatrix {
     /// Masses of all blocks as if free.
     pub fn free(covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
-        let mut mass_matrix =
-            Self { mass: vec![0.0; covers.cover_count()], row_sum: vec![0.0; covers.cover_count()], ..Self::default() };
+        let (mut lumped, mut row_sum) = (vec![0.0; covers.cover_count()], vec![0.0; covers.cover_count()]);
         for e in covers.elements() {
             let mass = rocks[element_rock[e] as usize].density * covers.element_area[e];
             let weights = covers.weights(e, covers.element_centroid[e]);
             for (k, &cover) in covers.element_covers[e].iter().enumerate() {
-                mass_matrix.mass[cover] += mass / 3.0;
-                mass_matrix.row_sum[cover] += mass * weights[k];
+                lumped[cover] += mass / 3.0;
+                row_sum[cover] += mass * weights[k];
             }
         }
-        mass_matrix.lightness = 1.0;
-        mass_matrix.inertial.clone_from(&mass_matrix.row_sum);
-        mass_matrix.inverse = mass_matrix.mass.iter().map(|m| Vector::repeat(1.0 / m)).collect();
+        let inertial = row_sum.clone();
+        let inverse = lumped.iter().map(|m| Vector::repeat(1.0 / m)).collect();
+        let (mass, row_sum) = (lumped.into(), row_sum.into());
+        let mut mass_matrix = Self { mass, row_sum, inertial, inverse, lightness: 1.0, ..Self::default() };
         for block in covers.blocks() {
             mass_matrix.push_block(covers, rocks, element_rock, block);
         }

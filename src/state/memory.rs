@@ -44,7 +44,7 @@ impl Model {
             ("patches", self.chunks.bytes()),
             ("covers", covers(&self.covers)),
             ("boundary", boundary(&self.boundary)),
-            ("masses", mass_matrix(&self.mass_matrix)),
+            ("masses", mass_matrix(&self.mass_matrix) + shared_masses(&self.mass_matrix)),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
             ("supports and ports", sum(&[&self.supports, &self.free_field, &self.bolts]) + held + ports),
         ]
@@ -152,10 +152,15 @@ fn boundary(boundary: &Boundary) -> usize {
         + sum(&[side_first, side_last, side_corner, side_previous, side_next, side_ends, block_thickness])
 }
 
+/// What the buffers share with the model.
+fn shared_masses(MassMatrix { mass, row_sum, .. }: &MassMatrix) -> usize {
+    size_of_val(&**mass) + size_of_val(&**row_sum)
+}
+
 fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
-    let MassMatrix { mass, row_sum, inertial, inverse, total, inverse_total, square, polar, .. } = mass_matrix;
+    let MassMatrix { inertial, inverse, total, inverse_total, square, polar, .. } = mass_matrix;
     let MassMatrix { polar_lumped, spin, fixed, .. } = mass_matrix;
-    sum(&[mass, row_sum, inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
+    sum(&[inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
 }
 
 fn inputs(inputs: &Inputs) -> usize {

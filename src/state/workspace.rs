@@ -16,10 +16,8 @@ use super::{ImplicitWorkspace, Model, State};
 pub struct Workspace {
     /// Masses with the fixities of the stage.
     pub mass_matrix: MassMatrix,
-    /// Forces of loads on covers (N/m).
+    /// Forces of loads on covers (N/m); empty where nothing pushes.
     pub load_force: Vec<Vector>,
-    /// Whether anything pushes on covers; otherwise `load_force` is zero.
-    pub is_loaded: bool,
     /// Velocities without contact forces (m/s); between steps those before the last one.
     pub predicted: Vec<Vector>,
     /// Velocities (m/s) of the covers of one block after damping and before any force.

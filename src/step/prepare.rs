@@ -11,7 +11,7 @@ use super::{Regime, applied, integrator_of, quiet};
 /// and a restored state.
 pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     let covers = model.covers.cover_count();
-    for field in [&mut workspace.load_force, &mut workspace.predicted, &mut workspace.increment] {
+    for field in [&mut workspace.predicted, &mut workspace.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }

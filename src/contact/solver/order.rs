@@ -30,7 +30,8 @@ pub struct SolverOrder {
     block_pairs: Vec<BlockPair>,
     /// First block of each run of blocks, and the number of blocks.
     leaf_block: Vec<BlockId>,
-    entries: Vec<Entry>,
+    /// Near sides by the lower of both blocks, then by the other one.
+    by_block: Vec<u32>,
     leaf: Vec<u32>,
     /// What the block pairs push, pair by pair: a free block by its number, a cover of a held one by its number after
     /// those of all blocks.
@@ -42,23 +43,49 @@ pub struct SolverOrder {
     groups: Groups,
 }
 
-/// A near side, by the blocks that it and the node belong to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
-    subdomain: u32,
-    blocks: [BlockId; 2],
-    near_side: u32,
+/// Near sides and the blocks that they are between.
+struct NearBlocks<'a> {
+    boundary: &'a Boundary,
+    near_pairs: &'a [NearPair],
+    near_sides: &'a NearSides,
 }
 
-/// All near sides of two blocks, a free one first when there is one: a range of the entries.
+impl<'a> NearBlocks<'a> {
+    fn count(&self) -> usize {
+        self.near_sides.as_slice().len()
+    }
+
+    /// Near edges of a near side.
+    fn edges(&self, near_side: u32) -> &'a [NearPair] {
+        self.near_sides.pairs_of(self.near_pairs, near_side as usize)
+    }
+
+    /// Blocks of node and side, the lower one first.
+    fn blocks(&self, near_side: usize) -> [BlockId; 2] {
+        let near = self.near_sides.as_slice()[near_side];
+        let points = [self.boundary.node_point[near.node], self.near_pairs[near.first as usize].edge];
+        let [own, other] = points.map(|point| self.boundary.block[point]);
+        [own.min(other), own.max(other)]
+    }
+}
+
+/// All near sides of two blocks, a free one first when there is one.
 #[derive(Debug, Clone, Copy)]
 struct BlockPair {
     subdomain: u32,
+    /// Those near sides, among all of them by block.
     first: u32,
     end: u32,
     /// What it pushes: the first, and the one after the last.
     pushed: [u32; 2],
     blocks: [BlockId; 2],
+}
+
+impl BlockPair {
+    /// Its near sides, among all of them by block.
+    fn near_sides(&self) -> std::ops::Range<usize> {
+        self.first as usize..self.end as usize
+    }
 }
 
 /// Groups of block pairs that share nothing that they push.
@@ -101,12 +128,12 @@ pub struct Sequence {
 impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
-        let Self { block_pair, leaf, pushed, count, touching, leaf_block, groups, .. } = self;
-        let lists = [block_pair, leaf, pushed, count, touching, &groups.left];
+        let Self { block_pair, by_block, leaf, pushed, count, touching, leaf_block, groups, .. } = self;
+        let lists = [block_pair, by_block, leaf, pushed, count, touching, &groups.left];
         let order = size_of_val(self.block_pairs.as_slice()) + size_of_val(leaf_block.as_slice());
         let groups = size_of_val(groups.members.as_slice()) + size_of_val(groups.pushing.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
-        order + lists + groups + size_of_val(self.entries.as_slice())
+        order + lists + groups
     }
 
     /// Whether it has to be made.
@@ -126,38 +153,30 @@ impl SolverOrder {
 
     /// Orders near sides.
     pub fn order(&mut self, boundary: &Boundary, near_pairs: &[NearPair], near_sides: &NearSides, view: &SolverView) {
-        self.entries.clear();
-        self.entries.extend((0..).zip(near_sides.as_slice()).map(|(near_side, near)| {
-            let points = [boundary.node_point[near.node], near_pairs[near.first as usize].edge];
-            let [own, other] = points.map(|point| boundary.block[point]);
-            Entry { subdomain: 0, blocks: [own.min(other), own.max(other)], near_side }
-        }));
-        self.cut(view);
-        for entry in &mut self.entries {
-            entry.subdomain = subdomain_of(entry.blocks.map(|b| self.leaf[b]));
-        }
-        self.entries.sort_unstable();
-        self.list_block_pairs(boundary, near_pairs, near_sides, view);
-        self.block_pair.resize(self.entries.len(), 0);
+        let near_sides = NearBlocks { boundary, near_pairs, near_sides };
+        self.cut(&near_sides, view);
+        self.list_block_pairs(&near_sides, view);
+        self.list_pushed(&near_sides, view);
+        self.block_pair.resize(self.by_block.len(), 0);
         for (index, block_pair) in (0u32..).zip(&self.block_pairs) {
-            for entry in &self.entries[block_pair.first as usize..block_pair.end as usize] {
-                self.block_pair[entry.near_side as usize] = index;
+            for &near_side in &self.by_block[block_pair.near_sides()] {
+                self.block_pair[near_side as usize] = index;
             }
         }
     }
 
     /// Cuts the blocks into runs of like work.
-    fn cut(&mut self, view: &SolverView) {
+    fn cut(&mut self, near_sides: &NearBlocks, view: &SolverView) {
         let mass_matrix = view.mass_matrix;
         let blocks = mass_matrix.total.len();
         self.leaf.clear();
         self.leaf.resize(blocks, 0);
-        for entry in &self.entries {
-            let [a, b] = entry.blocks;
+        for near_side in 0..near_sides.count() {
+            let [a, b] = near_sides.blocks(near_side);
             self.leaf[if mass_matrix.is_free(a) { a } else { b }] += 1;
         }
-        let leaves = self.entries.len().div_ceil(LEAF).next_power_of_two().min(LEAVES_MAX);
-        let total = self.entries.len().max(1);
+        let leaves = near_sides.count().div_ceil(LEAF).next_power_of_two().min(LEAVES_MAX);
+        let total = near_sides.count().max(1);
         let mut before = 0;
         self.leaf_block.clear();
         for (block, leaf) in BlockId::all(blocks).zip(&mut self.leaf) {
@@ -169,45 +188,65 @@ impl SolverOrder {
         self.leaf_block.resize(leaves + 1, BlockId::new(blocks));
     }
 
-    /// Lists the block pairs and what they push.
-    fn list_block_pairs(
-        &mut self,
-        boundary: &Boundary,
-        near_pairs: &[NearPair],
-        near_sides: &NearSides,
-        view: &SolverView,
-    ) {
-        let Self { entries, block_pairs, pushed, groups, .. } = self;
+    /// Lists the block pairs, part by part, and in each by their blocks.
+    fn list_block_pairs(&mut self, near_sides: &NearBlocks, view: &SolverView) {
+        let Self { by_block, block_pairs, count: start, leaf, .. } = self;
+        let blocks = view.mass_matrix.total.len();
+        // The near sides by the lower of both blocks.
+        start.clear();
+        start.resize(blocks + 1, 0);
+        (0..near_sides.count()).for_each(|k| start[near_sides.blocks(k)[0]] += 1);
+        let mut end = 0;
+        for start in &mut *start {
+            end += *start;
+            *start = end;
+        }
+        by_block.resize(near_sides.count(), 0);
+        for k in (0..near_sides.count()).rev() {
+            let slot = &mut start[near_sides.blocks(k)[0]];
+            *slot -= 1;
+            by_block[*slot as usize] = k as u32;
+        }
+        block_pairs.clear();
+        for (first, end) in start.windows(2).map(|range| (range[0], range[1])) {
+            let other = |near_side: u32| near_sides.blocks(near_side as usize)[1];
+            let of_block = &mut by_block[first as usize..end as usize];
+            of_block.sort_unstable_by_key(|&near_side| (other(near_side), near_side));
+            let mut first = first;
+            for run in of_block.chunk_by(|&a, &b| other(a) == other(b)) {
+                let blocks = near_sides.blocks(run[0] as usize);
+                let end = first + run.len() as u32;
+                let subdomain = subdomain_of(blocks.map(|block| leaf[block]));
+                block_pairs.push(BlockPair { subdomain, first, end, pushed: [0; 2], blocks });
+                first = end;
+            }
+        }
+        block_pairs.sort_unstable_by_key(|block_pair| (block_pair.subdomain, block_pair.blocks));
+    }
+
+    /// Lists what the block pairs push.
+    fn list_pushed(&mut self, near_sides: &NearBlocks, view: &SolverView) {
+        let Self { by_block, block_pairs, pushed, groups, .. } = self;
         let blocks = view.mass_matrix.total.len();
         groups.pushing.clear();
         groups.pushing.resize(blocks + view.masses.len(), 0);
-        block_pairs.clear();
         pushed.clear();
-        let mut first = 0;
-        for run in entries.chunk_by(|a, b| (a.subdomain, a.blocks) == (b.subdomain, b.blocks)) {
-            let ([a, b], first_pushed) = (run[0].blocks, pushed.len());
+        for block_pair in block_pairs {
+            let ([a, b], first_pushed) = (block_pair.blocks, pushed.len());
             let free = [a, b].map(|block| view.mass_matrix.is_free(block));
             pushed
                 .extend([(a, free[0]), (b, free[1])].iter().filter(|(_, free)| *free).map(|(block, _)| block.number()));
             if free != [true; 2] {
                 groups.covers.clear();
-                for entry in run {
-                    let edges = near_sides.pairs_of(near_pairs, entry.near_side as usize);
-                    held_covers(boundary, edges, view, &mut groups.covers);
+                for &near_side in &by_block[block_pair.near_sides()] {
+                    held_covers(near_sides.boundary, near_sides.edges(near_side), view, &mut groups.covers);
                 }
                 groups.covers.sort_unstable();
                 groups.covers.dedup();
                 pushed.extend(groups.covers.iter().map(|cover| blocks as u32 + cover.number()));
             }
-            let end = first + run.len() as u32;
-            block_pairs.push(BlockPair {
-                subdomain: run[0].subdomain,
-                first,
-                end,
-                pushed: [first_pushed as u32, pushed.len() as u32],
-                blocks: if free[0] { [a, b] } else { [b, a] },
-            });
-            first = end;
+            block_pair.pushed = [first_pushed as u32, pushed.len() as u32];
+            block_pair.blocks = if free[0] { [a, b] } else { [b, a] };
         }
     }
 

@@ -134,8 +134,9 @@ impl Step<'_> {
     fn unbalanced(&mut self, StepTimes { kick, window, .. }: StepTimes) -> f64 {
         let mass_matrix = &self.model.mass_matrix;
         let acceleration = self.acceleration(window);
-        let loads = self.workspace.load_force.iter().zip(&mass_matrix.row_sum);
-        let applied: f64 = loads.map(|(force, mass)| (force + acceleration * *mass).norm_squared()).sum();
+        let load = |i: usize| self.workspace.load_force.get(i).copied().unwrap_or_default();
+        let weights = mass_matrix.row_sum.iter().map(|mass| acceleration * *mass).enumerate();
+        let applied: f64 = weights.map(|(i, weight)| (load(i) + weight).norm_squared()).sum();
         let mut net = 0.0;
         self.each_change(|i, change| net += (change * (mass_matrix.mass[i] / kick)).norm_squared());
         let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();

@@ -22,8 +22,7 @@ impl Step<'_> {
         let clock = Instant::now();
         self.load();
         self.damping = self.damping_of(times.dt);
-        let (acceleration, grain, is_loaded) =
-            (self.acceleration(times.window), chunk_runs::grain(self.workspace.serial), self.workspace.is_loaded);
+        let (acceleration, grain) = (self.acceleration(times.window), chunk_runs::grain(self.workspace.serial));
         self.damp_blocks();
         let Workspace { mass_matrix, predicted, motion, start, sums, load_force, damping, movable, exposed, .. } =
             &mut *self.workspace;
@@ -37,7 +36,7 @@ impl Step<'_> {
             exposed,
             kick: times.kick,
             grain,
-            load_force: if is_loaded { load_force } else { &[] },
+            load_force,
         };
         kick.run(&mut KickOut { predicted, motion, start, sums });
         self.workspace.speed_max = self.workspace.sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
@@ -63,11 +62,9 @@ impl Step<'_> {
     /// Forces of loads, when there are any.
     fn load(&mut self) {
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
-        let was_loaded = std::mem::replace(&mut workspace.is_loaded, applied::pushes(model, state));
-        if was_loaded || workspace.is_loaded {
-            workspace.load_force.fill(Vector::zeros());
-        }
-        if workspace.is_loaded {
+        workspace.load_force.clear();
+        if applied::pushes(model, state) {
+            workspace.load_force.resize(model.covers.cover_count(), Vector::zeros());
             let ramp = ramp(self.regime, self.time - state.stage_start);
             applied::push_forces(model, state, self.time, ramp, &mut workspace.load_force);
         }

@@ -14,9 +14,6 @@ impl Step<'_> {
 
     /// Loads times velocities before and after the step (W/m).
     fn load_power(&self) -> f64 {
-        if !self.workspace.is_loaded {
-            return 0.0;
-        }
         let velocities = self.state.velocity.iter().zip(&self.workspace.predicted);
         self.workspace.load_force.iter().zip(velocities).map(|(f, (before, after))| f.dot(&(before + after))).sum()
     }

@@ -81,7 +81,7 @@ impl Step<'_> {
             push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
         if !inertia.rests {
-            let momentum = buffers.field.iter().zip(&model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
+            let momentum = buffers.field.iter().zip(&*model.mass_matrix.row_sum).map(|(a, m)| (a * *m).norm_squared());
             scale = scale.max(momentum.sum::<f64>().sqrt());
         }
         self.drop_held();

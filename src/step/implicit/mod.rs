@@ -206,7 +206,7 @@ impl Step<'_> {
             let whole = Window { from: self.time, to: self.time + dt };
             let base = records::base_motion(self.model, self.regime, self.state, whole);
             let acceleration = applied::acceleration(self.model, self.state, time) * share - base;
-            for (force, mass) in force.iter_mut().zip(&self.model.mass_matrix.row_sum) {
+            for (force, mass) in force.iter_mut().zip(&*self.model.mass_matrix.row_sum) {
                 *force = acceleration * *mass;
             }
             applied::push_forces(self.model, self.state, time, share, force);
