@@ -17,8 +17,8 @@ use grid::Grid;
 
 /// Nodes whose near edges are found as one run, and shared between threads as one.
 const RUN: usize = 1024;
-/// Runs that are searched before their near pairs are listed.
-const RUNS: usize = 64;
+/// Runs of each thread that are searched before their near pairs are listed.
+const RUNS: usize = 8;
 
 /// A node and an edge that may meet before the next search.
 #[doc(alias = "candidate pair")]
@@ -113,7 +113,8 @@ impl SearchGrid {
         grid.lay(view);
         let nodes = view.boundary.node_count();
         let length = if view.serial { nodes.max(1) } else { RUN };
-        runs.resize_with(nodes.div_ceil(length).min(RUNS), Run::default);
+        let piece = RUNS * rayon::current_num_threads();
+        runs.resize_with(nodes.div_ceil(length).min(piece), Run::default);
         let find = |first: usize, k: usize, run: &mut Run| {
             let from = first + k * length;
             dispatch(Find { grid, view, nodes: from..nodes.min(from + length), run });
@@ -121,8 +122,8 @@ impl SearchGrid {
         let NeighbourList { pairs, found_at } = found;
         pairs.clear();
         // In pieces: the near pairs of all runs together would be as large as the list.
-        for first in (0..nodes).step_by(RUNS * length) {
-            let count = (nodes - first).div_ceil(length).min(RUNS);
+        for first in (0..nodes).step_by(piece * length) {
+            let count = (nodes - first).div_ceil(length).min(piece);
             match &mut runs[..count] {
                 [run] => find(first, 0, run),
                 runs => enmm_fork::each("search", runs.par_iter_mut().enumerate(), |(k, run)| find(first, k, run)),

@@ -27,8 +27,8 @@ pub use constants::EntranceRule;
 pub use near_sides::NearSides;
 pub use penetrating::PenetratingContacts;
 
-/// Runs that are tested before their contacts are made.
-const RUNS: usize = 64;
+/// Runs of each thread that are tested before their contacts are made.
+const RUNS: usize = 8;
 /// Least number of contacts that a thread makes.
 const GRAIN: usize = 256;
 
@@ -192,7 +192,7 @@ pub fn entrance_edges(
     accepted.near_side.clear();
     let mut made = 0;
     // In pieces: what is accepted of all near sides together would be as large as the contacts.
-    let piece = if narrow.serial { 1 } else { RUNS };
+    let piece = if narrow.serial { 1 } else { RUNS * rayon::current_num_threads() };
     let mut first = 0;
     while first < near_sides.runs() {
         let end = near_sides.runs().min(first + piece);
