@@ -39,7 +39,7 @@ fn search(criterion: &mut Criterion) {
         let (slope, workspace) = (simulation.model(), simulation.workspace());
         let view = SearchView {
             boundary: &slope.boundary,
-            position: &workspace.position,
+            frames: &workspace.frames,
             cutoff: 0.25 * slope.covers.mesh.size,
             removed: &simulation.state().removed,
             fixed: &workspace.mass_matrix.fixed,

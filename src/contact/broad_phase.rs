@@ -11,7 +11,7 @@ use enmm_lanes::dispatch;
 
 use crate::geometry::Point;
 
-use super::{Boundary, EdgeId, NodeId, SideId};
+use super::{Boundary, EdgeId, Frames, NodeId, SideId};
 use find::{Find, Run};
 use grid::Grid;
 
@@ -44,13 +44,13 @@ pub struct NeighbourList {
 
 impl NeighbourList {
     /// Whether a node has moved more than `slack` (m) since the last search.
-    pub fn is_stale(&self, boundary: &Boundary, position: &[Point], slack: f64) -> bool {
+    pub fn is_stale(&self, boundary: &Boundary, frames: &Frames, slack: f64) -> bool {
         self.found_at.len() != boundary.node_count()
             || boundary
                 .node_point
                 .iter()
                 .zip(&self.found_at)
-                .any(|(&p, old)| (position[p] - old).norm_squared() > slack * slack)
+                .any(|(&p, old)| (frames.position(p) - old).norm_squared() > slack * slack)
     }
 
     /// Positions of the nodes at the last search (m); empty when the next step has to search again.
@@ -80,8 +80,8 @@ impl NeighbourList {
 pub struct SearchView<'a> {
     /// Boundary of the blocks.
     pub boundary: &'a Boundary,
-    /// Current positions of the boundary points (m).
-    pub position: &'a [Point],
+    /// Its edges at their current positions.
+    pub frames: &'a Frames,
     /// Distance (m) within which a pair is near.
     pub cutoff: f64,
     /// Blocks to leave out: they have been excavated.
@@ -131,6 +131,6 @@ impl SearchGrid {
             runs[..count].iter().for_each(|run| pairs.extend_from_slice(&run.near_pairs));
         }
         found_at.clear();
-        found_at.extend(view.boundary.node_point.iter().map(|&point| view.position[point]));
+        found_at.extend(view.boundary.node_point.iter().map(|&point| view.frames.position(point)));
     }
 }

@@ -101,32 +101,44 @@ impl Frames {
         self.nodes.as_flattened()
     }
 
-    /// Updates all edges and nodes from the current positions of the boundary points.
-    pub fn update(&mut self, boundary: &Boundary, position: &[Point], serial: bool) {
-        let edge = |(a, next): (&Point, &EdgeId)| {
-            let way = position[*next] - a;
-            let length = way.norm();
-            [*a, way / length, Pair::new(length, 0.0)]
-        };
-        let at = |node: NodeId| position[boundary.node_point[node]];
-        let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
-            let to = [*previous, *next].map(|q| at(q) - position[*point]);
-            [position[*point], to[0], to[1], Pair::new(to[0].norm(), to[1].norm())]
-        };
-        let Boundary { node_point, node_previous, node_next, .. } = boundary;
+    /// Updates all edges and nodes from the current positions of the boundary points (m).
+    pub fn update(&mut self, boundary: &Boundary, position: impl Fn(EdgeId) -> Point + Sync, serial: bool) {
+        let Self { edges, nodes } = self;
+        let Boundary { next, node_point, node_previous, node_next, .. } = boundary;
+        edges.resize(next.len(), [Pair::zeros(); EDGE_PAIRS]);
         if serial {
-            self.edges.clear();
-            self.edges.extend(position.iter().zip(&boundary.next).map(edge));
-            self.nodes.clear();
-            self.nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
+            fill(edges, 0, next, &position);
         } else {
-            let edges = position.par_iter().zip(&boundary.next).with_min_len(GRAIN);
-            let length = position.len();
-            enmm_fork::spread("frames", length, GRAIN, || edges.map(edge).collect_into_vec(&mut self.edges));
-            let nodes = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
-            let length = node_point.len();
-            enmm_fork::spread("frames", length, GRAIN, || nodes.map(node).collect_into_vec(&mut self.nodes));
+            let parts = edges.par_chunks_mut(GRAIN).enumerate();
+            enmm_fork::each("edges", parts, |(k, part): (_, &mut [_])| fill(part, k * GRAIN, next, &position));
         }
+        let at = |point: EdgeId| edges[point.index()][0];
+        let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
+            let to = [*previous, *next].map(|q| at(node_point[q]) - at(*point));
+            [at(*point), to[0], to[1], Pair::new(to[0].norm(), to[1].norm())]
+        };
+        if serial {
+            nodes.clear();
+            nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
+        } else {
+            let all = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
+            let length = node_point.len();
+            enmm_fork::spread("nodes", length, GRAIN, || all.map(node).collect_into_vec(nodes));
+        }
+    }
+}
+
+/// Fills the edges from the index `first` on, given the point after each.
+fn fill(edges: &mut [[Pair; EDGE_PAIRS]], first: usize, next: &[EdgeId], position: &impl Fn(EdgeId) -> Point) {
+    for (point, edge) in EdgeId::range(first..first + edges.len()).zip(&mut *edges) {
+        edge[0] = position(point);
+    }
+    for k in 0..edges.len() {
+        let next = next[first + k];
+        let known = next.index().checked_sub(first).and_then(|k| edges.get(k));
+        let way = known.map_or_else(|| position(next), |edge| edge[0]) - edges[k][0];
+        let length = way.norm();
+        (edges[k][1], edges[k][2]) = (way / length, Pair::new(length, 0.0));
     }
 }
 

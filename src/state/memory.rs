@@ -116,7 +116,7 @@ impl Workspace {
             ("fields on covers", sum(&fields)),
             ("masses", mass_matrix(&self.mass_matrix)),
             ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
-            ("places", self.position.bytes() + self.frames.bytes()),
+            ("places", self.frames.bytes()),
             ("near sides", self.near_sides.bytes()),
             ("accepted pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
             ("search", self.search.bytes()),

@@ -4,7 +4,7 @@ use crate::contact::{
     AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
     PenetratingContacts, SearchGrid, SupportRow, VertexEdge,
 };
-use crate::geometry::{Point, Vector};
+use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
 
@@ -36,9 +36,7 @@ pub struct Workspace {
     pub exposed: Vec<bool>,
     /// Sums over chunks.
     pub sums: Vec<ChunkSums>,
-    /// Current positions of boundary points (m).
-    pub position: Vec<Point>,
-    /// Boundary edges and nodes at those positions.
+    /// Boundary edges and nodes at their current positions.
     pub frames: Frames,
     /// Near pairs by node and side.
     pub near_sides: NearSides,

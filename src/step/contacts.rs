@@ -2,10 +2,7 @@
 
 use std::time::Instant;
 
-use rayon::prelude::*;
-
-use crate::contact::{self, NarrowPhase, SearchView};
-use crate::cover::{CoverId, Weights};
+use crate::contact::{self, EdgeId, NarrowPhase, SearchView};
 use crate::geometry::Point;
 
 use super::Step;
@@ -28,18 +25,11 @@ impl Step<'_> {
         let boundary = &model.boundary;
         let star = &model.covers.star_position;
         let displacement = &self.state.displacement;
-        let position = |(covers, weights): (&[CoverId; 3], &Weights)| -> Point {
+        let position = |point: EdgeId| -> Point {
+            let (covers, weights) = (&boundary.covers[point], &boundary.weights[point]);
             (0..3).map(|k| (star[covers[k]] + displacement[covers[k]]) * weights[k]).sum()
         };
-        if workspace.serial {
-            workspace.position.clear();
-            workspace.position.extend(boundary.covers.iter().zip(&boundary.weights).map(position));
-        } else {
-            let points = boundary.covers.par_iter().zip(&boundary.weights).with_min_len(CONTACTS);
-            let (length, positions) = (boundary.covers.len(), &mut workspace.position);
-            enmm_fork::spread("locate", length, CONTACTS, || points.map(position).collect_into_vec(positions));
-        }
-        workspace.frames.update(boundary, &workspace.position, workspace.serial);
+        workspace.frames.update(boundary, position, workspace.serial);
         workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
@@ -49,10 +39,10 @@ impl Step<'_> {
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let size = model.covers.mesh.size;
-        if self.state.neighbours.is_stale(boundary, &workspace.position, SKIN * size) {
+        if self.state.neighbours.is_stale(boundary, &workspace.frames, SKIN * size) {
             let view = SearchView {
                 boundary,
-                position: &workspace.position,
+                frames: &workspace.frames,
                 cutoff: CUTOFF * size,
                 removed: &self.state.removed,
                 fixed: &workspace.mass_matrix.fixed,

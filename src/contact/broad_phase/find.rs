@@ -66,14 +66,14 @@ impl Find<'_> {
     /// The next few nodes of one block: indices, block and bounding box.
     #[inline(always)]
     fn next_few(&mut self) -> (Range<usize>, BlockId, Span) {
-        let (boundary, position) = (self.view.boundary, self.view.position);
+        let (boundary, frames) = (self.view.boundary, self.view.frames);
         let Range { start, end } = self.nodes;
         let point = |node: usize| boundary.node_point[node];
         let block = boundary.block[point(start)];
         let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
-        let (mut span, mut last) = (Span::at(position[point(start)]), start);
+        let (mut span, mut last) = (Span::at(frames.position(point(start))), start);
         for node in others {
-            (span, last) = (span.with(position[point(node)]), node);
+            (span, last) = (span.with(frames.position(point(node))), node);
         }
         self.nodes.start = last + 1;
         (start..last + 1, block, span)
@@ -113,7 +113,7 @@ impl Find<'_> {
     fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: BlockId) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
-        let p = self.view.position[boundary.node_point[node]];
+        let p = self.view.frames.position(boundary.node_point[node]);
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);

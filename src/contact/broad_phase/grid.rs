@@ -64,9 +64,9 @@ impl Stretch {
     /// As many of some consecutive edges as are not too long together; the first of them starts at a point of the grid.
     fn of(view: &SearchView, edges: Range<usize>, point: usize) -> Self {
         let (boundary, edge) = (view.boundary, edges.start);
-        let (mut span, mut count, mut partial) = (Span::at(view.position[edge]), 0, false);
+        let (mut span, mut count, mut partial) = (Span::at(view.frames.position(EdgeId::new(edge))), 0, false);
         for edge in edges {
-            let longer = span.with(view.position[boundary.next[edge]]);
+            let longer = span.with(view.frames.position(boundary.next[edge]));
             if count > 0 && (longer.high - longer.low).amax() > LONGEST * view.cutoff {
                 break;
             }
@@ -126,7 +126,7 @@ impl Grid {
                 self.divide_loop(view, edges);
             }
         }
-        self.push_points(&[Point::zeros(); LANES]);
+        self.push_points([Point::zeros(); LANES]);
     }
 
     /// Divides a loop evenly, except where stretches would become long.
@@ -139,13 +139,15 @@ impl Grid {
             first += stretch.count as usize;
             self.stretches.push(stretch);
         }
-        self.push_points(&view.position[edges.clone()]);
-        self.push_points(&[view.position[edges.start]]);
+        let around = edges.clone().chain([edges.start]);
+        self.push_points(around.map(|edge| view.frames.position(EdgeId::new(edge))));
     }
 
-    fn push_points(&mut self, points: &[Point]) {
-        self.x.extend(points.iter().map(|p| p.x));
-        self.y.extend(points.iter().map(|p| p.y));
+    fn push_points(&mut self, points: impl IntoIterator<Item = Point>) {
+        for point in points {
+            self.x.push(point.x);
+            self.y.push(point.y);
+        }
     }
 
     /// Sizes the grid for the middles of all stretches.
