@@ -72,8 +72,8 @@ fn a_corner_bears_until_the_corners_part() {
     let [mut above, mut past] = [0; 2];
     loop {
         simulation.advance(false).unwrap();
-        let position = &simulation.workspace().position;
-        let lowered = position[held].y - position[sliding].y;
+        let frames = &simulation.workspace().frames;
+        let lowered = frames.position(held).y - frames.position(sliding).y;
         let boundary = &simulation.model().boundary;
         let is_corner = |contact: &&VertexEdge| boundary.node_point[contact.history.node] == held;
         let contact = simulation.workspace().contacts.iter().find(is_corner);

@@ -7,7 +7,7 @@ use std::path::Path;
 const ROOMS: [&str; 8] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "cosimulation"];
 const COLUMNS_MAX: usize = 120;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
-const ENGINE_LINES_MAX: usize = 23_000;
+const ENGINE_LINES_MAX: usize = 23_200;
 /// Folders of programs that may print.
 const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];
 /// Rooms whose results must not depend on the order of a hash.

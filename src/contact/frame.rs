@@ -1,6 +1,6 @@
 //! Current positions and directions of edges and nodes, computed once a step.
 
-use enmm_lanes::Pair;
+use enmm_lanes::{Pair, prefetch};
 use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector};
@@ -80,9 +80,10 @@ impl Frames {
         NodeFrame { position, to: [previous, next], distance: [distance.x, distance.y] }
     }
 
+    /// Asks the memory for an edge and the point at its start.
     #[inline(always)]
-    pub(super) fn fetch(&self, point: usize) {
-        enmm_lanes::prefetch(&self.edges[point..=point]);
+    pub(super) fn fetch(&self, edge: EdgeId) {
+        prefetch(&self.edges[edge.index()..=edge.index()]);
     }
 
     /// Position of a boundary point (m).

@@ -213,13 +213,14 @@ impl OpenClose {
 
     /// Nothing has moved but by supports.
     fn begin(&mut self, inputs: SolverInputs, others: &OtherConstraints) {
-        let SolverInputs { mass_matrix, options, .. } = inputs;
+        let SolverInputs { mass_matrix, options, approach } = inputs;
         let view = SolverView { mass_matrix, masses: &self.masses };
         self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
         self.cover_impulse.clear();
         self.cover_impulse.resize(self.masses.len(), Vector::zeros());
+        let none = Vector::zeros();
         self.block_impulse.clear();
-        self.block_impulse.resize(mass_matrix.total.len(), PackedImpulse::default());
+        self.block_impulse.extend(approach.motion.iter().map(|motion| [none, none, none, motion.centre]));
         self.bolts.clear();
         self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, b.arms[k], &view))));
         self.supports.load(others.rows, options.kick, &mut self.cover_impulse);
@@ -330,7 +331,7 @@ impl OpenClose {
         }
         for ((block_impulse, sums), total) in block_impulse.iter_mut().zip(&self.block_impulse).zip(&mass_matrix.total)
         {
-            let [impulse, weighted, moment] = *sums;
+            let [impulse, weighted, moment, _] = *sums;
             *block_impulse = BlockImpulse { impulse, weighted: weighted * *total, moment: moment.x };
         }
     }

@@ -53,8 +53,8 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on and
-/// the law of its joint, is in the [`ContactSetting`].
+/// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
+/// and the law of its joint, is in the [`ContactSetting`].
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
@@ -206,8 +206,8 @@ impl VertexEdge {
         self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
     }
 
-    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`, under a limit of shear (N/m); `torn` after a
-    /// failure in tension. No branch depends on their values, which are hard to predict.
+    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`, under a limit of shear (N/m); `torn` after
+    /// a failure in tension. No branch depends on their values, which are hard to predict.
     #[inline(always)]
     fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool, limit: f64) {
         let slips = shear.abs() >= limit;

@@ -90,8 +90,9 @@ impl Audit {
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
-        let (boundary, place) = (&simulation.model().boundary, &simulation.workspace().position);
-        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
+        let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
+        let place: Vec<Point> = boundary.edges().map(|point| frames.position(point)).collect();
+        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, &place)).collect();
         let mut pairs: Vec<[BlockId; 2]> = Vec::new();
         for c in &simulation.state().neighbours.pairs {
             let [a, b] = [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]);
@@ -108,7 +109,7 @@ impl Audit {
                 (0.0, 0.0)
             } else if self.cracked[p] || self.cracked[q] {
                 let depth = |of: &[Vec<EdgeId>]| {
-                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, place, &of[p], &self.points[q]);
+                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, &place, &of[p], &self.points[q]);
                     depth(p, q).max(depth(q, p))
                 };
                 (depth(&self.points), depth(&self.nodes))

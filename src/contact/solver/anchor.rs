@@ -19,9 +19,11 @@ pub struct BlockImpulse {
     pub moment: f64,
 }
 
-/// The same within the iteration: P, Z/M (m/s), and L beside the turn in which the block last moved by more than what
-/// has settled.
-pub type PackedImpulse = [Vector; 3];
+/// The same within the iteration: P, Z/M (m/s), L beside the turn in which the block last moved by more than what has
+/// settled, and the centroid of the block (m).
+pub type PackedImpulse = [Vector; PACKED];
+/// Pairs of numbers of a [`PackedImpulse`].
+pub const PACKED: usize = 4;
 
 /// A run of blocks under impulses.
 pub struct Accumulators<'a> {
@@ -113,7 +115,8 @@ impl Anchor {
         };
         let velocity = cover_impulse(0) + cover_impulse(1) + cover_impulse(2);
         let Some(block) = self.block else { return velocity };
-        let [impulse, weighted, moment] = accumulators.block_impulse[block.index() - accumulators.first_block.index()];
+        let [impulse, weighted, moment, _] =
+            accumulators.block_impulse[block.index() - accumulators.first_block.index()];
         velocity + impulse * (self.common - self.mass_share) - weighted + self.lever * (self.spin * moment.x)
     }
 

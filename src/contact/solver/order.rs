@@ -34,7 +34,7 @@ pub struct SolverOrder {
     by_block: Vec<u32>,
     leaf: Vec<u32>,
     /// What the block pairs push, pair by pair: a free block by its number, a cover of a held one by its number after
-    /// those of all blocks.
+    /// those of all blocks, among those that are pushed.
     pushed: Vec<u32>,
     /// Of a step: the number of contacts of each block pair, then the slot of its next.
     count: Vec<u32>,
@@ -100,6 +100,8 @@ struct Groups {
     left: Vec<u32>,
     /// Covers of held blocks that the block pair in hand pushes.
     covers: Vec<CoverId>,
+    /// Those that any pushes, by their numbers after those of all blocks.
+    held: Vec<u32>,
 }
 
 /// Up to eight block pairs.
@@ -228,8 +230,6 @@ impl SolverOrder {
     fn list_pushed(&mut self, near_sides: &NearBlocks, view: &SolverView) {
         let Self { by_block, block_pairs, pushed, groups, .. } = self;
         let blocks = view.mass_matrix.total.len();
-        groups.pushing.clear();
-        groups.pushing.resize(blocks + view.masses.len(), 0);
         pushed.clear();
         for block_pair in block_pairs {
             let ([a, b], first_pushed) = (block_pair.blocks, pushed.len());
@@ -248,6 +248,7 @@ impl SolverOrder {
             block_pair.pushed = [first_pushed as u32, pushed.len() as u32];
             block_pair.blocks = if free[0] { [a, b] } else { [b, a] };
         }
+        groups.number_covers(blocks, pushed);
     }
 
     /// Puts the block pairs and the contacts of a step in the order of their turns.
@@ -306,6 +307,21 @@ impl SolverOrder {
 }
 
 impl Groups {
+    /// Numbers anew the covers of held blocks that are pushed, since most covers are not.
+    fn number_covers(&mut self, blocks: usize, pushed: &mut [u32]) {
+        let Self { held, pushing, .. } = self;
+        held.clear();
+        held.extend(pushed.iter().filter(|&&k| k as usize >= blocks));
+        held.sort_unstable();
+        held.dedup();
+        for k in pushed.iter_mut().filter(|k| **k as usize >= blocks) {
+            let (Ok(number) | Err(number)) = held.binary_search(k);
+            *k = (blocks + number) as u32;
+        }
+        pushing.clear();
+        pushing.resize(blocks + held.len(), 0);
+    }
+
     /// Puts block pairs one by one into the first group with a free lane that pushes nothing of theirs. Those for which
     /// 64 groups have no place go into the next 64. Block pairs of like length come together when the longest are
     /// first. Nothing is left of `block_pairs`.

@@ -79,7 +79,7 @@ impl<'a> Impulses<'a> {
         }
     }
 
-    /// Velocity (m/s) that they give to point `k` of a contact: all of Eq. 17 but v* of the start, which the springs know.
+    /// Velocity (m/s) that they give to point `k` of a contact: all of Eq. 17 but v* of the start, which springs know.
     fn velocity(&self, k: usize, equation: &Equation) -> Vector {
         let pair = &equation.pair;
         let own = cover::sample(&pair.covers[k], &pair.weights[k], &self.increment);

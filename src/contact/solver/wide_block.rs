@@ -21,9 +21,17 @@ pub struct WideBlock<L: Values> {
     pub spin: L::F,
     /// 1 for a block that keeps impulses.
     pub unit: L::F,
+    /// Centroid (m).
+    pub centre: [L::F; 2],
 }
 
 impl<L: Values> WideBlock<L> {
+    /// J90·(arm from the centroid) of points (m).
+    #[inline(always)]
+    pub fn lever(&self, at: [L::F; 2]) -> [L::F; 2] {
+        [self.centre[1] - at[1], at[0] - self.centre[0]]
+    }
+
     /// The first lane.
     #[inline(always)]
     pub fn first(&self, lanes: L) -> WideBlock<First> {
@@ -35,6 +43,7 @@ impl<L: Values> WideBlock<L> {
             common: first(lanes, self.common),
             spin: first(lanes, self.spin),
             unit: first(lanes, self.unit),
+            centre: [first(lanes, self.centre[0]), first(lanes, self.centre[1])],
         }
     }
 }

@@ -4,7 +4,7 @@ use enmm_lanes::{Arithmetic, LANES, Values, prefetch};
 
 use crate::contact::{ContactSetting, Limits, SoftSpring, Spring, VertexEdge};
 use crate::cover::CoverId;
-use crate::geometry::{Point, Vector};
+use crate::geometry::Vector;
 
 use super::wide_block::{F64x8, WideBlock};
 use super::wide_point::{Bodies, Points};
@@ -21,6 +21,8 @@ const AHEAD: usize = 8;
 #[repr(C, align(64))]
 pub struct WideContact {
     points: [Points; 2],
+    /// Positions of the nodes (m).
+    at: [F64x8; 2],
     normal: [F64x8; 2],
     answers: [SoftSpring<F64x8>; 2],
     /// Forces normal and shear (N/m).
@@ -42,8 +44,6 @@ pub struct WideContact {
 #[derive(Debug, Default)]
 #[repr(align(64))]
 struct Start {
-    /// Positions of the nodes (m).
-    point: [F64x8; 2],
     /// Springs normal and shear (N/m per metre), and the forces (N/m) that they store, or the closure (m).
     stiffness: [F64x8; 2],
     stored: [F64x8; 2],
@@ -56,12 +56,11 @@ struct Start {
 
 impl Start {
     #[inline(always)]
-    fn take(&mut self, lane: usize, contact: &VertexEdge, at: Point, approach: &Approach) {
+    fn take(&mut self, lane: usize, contact: &VertexEdge, approach: &Approach) {
         let VertexEdge { stiffness, gap, .. } = contact;
         let closes_on_a_curve = contact.closure(&approach.setting).is_curved();
         let stored = [if closes_on_a_curve { -gap } else { -stiffness[0] * gap }, contact.shear_stored()];
         for k in 0..2 {
-            self.point[k][lane] = at[k];
             self.stiffness[k][lane] = stiffness[k];
             self.stored[k][lane] = stored[k];
         }
@@ -96,16 +95,17 @@ impl ContactView<'_> {
         }
     }
 
-    /// Asks the memory for the points of the contacts of some turns.
+    /// Asks the memory for the points of the contacts of some turns, which have been fetched.
     #[inline(always)]
     fn fetch_points(&self, [first, end]: [usize; 2]) {
         let count = self.turns.len();
         let setting = &self.approach.setting;
         for &contact in &self.turns[first.min(count)..end.min(count)] {
-            let point = self.contacts[contact as usize].point.index();
-            prefetch(&setting.boundary.covers[point..=point]);
-            prefetch(&setting.boundary.weights[point..=point]);
-            prefetch(&setting.boundary.block[point..=point]);
+            let point = self.contacts[contact as usize].point;
+            let this = point.index()..=point.index();
+            prefetch(&setting.boundary.covers[this.clone()]);
+            prefetch(&setting.boundary.weights[this.clone()]);
+            prefetch(&setting.boundary.block[this]);
             setting.frames.fetch(point);
         }
     }
@@ -144,6 +144,12 @@ impl WideContact {
         debug_assert!(self.is_apart(contacts.len()), "two contacts of one row share a cover");
     }
 
+    /// Positions of the nodes (m).
+    #[inline(always)]
+    fn places<L: Values>(&self, lanes: L) -> [L::F; 2] {
+        [lanes.load(&self.at[0]), lanes.load(&self.at[1])]
+    }
+
     /// Its contacts.
     #[inline(always)]
     fn of<'a>(&self, turns: &'a [u32]) -> &'a [u32] {
@@ -179,7 +185,9 @@ impl WideContact {
         (self.normal[0][lane], self.normal[1][lane]) = (normal.x, normal.y);
         let limits = contact.limits(setting);
         [self.force[0][lane], self.force[1][lane]] = contact.expected(&limits);
-        start.take(lane, contact, setting.frames.position(point), from.approach);
+        let at = setting.frames.position(point);
+        (self.at[0][lane], self.at[1][lane]) = (at.x, at.y);
+        start.take(lane, contact, from.approach);
         start.joined |= u8::from(blocks[0].blocks[lane] == blocks[1].blocks[lane]) << lane;
         let (friction, cohesion, tension) = match limits {
             Limits::MohrCoulomb { friction, cohesion, tension } => (friction, cohesion, tension),
@@ -195,7 +203,7 @@ impl WideContact {
     fn leave_out(&mut self, lane: usize) {
         for k in 0..2 {
             self.points[k].leave_out(lane);
-            (self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0);
+            (self.at[k][lane], self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0, 0.0);
         }
         (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
     }
@@ -218,7 +226,7 @@ impl WideContact {
         if start.own != [0; 2] {
             last = self.relative(lanes, normal, &motion.velocity[part.clone()]);
         }
-        let at = [lanes.load(&start.point[0]), lanes.load(&start.point[1])];
+        let at = self.places(lanes);
         let tables = [&view.mass_matrix.inverse[part.clone()], &view.masses[part]];
         let a = self.points[0].weigh(lanes, at, normal, &blocks[0], tables);
         let b = self.points[1].weigh(lanes, at, normal, &blocks[1], tables);
@@ -291,8 +299,9 @@ impl WideContact {
     ) -> [L::F; 2] {
         let before =
             [self.points[0].cover_impulse(lanes, cover_impulse), self.points[1].cover_impulse(lanes, cover_impulse)];
-        let a = self.points[0].velocity(lanes, &before[0], &sides[0]);
-        let b = self.points[1].velocity(lanes, &before[1], &sides[1]);
+        let at = self.places(lanes);
+        let a = self.points[0].velocity(lanes, at, &before[0], &sides[0]);
+        let b = self.points[1].velocity(lanes, at, &before[1], &sides[1]);
         let [x, y] = [lanes.load(&self.normal[0]), lanes.load(&self.normal[1])];
         let velocity = along([x, y], [a[0] - b[0], a[1] - b[1]]);
         let old = [lanes.load(&self.force[0]), lanes.load(&self.force[1])];
@@ -331,9 +340,9 @@ impl WideContact {
         sides: &mut [WideBlock<L>; 2],
         cover_impulse: &mut [Vector],
     ) {
-        let [x, y] = impulse;
-        self.points[1].push(lanes, [-x, -y], &before[1], &mut sides[1], cover_impulse);
-        self.points[0].push(lanes, impulse, &before[0], &mut sides[0], cover_impulse);
+        let ([x, y], at) = (impulse, self.places(lanes));
+        self.points[1].push(lanes, at, [-x, -y], &before[1], &mut sides[1], cover_impulse);
+        self.points[0].push(lanes, at, impulse, &before[0], &mut sides[0], cover_impulse);
     }
 
     /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.

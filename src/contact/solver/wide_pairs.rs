@@ -7,7 +7,7 @@ use enmm_lanes::{First, LANES, Lanes, Places, Values};
 use crate::cover::BlockId;
 
 use super::SolverView;
-use super::anchor::{Accumulators, common_share};
+use super::anchor::{Accumulators, PACKED, common_share};
 use super::wide_block::{F64x8, WideBlock, first, put_first};
 use super::wide_contact::{ContactView, WideContact};
 use super::wide_point::Bodies;
@@ -103,7 +103,7 @@ impl WidePairs {
         self.shift[lane] = if free[0] && contacts == 1 { 0.0 } else { -1.0 };
         for k in 0..2 {
             self.blocks[k][lane] = blocks[k];
-            if k == 0 || a != b {
+            if a != b {
                 self.spin[k][lane] = view.mass_matrix.spin[blocks[k]];
             }
             if free[k] && a != b {
@@ -141,7 +141,7 @@ impl WidePairs {
         for lane in 0..LANES {
             let [a, b] = [self.blocks[0][lane], self.blocks[1][lane]];
             let keepers = [a, if mass_matrix.is_free(b) { b } else { a }];
-            let sums = keepers.map(|block| 3 * (block.number() - accumulators.first_block.number()));
+            let sums = keepers.map(|block| PACKED as u32 * (block.number() - accumulators.first_block.number()));
             (0..2).for_each(|k| self.sums[k].set(lane, sums[k]));
         }
         let blocks = [0, 1].map(|k: usize| Bodies::new(&self.blocks[k], mass_matrix, from.approach.motion));
@@ -221,6 +221,7 @@ impl WidePairs {
             common: lanes.load(&self.common[k]),
             spin: lanes.load(&self.spin[k]),
             unit: lanes.load(&self.unit[k]),
+            centre: lanes.gather_from(&block_impulse[3..], at),
         }
     }
 

@@ -15,8 +15,6 @@ use super::wide_block::{F64x8, WideBlock};
 pub struct Points {
     /// w/√m.
     weights: [F64x8; 3],
-    /// J90·(arm from the block's centroid) (m).
-    lever: [F64x8; 2],
     /// z/M (m/kg).
     mass_share: F64x8,
     /// Covers, from the first one of the part of the order on.
@@ -93,9 +91,9 @@ impl Points {
         sum
     }
 
-    /// Divides the weights by the roots of the covers' masses, and finds levers and shares of points at `at` (m);
-    /// returns the inverse effective masses (m/kg) along the normals and along the tangents (Eq. 4). `inverse` is 1/m of
-    /// the covers, and `masses` those of the [`SolverView`](super::SolverView).
+    /// Divides the weights by the roots of the covers' masses, and finds the shares of points at `at` (m); returns
+    /// the inverse effective masses (m/kg) along the normals and along the tangents (Eq. 4). `inverse` is 1/m of the
+    /// covers, and `masses` those of the [`SolverView`](super::SolverView).
     #[inline(always)]
     pub fn weigh<L: Values>(
         &mut self,
@@ -127,8 +125,6 @@ impl Points {
             (z * lanes.load(&blocks.share), lanes.load(&blocks.free), lanes.load(&blocks.spin));
         let centre = [lanes.load(&blocks.centre[0]), lanes.load(&blocks.centre[1])];
         let lever = [(centre[1] - at[1]) * free, (at[0] - centre[0]) * free];
-        lanes.store(lever[0], &mut self.lever[0]);
-        lanes.store(lever[1], &mut self.lever[1]);
         lanes.store(mass_share, &mut self.mass_share);
         let common = lanes.load(&blocks.common) - (mass_share + mass_share);
         let [along, across] = [lever[0] * x + lever[1] * y, lever[1] * x - lever[0] * y];
@@ -155,9 +151,6 @@ impl Points {
     #[inline(never)]
     pub fn join(&mut self, lanes: u8, others: &mut Self) {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            for (own, other) in self.lever.iter_mut().zip(&mut others.lever) {
-                own[lane] -= std::mem::take(&mut other[lane]);
-            }
             self.mass_share[lane] -= std::mem::take(&mut others.mass_share[lane]);
             for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
                 if self.covers[i].index(lane) == others.covers[j].index(lane) {
@@ -192,11 +185,16 @@ impl Points {
 
     /// Velocities (m/s) that all impulses so far give them.
     #[inline(always)]
-    pub fn velocity<L: Values>(&self, lanes: L, cover_impulse: &[[L::F; 2]; 3], side: &WideBlock<L>) -> [L::F; 2] {
+    pub fn velocity<L: Values>(
+        &self,
+        lanes: L,
+        at: [L::F; 2],
+        cover_impulse: &[[L::F; 2]; 3],
+        side: &WideBlock<L>,
+    ) -> [L::F; 2] {
         let [w, u, v] = [lanes.load(&self.weights[0]), lanes.load(&self.weights[1]), lanes.load(&self.weights[2])];
         let share = side.common - lanes.load(&self.mass_share);
-        let turn = side.spin * side.moment;
-        let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
+        let (turn, lever) = (side.spin * side.moment, side.lever(at));
         let x = (w * cover_impulse[0][0] + u * cover_impulse[1][0]) + v * cover_impulse[2][0];
         let y = (w * cover_impulse[0][1] + u * cover_impulse[1][1]) + v * cover_impulse[2][1];
         let common = [
@@ -211,6 +209,7 @@ impl Points {
     pub fn push<L: Values>(
         &self,
         lanes: L,
+        at: [L::F; 2],
         [x, y]: [L::F; 2],
         before: &[[L::F; 2]; 3],
         side: &mut WideBlock<L>,
@@ -221,9 +220,9 @@ impl Points {
             lanes.scatter_to([before[0] + w * x, before[1] + w * y], cover_impulse, &self.covers[k]);
         }
         let mass_share = lanes.load(&self.mass_share);
-        let lever = [lanes.load(&self.lever[0]), lanes.load(&self.lever[1])];
+        let lever = side.lever(at);
         side.impulse = [side.impulse[0] + side.unit * x, side.impulse[1] + side.unit * y];
         side.weighted = [side.weighted[0] + mass_share * x, side.weighted[1] + mass_share * y];
-        side.moment = side.moment + (lever[0] * x + lever[1] * y);
+        side.moment = side.moment + side.unit * (lever[0] * x + lever[1] * y);
     }
 }
