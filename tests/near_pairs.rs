@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use enmm::contact::{Boundary, EdgeId, NeighbourList, NodeId, SearchGrid, SearchView, SideId};
+use enmm::contact::{Boundary, EdgeId, Frames, NeighbourList, NodeId, SearchGrid, SearchView, SideId};
 use enmm::cover::BlockId;
-use enmm::geometry::{Point, Vector, segment};
+use enmm::geometry::{Vector, segment};
 use enmm::model::Simulation;
 
 /// Whether a node and an edge can touch: not two fixed blocks, and in one block only both sides of a partial cut.
@@ -25,9 +25,9 @@ fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
     let edges: Vec<_> = boundary.edges().filter(|&edge| counts(edge)).collect();
     let mut pairs = Vec::new();
     for node in NodeId::all(boundary.node_count()).filter(|&node| counts(boundary.node_point[node])) {
-        let p = view.position[boundary.node_point[node]];
+        let p = view.frames.position(boundary.node_point[node]);
         for &edge in &edges {
-            let (a, b) = (view.position[edge], view.position[boundary.after(edge)]);
+            let (a, b) = (view.frames.position(edge), view.frames.position(boundary.after(edge)));
             if segment::distance(p, a, b) < view.cutoff && may_meet(boundary, view.fixed, node, edge) {
                 pairs.push((node, boundary.side[edge], edge));
             }
@@ -37,15 +37,17 @@ fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
 }
 
 /// Blocks pushed their own ways, some of them far off.
-fn push(simulation: &Simulation, share: f64) -> Vec<Point> {
+fn push(simulation: &Simulation, share: f64) -> Frames {
     let slope = simulation.model();
     let away = |block: BlockId| {
         let angle = 0.7 * f64::from(block.number());
         let far = if block.index() % 50 == 7 { 30.0 } else { 1.0 };
         Vector::new(angle.cos(), angle.sin()) * (share * far * slope.covers.mesh.size)
     };
-    let position = simulation.workspace().position.iter().zip(&slope.boundary.block);
-    position.map(|(p, &block)| p + away(block)).collect()
+    let (boundary, places) = (&slope.boundary, &simulation.workspace().frames);
+    let mut frames = Frames::default();
+    frames.update(boundary, |point| places.position(point) + away(boundary.block[point]), true);
+    frames
 }
 
 #[test]
@@ -61,8 +63,8 @@ fn the_search_finds_what_all_against_all_find() {
     let cutoff = 0.25 * simulation.model().covers.mesh.size;
     let mut grids: [(SearchGrid, NeighbourList); 2] = Default::default();
     for share in [0.0, 0.1, 0.3] {
-        let position = push(&simulation, share);
-        let view = |serial| SearchView { boundary, position: &position, cutoff, removed: &removed, fixed, serial };
+        let frames = push(&simulation, share);
+        let view = |serial| SearchView { boundary, frames: &frames, cutoff, removed: &removed, fixed, serial };
         let expected = all_against_all(&view(true));
         assert!(expected.len() > 5000, "{} pairs", expected.len());
         for (serial, (grid, neighbours)) in [true, false].into_iter().zip(&mut grids) {

@@ -155,7 +155,8 @@ mod tests {
         let load =
             Load { action: LoadAction::Block(BlockId::new(0), Vector::zeros(), 5.0), table: TimeTable::default() };
         let mut force = [Vector::zeros(); 3];
-        let mass_matrix = MassMatrix { mass: vec![2.0; 3], row_sum: vec![1.0, 2.0, 3.0], ..MassMatrix::default() };
+        let [mass, row_sum] = [[2.0; 3], [1.0, 2.0, 3.0]].map(std::sync::Arc::from);
+        let mass_matrix = MassMatrix { mass, row_sum, ..MassMatrix::default() };
         load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force);
         let torque: f64 = positions.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
         assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
