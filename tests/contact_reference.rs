@@ -3,7 +3,7 @@
 mod common;
 
 use common::simulation;
-use enmm::contact::{Approach, ContactSetting, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
+use enmm::contact::{Approach, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
 use enmm::model::Simulation;
 
 /// Both solvers sweep until no force changes by more than this share of itself.
@@ -82,12 +82,7 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         dt_last: state.dt_last,
         forward: model.theta_in(dt),
         damping: (state.stage > 0).then_some(0.1),
-        setting: ContactSetting {
-            boundary: &model.boundary,
-            frames: &workspace.frames,
-            laws: &state.laws,
-            strength: workspace.strength,
-        },
+        setting: model.contact_setting(&state, &workspace.frames, workspace.strength),
         motion: &workspace.motion,
     };
     let mut plain = workspace.contacts.clone();

@@ -65,16 +65,15 @@ fn bytes(simulation: &Simulation) -> [usize; 3] {
 }
 
 /// Ten elements, sixteen boundary edges and as many contacts a block: the limits are 15 % above what was counted when
-/// they were set (352, 281 with a share in each contact, and 2081; of the buffers contacts are 708, rows of the
-/// open–close iteration 726, and 236
-/// what the vertex rule has just judged, which does not grow with the model).
+/// they were set (407, 281 and 1252 on one thread; more threads have more runs of near pairs in hand).
 #[test]
 fn a_jointed_model_stays_within_its_bytes_per_element() {
     let mut simulation = built(&slope(Some(3.1), 2.38, 1.0));
+    simulation.set_serial(true);
     simulation.advance(false).unwrap();
     let elements = simulation.model().covers.element_count();
     assert!((15_000..30_000).contains(&elements), "{elements}");
-    for (bytes, limit) in bytes(&simulation).into_iter().zip([410, 325, 2400]) {
+    for (bytes, limit) in bytes(&simulation).into_iter().zip([470, 325, 1440]) {
         assert!(bytes <= limit * elements, "{} bytes an element, limit {limit}", bytes / elements);
     }
 }

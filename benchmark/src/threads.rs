@@ -26,7 +26,7 @@ const FORKS: usize = 50_000;
 const QUICKER: f64 = 0.01;
 const BRANCH: f64 = 20e-6;
 /// Bytes that a sweep moves for a contact in its first round; it is in the cache in the second.
-const SWEPT_BYTES: f64 = 240.0;
+const SWEPT_BYTES: f64 = 224.0;
 /// Bytes that a step moves for an element, and for a cover in both of its passes.
 const CHUNK_BYTES: [f64; 2] = [14.0, 210.0];
 /// Stretches of serial work that are named.

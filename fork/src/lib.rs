@@ -10,6 +10,9 @@ use std::time::Instant;
 
 use rayon::iter::ParallelIterator;
 
+/// Threads for which recorded work is cut.
+const RECORDED: usize = 64;
+
 /// A piece of recorded work.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Task {
@@ -60,6 +63,11 @@ fn change(by: impl FnOnce(&mut Recording)) {
 /// Whether the calling thread is recorded: work is then cut as for several threads.
 pub fn is_recorded() -> bool {
     RECORDING.with_borrow(Option::is_some)
+}
+
+/// Threads for which work is cut: those of the pool, and of a recorded thread as many as a large machine has.
+pub fn threads() -> usize {
+    if is_recorded() { RECORDED } else { rayon::current_num_threads() }
 }
 
 /// Does the work and records its tasks; it should run in a pool of one thread.

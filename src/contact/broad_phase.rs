@@ -113,7 +113,7 @@ impl SearchGrid {
         grid.lay(view);
         let nodes = view.boundary.node_count();
         let length = if view.serial { nodes.max(1) } else { RUN };
-        let piece = RUNS * rayon::current_num_threads();
+        let piece = RUNS * enmm_fork::threads();
         runs.resize_with(nodes.div_ceil(length).min(piece), Run::default);
         let find = |first: usize, k: usize, run: &mut Run| {
             let from = first + k * length;

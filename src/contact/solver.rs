@@ -80,7 +80,7 @@ pub struct Approach<'a> {
     pub forward: f64,
     /// Damping ratio of a dynamic stage.
     pub damping: Option<f64>,
-    /// What contacts follow from.
+    /// What the contacts share.
     pub setting: ContactSetting<'a>,
     /// Centroids of the blocks.
     pub motion: &'a [BlockMotion],

@@ -1,13 +1,13 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, EdgeId, EntranceRule, JointLaw, LawId, Support};
+use crate::contact::{BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule, Frames, JointLaw, LawId, Support};
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
-use super::Implicit;
+use super::{Implicit, State};
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -199,6 +199,11 @@ pub struct Model {
 }
 
 impl Model {
+    /// What the contacts of a step share, at the positions of the boundary and with the factor on all strengths there.
+    pub fn contact_setting<'a>(&'a self, state: &'a State, frames: &'a Frames, strength: f64) -> ContactSetting<'a> {
+        ContactSetting { boundary: &self.boundary, frames, laws: &state.laws, strength }
+    }
+
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not
     /// weaken (Eq. 15a).
     pub fn theta_in(&self, dt: f64) -> f64 {

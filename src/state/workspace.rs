@@ -87,8 +87,7 @@ pub struct Workspace {
 impl Workspace {
     /// What the contacts of this step share.
     pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
-        let Self { frames, strength, .. } = self;
-        ContactSetting { boundary: &model.boundary, frames, laws: &state.laws, strength: *strength }
+        model.contact_setting(state, &self.frames, self.strength)
     }
 }
 

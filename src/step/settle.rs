@@ -36,6 +36,7 @@ impl Kernel for Settle<'_> {
         let Self { outcome, setting, velocities, dt, kick, fade, .. } = self;
         *outcome = ContactOutcome::default();
         for (contact, history) in self.contacts.iter().zip(self.histories) {
+            // Not by `map` of an array, for which the contact would be written to memory.
             let relative = |velocity: &[Vector]| contact.relative(setting.boundary, velocity);
             let [before, after] = [relative(velocities[0]), relative(velocities[1])];
             let (stored, slipped) = contact.shear_after(after[1] * dt, &setting);
@@ -86,8 +87,7 @@ impl Step<'_> {
         let Workspace { contacts, predicted, outcomes, frames, strength, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
-        let boundary = &self.model.boundary;
-        let setting = ContactSetting { boundary, frames, laws: &state.laws, strength: *strength };
+        let setting = ContactSetting { boundary: &self.model.boundary, frames, laws: &state.laws, strength: *strength };
         let velocities = [&state.velocity[..], predicted];
         let fade = libm::exp(-dt / OFFSET_FADE);
         let settle = |((contacts, histories), outcome)| {

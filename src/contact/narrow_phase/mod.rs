@@ -192,7 +192,7 @@ pub fn entrance_edges(
     accepted.near_side.clear();
     let mut made = 0;
     // In pieces: what is accepted of all near sides together would be as large as the contacts.
-    let piece = if narrow.serial { 1 } else { RUNS * rayon::current_num_threads() };
+    let piece = if narrow.serial { 1 } else { RUNS * enmm_fork::threads() };
     let mut first = 0;
     while first < near_sides.runs() {
         let end = near_sides.runs().min(first + piece);

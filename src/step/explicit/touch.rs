@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::contact::{Approach, BoltView, ContactSetting, OtherConstraints, SolverOptions, SolverReport};
+use crate::contact::{Approach, BoltView, OtherConstraints, SolverOptions, SolverReport};
 use crate::state::Workspace;
 
 use super::{REACH, Regime, Step, StepTimes};
@@ -73,7 +73,7 @@ impl Step<'_> {
             dt_last: state.dt_last,
             forward: model.theta_in(dt),
             damping,
-            setting: ContactSetting { boundary: &model.boundary, frames, laws: &state.laws, strength: *strength },
+            setting: model.contact_setting(state, frames, *strength),
             motion,
         };
         let (near, block_covers) = ((&state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);

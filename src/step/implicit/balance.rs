@@ -50,8 +50,7 @@ impl Step<'_> {
     /// The contacts of the sub-step, what they share, and the buffers of the integrator.
     fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitWorkspace) {
         let Workspace { implicit, contacts, frames, strength, .. } = &mut *self.workspace;
-        let (boundary, laws) = (&self.model.boundary, &self.state.laws);
-        (ContactSetting { boundary, frames, laws, strength: *strength }, contacts, implicit)
+        (self.model.contact_setting(self.state, frames, *strength), contacts, implicit)
     }
 
     /// Forces of all supports at the positions reached.
