@@ -112,8 +112,8 @@ impl SearchGrid {
         let Self { grid, runs } = self;
         grid.lay(view);
         let nodes = view.boundary.node_count();
-        let length = if view.serial { nodes.max(1) } else { RUN };
-        let piece = RUNS * enmm_fork::threads();
+        // Asked outside a pool, the number of threads would start one.
+        let (length, piece) = if view.serial { (nodes.max(1), 1) } else { (RUN, RUNS * enmm_fork::threads()) };
         runs.resize_with(nodes.div_ceil(length).min(piece), Run::default);
         let find = |first: usize, k: usize, run: &mut Run| {
             let from = first + k * length;
