@@ -131,7 +131,7 @@ impl SolverOrder {
     /// Bytes of the order and of what it is made with.
     pub fn bytes(&self) -> usize {
         let Self { block_pair, by_block, leaf, pushed, count, touching, leaf_block, groups, .. } = self;
-        let lists = [block_pair, by_block, leaf, pushed, count, touching, &groups.left];
+        let lists = [block_pair, by_block, leaf, pushed, count, touching, &groups.left, &groups.held];
         let order = size_of_val(self.block_pairs.as_slice()) + size_of_val(leaf_block.as_slice());
         let groups = size_of_val(groups.members.as_slice()) + size_of_val(groups.pushing.as_slice());
         let lists = lists.map(|list| size_of_val(list.as_slice())).iter().sum::<usize>();
@@ -315,8 +315,7 @@ impl Groups {
         held.sort_unstable();
         held.dedup();
         for k in pushed.iter_mut().filter(|k| **k as usize >= blocks) {
-            let (Ok(number) | Err(number)) = held.binary_search(k);
-            *k = (blocks + number) as u32;
+            *k = (blocks + held.partition_point(|held| held < k)) as u32;
         }
         pushing.clear();
         pushing.resize(blocks + held.len(), 0);

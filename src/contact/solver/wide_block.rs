@@ -26,12 +26,6 @@ pub struct WideBlock<L: Values> {
 }
 
 impl<L: Values> WideBlock<L> {
-    /// J90·(arm from the centroid) of points (m).
-    #[inline(always)]
-    pub fn lever(&self, at: [L::F; 2]) -> [L::F; 2] {
-        [self.centre[1] - at[1], at[0] - self.centre[0]]
-    }
-
     /// The first lane.
     #[inline(always)]
     pub fn first(&self, lanes: L) -> WideBlock<First> {

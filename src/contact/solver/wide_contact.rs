@@ -351,12 +351,12 @@ impl WideContact {
     fn follow(&self, from: &ContactView, asked: &mut F64x8, limits: &mut F64x8) {
         for (lane, &contact) in self.of(from.turns).iter().enumerate() {
             let (contact, setting) = (&from.contacts[contact as usize], &from.approach.setting);
-            let closure = contact.closure(setting);
+            let (closure, law) = (contact.closure(setting), contact.limits(setting));
             if closure.is_curved() {
                 asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);
             }
-            if closure.is_curved() || contact.limits(setting).is_curved() {
-                limits[lane] = contact.shear_limit(asked[lane], setting);
+            if closure.is_curved() || law.is_curved() {
+                limits[lane] = law.shear(asked[lane], contact.length);
             }
         }
     }

@@ -103,11 +103,9 @@ impl WidePairs {
         self.shift[lane] = if free[0] && contacts == 1 { 0.0 } else { -1.0 };
         for k in 0..2 {
             self.blocks[k][lane] = blocks[k];
-            if a != b {
-                self.spin[k][lane] = view.mass_matrix.spin[blocks[k]];
-            }
             if free[k] && a != b {
-                (self.common[k][lane], self.unit[k][lane]) = (common_share(view.mass_matrix, blocks[k]), 1.0);
+                self.common[k][lane] = common_share(view.mass_matrix, blocks[k]);
+                (self.spin[k][lane], self.unit[k][lane]) = (view.mass_matrix.spin[blocks[k]], 1.0);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Points of blocks side by side: one of the contacts of each of eight block pairs, and what moves with it (Eq. 17).
 
-use enmm_lanes::{LANES, Places, Values};
+use enmm_lanes::{Arithmetic, LANES, Places, Values};
 
 use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::Vector;
@@ -31,8 +31,7 @@ pub struct Bodies {
     pub blocks: [BlockId; LANES],
     /// Centroid (m).
     centre: [F64x8; 2],
-    /// Of a free block 1, 1/M (1/kg·m), (1 + S/M)/M (m/kg) and C.
-    free: F64x8,
+    /// Of a free block 1/M (1/kg·m), (1 + S/M)/M (m/kg) and C; 0 of a held one.
     pub share: F64x8,
     common: F64x8,
     spin: F64x8,
@@ -46,7 +45,6 @@ impl Bodies {
         for (lane, &block) in blocks.iter().enumerate() {
             let centre = motion[block].centre;
             (bodies.centre[0][lane], bodies.centre[1][lane]) = (centre.x, centre.y);
-            bodies.free[lane] = f64::from(mass_matrix.is_free(block));
             bodies.share[lane] = mass_matrix.inverse_total[block];
             bodies.common[lane] = common_share(mass_matrix, block);
             bodies.spin[lane] = mass_matrix.spin[block];
@@ -121,10 +119,8 @@ impl Points {
             z = z + weight * share;
             lanes.store(divided, &mut self.weights[k]);
         }
-        let (mass_share, free, spin) =
-            (z * lanes.load(&blocks.share), lanes.load(&blocks.free), lanes.load(&blocks.spin));
-        let centre = [lanes.load(&blocks.centre[0]), lanes.load(&blocks.centre[1])];
-        let lever = [(centre[1] - at[1]) * free, (at[0] - centre[0]) * free];
+        let (mass_share, spin) = (z * lanes.load(&blocks.share), lanes.load(&blocks.spin));
+        let lever = lever([lanes.load(&blocks.centre[0]), lanes.load(&blocks.centre[1])], at);
         lanes.store(mass_share, &mut self.mass_share);
         let common = lanes.load(&blocks.common) - (mass_share + mass_share);
         let [along, across] = [lever[0] * x + lever[1] * y, lever[1] * x - lever[0] * y];
@@ -194,7 +190,7 @@ impl Points {
     ) -> [L::F; 2] {
         let [w, u, v] = [lanes.load(&self.weights[0]), lanes.load(&self.weights[1]), lanes.load(&self.weights[2])];
         let share = side.common - lanes.load(&self.mass_share);
-        let (turn, lever) = (side.spin * side.moment, side.lever(at));
+        let (turn, lever) = (side.spin * side.moment, lever(side.centre, at));
         let x = (w * cover_impulse[0][0] + u * cover_impulse[1][0]) + v * cover_impulse[2][0];
         let y = (w * cover_impulse[0][1] + u * cover_impulse[1][1]) + v * cover_impulse[2][1];
         let common = [
@@ -220,9 +216,15 @@ impl Points {
             lanes.scatter_to([before[0] + w * x, before[1] + w * y], cover_impulse, &self.covers[k]);
         }
         let mass_share = lanes.load(&self.mass_share);
-        let lever = side.lever(at);
+        let lever = lever(side.centre, at);
         side.impulse = [side.impulse[0] + side.unit * x, side.impulse[1] + side.unit * y];
         side.weighted = [side.weighted[0] + mass_share * x, side.weighted[1] + mass_share * y];
         side.moment = side.moment + side.unit * (lever[0] * x + lever[1] * y);
     }
+}
+
+/// J90·(arm from a centroid) of points (m).
+#[inline(always)]
+fn lever<T: Arithmetic>(centre: [T; 2], at: [T; 2]) -> [T; 2] {
+    [centre[1] - at[1], at[0] - centre[0]]
 }

@@ -12,8 +12,7 @@ use crate::mechanics::Chunks;
 const GRAIN: usize = 4096;
 /// Covers below which a run of chunks is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
-    let alone = rayon::current_num_threads() == 1 && !enmm_fork::is_recorded();
-    if serial || alone { usize::MAX } else { GRAIN }
+    if serial || enmm_fork::threads() == 1 { usize::MAX } else { GRAIN }
 }
 
 thread_local! {
