@@ -5,6 +5,7 @@
 mod bolt;
 mod boundary;
 mod broad_phase;
+mod buckets;
 mod frame;
 mod law;
 mod narrow_phase;

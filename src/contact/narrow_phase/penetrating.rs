@@ -1,6 +1,6 @@
 //! Contacts of the last step in penetration. The vertex rule subtracts the compression of their springs from depths.
 
-use crate::contact::{Boundary, ContactHistory, NodeId, SideId};
+use crate::contact::{Boundary, ContactHistory, NodeId, SideId, buckets};
 use crate::geometry::Vector;
 
 use super::{Frames, NarrowPhase};
@@ -46,20 +46,7 @@ impl PenetratingContacts {
     pub fn index(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {
         self.find(boundary, frames, history);
         let Self { first_after, after, segment, .. } = self;
-        first_after.clear();
-        first_after.resize(boundary.node_count() + 1, 0);
-        segment.iter().for_each(|&node| first_after[node] += 1);
-        let mut end = 0;
-        for count in first_after.iter_mut() {
-            end += *count;
-            *count = end;
-        }
-        after.resize(segment.len(), 0);
-        for (k, &node) in segment.iter().enumerate().rev() {
-            let slot = &mut first_after[node];
-            *slot -= 1;
-            after[*slot as usize] = k as u32;
-        }
+        buckets::sort(segment.len(), boundary.node_count(), |k| segment[k].index(), first_after, after);
     }
 
     fn find(&mut self, boundary: &Boundary, frames: &Frames, history: &[ContactHistory]) {

@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use enmm_lanes::LANES;
 
-use crate::contact::{Boundary, EdgeId, NearPair, NearSides};
+use crate::contact::{Boundary, EdgeId, NearPair, NearSides, buckets};
 use crate::cover::{BlockId, CoverId};
 
 use super::SolverView;
@@ -194,21 +194,7 @@ impl SolverOrder {
     fn list_block_pairs(&mut self, near_sides: &NearBlocks, view: &SolverView) {
         let Self { by_block, block_pairs, count: start, leaf, .. } = self;
         let blocks = view.mass_matrix.total.len();
-        // The near sides by the lower of both blocks.
-        start.clear();
-        start.resize(blocks + 1, 0);
-        (0..near_sides.count()).for_each(|k| start[near_sides.blocks(k)[0]] += 1);
-        let mut end = 0;
-        for start in &mut *start {
-            end += *start;
-            *start = end;
-        }
-        by_block.resize(near_sides.count(), 0);
-        for k in (0..near_sides.count()).rev() {
-            let slot = &mut start[near_sides.blocks(k)[0]];
-            *slot -= 1;
-            by_block[*slot as usize] = k as u32;
-        }
+        buckets::sort(near_sides.count(), blocks, |k| near_sides.blocks(k)[0].index(), start, by_block);
         block_pairs.clear();
         for (first, end) in start.windows(2).map(|range| (range[0], range[1])) {
             let other = |near_side: u32| near_sides.blocks(near_side as usize)[1];

@@ -86,22 +86,22 @@ pub struct ContactView<'a> {
 }
 
 impl ContactView<'_> {
-    /// Asks the memory for the contacts of the turns from the first to the one after the last.
+    /// Contacts of the turns that come so many turns after the given ones.
     #[inline(always)]
-    fn fetch(&self, [first, end]: [usize; 2]) {
-        let count = self.turns.len();
-        for &contact in &self.turns[first.min(count)..end.min(count)] {
-            prefetch(&self.contacts[contact as usize..=contact as usize]);
-        }
+    fn later(&self, turns: [u32; 2], by: usize) -> impl Iterator<Item = usize> {
+        let [first, end] = turns.map(|turn| (turn as usize + by).min(self.turns.len()));
+        self.turns[first..end].iter().map(|&contact| contact as usize)
     }
 
-    /// Asks the memory for the points of the contacts of some turns, which have been fetched.
+    /// Asks the memory for contacts that come later, and for the points of those that have been asked for.
     #[inline(always)]
-    fn fetch_points(&self, [first, end]: [usize; 2]) {
-        let count = self.turns.len();
+    fn fetch(&self, turns: [u32; 2]) {
+        for contact in self.later(turns, 2 * AHEAD) {
+            prefetch(&self.contacts[contact..=contact]);
+        }
         let setting = &self.approach.setting;
-        for &contact in &self.turns[first.min(count)..end.min(count)] {
-            let point = self.contacts[contact as usize].point;
+        for contact in self.later(turns, AHEAD) {
+            let point = self.contacts[contact].point;
             let this = point.index()..=point.index();
             prefetch(&setting.boundary.covers[this.clone()]);
             prefetch(&setting.boundary.weights[this.clone()]);
@@ -129,8 +129,7 @@ impl WideContact {
         let mut start = Start::default();
         let contacts = self.of(from.turns);
         if from.turns.len() > FAR {
-            from.fetch(turns.map(|turn| turn as usize + 2 * AHEAD));
-            from.fetch_points(turns.map(|turn| turn as usize + AHEAD));
+            from.fetch(turns);
         }
         for (lane, &contact) in contacts.iter().enumerate() {
             self.take(lane, &from.contacts[contact as usize], &mut start, blocks, from, first_cover);
