@@ -17,6 +17,8 @@ pub struct Platform {
     program: &'static str,
     /// Program that removes symbols, with its options.
     strip: Option<&'static [&'static str]>,
+    /// Folder of cargo in the target folder; empty for the target folder itself.
+    cargo: &'static str,
 }
 
 /// What a cross build needs.
@@ -54,6 +56,7 @@ pub const HERE: Platform = Platform {
         b"macos" => Some(&["strip", "-x"]),
         _ => Some(&["strip", "--strip-unneeded"]),
     },
+    cargo: "",
 };
 
 /// Windows by mingw-w64.
@@ -75,10 +78,11 @@ pub const WINDOWS: Platform = Platform {
     library: ["", ".dll"],
     program: ".exe",
     strip: Some(&["x86_64-w64-mingw32-strip", "--strip-unneeded"]),
+    cargo: "",
 };
 
-/// The same as `cargo xtask test` builds it: nothing is removed from its binaries.
-pub const WINDOWS_QUICK: Platform = Platform { name: "windows-quick", strip: None, ..WINDOWS };
+/// The same as `cargo xtask test` builds it: beside the tests, for which cargo locks its folder, and with all symbols.
+pub const WINDOWS_QUICK: Platform = Platform { name: "windows-quick", strip: None, cargo: "windows-build", ..WINDOWS };
 
 /// Linux on ARM.
 pub const AARCH64: Platform = Platform {
@@ -98,6 +102,7 @@ pub const AARCH64: Platform = Platform {
     library: ["lib", ".so"],
     program: "",
     strip: Some(&["aarch64-linux-gnu-strip", "--strip-unneeded"]),
+    cargo: "",
 };
 
 impl Platform {
@@ -123,10 +128,15 @@ impl Platform {
         self.cross.as_ref().map_or(cfg!(windows), |cross| cross.triple.contains("windows"))
     }
 
+    /// Folder of cargo.
+    pub fn cargo(&self, repository: &Repository) -> PathBuf {
+        repository.target.join(self.cargo)
+    }
+
     /// Folder in which cargo leaves what it builds.
     pub fn built(&self, repository: &Repository) -> PathBuf {
         let folder = self.cross.as_ref().map_or_else(PathBuf::new, |cross| PathBuf::from(cross.triple));
-        repository.target.join(folder).join("release")
+        self.cargo(repository).join(folder).join("release")
     }
 
     /// Folder of the binaries as they are shipped.

@@ -22,6 +22,9 @@ const DRAWING_TEST: &str = "python_tests/test_pyvista.py";
 /// Chromium by the names that systems give it, as `python_tests/browser.py` looks for it.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
+/// Processes that run the Python tests, file by file.
+const WORKERS: &str = "2";
+
 /// All Python tests.
 pub const ALL: &str = "python_tests";
 
@@ -48,7 +51,8 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
     }
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = venv::command(repository)?;
-    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra"]).args(places).envs(extent);
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", WORKERS, "--dist", "loadfile"]);
+    pytest.args(places).envs(extent);
     // Without it the test says that it was left out.
     let library = "import ctypes; ctypes.CDLL('libEGL.so.1')";
     let draws = || venv::command(repository).is_ok_and(|mut python| venv::succeeds(python.args(["-c", library])));

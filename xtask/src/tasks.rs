@@ -50,16 +50,16 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
     if !steps.take("build", || plain(&["build", "--release", "--workspace"])) {
         return steps.close();
     }
-    // Tests, most of all those in Python, leave a part of the processors idle: what else has to be compiled or fetched
-    // fills it.
-    let oldest = (extent == Extent::Full).then(|| supply::start_oldest_compiler(repository));
+    // Tests leave a part of the processors idle: what else has to be compiled or fetched fills it.
+    let beside =
+        (extent == Extent::Full).then(|| (supply::start_oldest_compiler(repository), cross::start_quick(repository)));
     std::thread::scope(|scope| {
         if extent == Extent::Full {
             scope.spawn(|| venv::prepare(repository));
         }
         steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
     });
-    if extent == Extent::Full {
+    if let Some((oldest, windows)) = beside {
         steps.take("documentation", || {
             let mut doc = repository.cargo(&["doc", "--release", "--workspace", "--no-deps"]);
             repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
@@ -67,8 +67,7 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
         steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
         steps.take("parts", || supply::parts(repository).map(|()| Counts::default()));
         steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
-        steps.take("oldest compiler", || finish(oldest.transpose()?.flatten()));
-        let windows = cross::start_quick(repository);
+        steps.take("oldest compiler", || finish(oldest?));
         steps.take("python", || python::test(repository, &[python::ALL]));
         steps.take("windows", || cross::quick(repository, windows?));
         steps.take("figures", || figures::compare(repository));
