@@ -82,7 +82,7 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         dt_last: state.dt_last,
         forward: model.theta_in(dt),
         damping: (state.stage > 0).then_some(0.1),
-        setting: model.contact_setting(&state, &workspace.frames, workspace.strength),
+        setting: model.contact_setting(&state.laws, &workspace.frames, workspace.strength),
         motion: &workspace.motion,
     };
     let mut plain = workspace.contacts.clone();

@@ -7,7 +7,7 @@ use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
-use super::{Implicit, State};
+use super::Implicit;
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -199,9 +199,15 @@ pub struct Model {
 }
 
 impl Model {
-    /// What the contacts of a step share, at the positions of the boundary and with the factor on all strengths there.
-    pub fn contact_setting<'a>(&'a self, state: &'a State, frames: &'a Frames, strength: f64) -> ContactSetting<'a> {
-        ContactSetting { boundary: &self.boundary, frames, laws: &state.laws, strength }
+    /// What the contacts of a step share: the boundary at its positions, and joint laws with the factor on all
+    /// strengths.
+    pub fn contact_setting<'a>(
+        &'a self,
+        laws: &'a [JointLaw],
+        frames: &'a Frames,
+        strength: f64,
+    ) -> ContactSetting<'a> {
+        ContactSetting { boundary: &self.boundary, frames, laws, strength }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

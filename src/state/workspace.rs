@@ -87,7 +87,7 @@ pub struct Workspace {
 impl Workspace {
     /// What the contacts of this step share.
     pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
-        model.contact_setting(state, &self.frames, self.strength)
+        model.contact_setting(&state.laws, &self.frames, self.strength)
     }
 }
 

@@ -87,7 +87,7 @@ impl Step<'_> {
         let Workspace { contacts, predicted, outcomes, frames, strength, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());
         outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
-        let setting = ContactSetting { boundary: &self.model.boundary, frames, laws: &state.laws, strength: *strength };
+        let setting = self.model.contact_setting(&state.laws, frames, *strength);
         let velocities = [&state.velocity[..], predicted];
         let fade = libm::exp(-dt / OFFSET_FADE);
         let settle = |((contacts, histories), outcome)| {

@@ -73,7 +73,7 @@ impl Step<'_> {
             dt_last: state.dt_last,
             forward: model.theta_in(dt),
             damping,
-            setting: model.contact_setting(state, frames, *strength),
+            setting: model.contact_setting(&state.laws, frames, *strength),
             motion,
         };
         let (near, block_covers) = ((&state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);

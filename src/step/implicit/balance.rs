@@ -50,7 +50,7 @@ impl Step<'_> {
     /// The contacts of the sub-step, what they share, and the buffers of the integrator.
     fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitWorkspace) {
         let Workspace { implicit, contacts, frames, strength, .. } = &mut *self.workspace;
-        (self.model.contact_setting(self.state, frames, *strength), contacts, implicit)
+        (self.model.contact_setting(&self.state.laws, frames, *strength), contacts, implicit)
     }
 
     /// Forces of all supports at the positions reached.
