@@ -9,23 +9,23 @@ const COLUMNS_MAX: usize = 120;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
 const ENGINE_LINES_MAX: usize = 23_200;
 /// Folders of programs that may print.
-const PRINTERS: [&str; 5] = ["cli/", "xtask/", "tests/", "benches/", "examples/"];
+const PRINTERS: [&str; 5] = ["crates/cli/", "tools/xtask/", "tests/", "benches/", "examples/"];
 /// Rooms whose results must not depend on the order of a hash.
 const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
 /// Folders whose results have the same bits on every platform.
-const SAME_BITS: [&str; 6] = ["src/", "case/src/", "stability/src/", "run/src/", "report/src/", "picture/src/"];
+const SAME_BITS: [&str; 6] = ["src/", "crates/case/src/", "crates/stability/src/", "crates/run/src/", "crates/report/src/", "crates/picture/src/"];
 /// Functions whose last bits differ from system to system; those of `libm` do not.
 const OF_THE_SYSTEM: [&str; 22] = [
     "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
     "ln", "ln_1p", "log2", "log10", "powf", "cbrt", "hypot", "mul_add",
 ];
 /// Folders of packages that are no part of a release.
-const TOOLS: [&str; 4] = ["xtask/", "ffi/fuzz/", "ffi/header/", "ffi/overhead/"];
+const TOOLS: [&str; 4] = ["tools/xtask/", "tools/fuzz/", "ffi/header/", "tools/overhead/"];
 const THEORY: &str = "docs/theory.md";
 /// Documents that send the reader to files of the repository.
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
 /// What stands in guides for a path of the reader's choice.
-const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "verification/src/problems/xx.rs"];
+const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "crates/verification/src/problems/xx.rs"];
 /// Table of contents of the site.
 const SUMMARY: &str = "docs/SUMMARY.md";
 const GLOSSARY: &str = "docs/glossary.md";
@@ -116,7 +116,7 @@ fn equations_are_numbered_in_order_and_citations_exist() {
     let numbers = equation_numbers(&theory.text);
     assert_eq!(numbers, (1..=numbers.len() as u32).collect::<Vec<_>>(), "equations of {THEORY}, in their order");
     assert!(numbers.len() >= 19);
-    let citing = files.iter().filter(|file| (file.is(".rs") && file.within(&["src/", "cli/"])) || file.is(".md"));
+    let citing = files.iter().filter(|file| (file.is(".rs") && file.within(&["src/", "crates/cli/"])) || file.is(".md"));
     hold(citing.flat_map(|file| citation_problems(file, &numbers)).collect());
 }
 
@@ -201,7 +201,7 @@ fn room_problems(file: &File) -> Vec<String> {
 
 fn file_access_problems(file: &File) -> Vec<String> {
     let named = names_after(&code_only(&file.text), "std::").into_iter().filter(|(_, other)| other == "fs");
-    named.map(|(line, _)| format!("{}:{line}: opens a file, which is for `io/`", file.path)).collect()
+    named.map(|(line, _)| format!("{}:{line}: opens a file, which is for `crates/io/`", file.path)).collect()
 }
 
 /// Tables and lines with an address are excepted in Markdown, because neither can be broken. Marks of figures, which
@@ -229,7 +229,7 @@ fn word_problems(file: &File) -> Vec<String> {
         let bad = match word {
             "todo" | "unimplemented" | "dbg" => follows == Some('!'),
             "print" | "println" | "eprint" | "eprintln" => follows == Some('!') && !file.within(&PRINTERS),
-            "unsafe" => !file.within(&["ffi/", "lanes/"]),
+            "unsafe" => !file.within(&["ffi/", "crates/lanes/"]),
             "HashMap" | "HashSet" => file.within(&ORDERED),
             _ => false,
         };
@@ -724,7 +724,7 @@ fn words_rule_is_seen_failing() {
         assert_eq!(rule("tests/a.rs", word), 1, "{word}");
     }
     for word in ["println!()", "eprintln!()", "print!()", "eprint!()"] {
-        assert_eq!((rule("src/io/a.rs", word), rule("cli/src/a.rs", word)), (1, 0), "{word}");
+        assert_eq!((rule("src/io/a.rs", word), rule("crates/cli/src/a.rs", word)), (1, 0), "{word}");
     }
     assert_eq!(rule("ffi/src/a.rs", "unsafe {}"), 0);
     assert_eq!(rule("src/lib.rs", "#![forbid(unsafe_code)]"), 0);
@@ -747,7 +747,7 @@ fn includes_rule_is_seen_failing() {
     assert_eq!(rule("a/b/src/c/d.rs", "const A: &str = include_str!(\"../../../x.toml\");"), 1);
     assert_eq!(rule("a/b/src/c/d.rs", "const A: &[u8] = include_bytes!(\"../../x.toml\");"), 0);
     assert_eq!(rule("a/b/src/d.rs", "#[cfg(test)]\nconst A: &str = include_str!(\"../../x.toml\");"), 0);
-    assert_eq!(rule("xtask/src/a.rs", "include_str!(\"../../x.toml\")"), 0);
+    assert_eq!(rule("tools/xtask/src/a.rs", "include_str!(\"../../x.toml\")"), 0);
 }
 
 #[test]

@@ -128,7 +128,7 @@ def _check(case: Case, variables: Mapping[str, Variable], output: Output) -> Non
 
 
 def _key(digest: str, values: dict[str, Any], output: Output, options: Mapping[str, Any], version: str) -> str:
-    """Hash of all that a sample depends on; the program has the same (`sample/src/identity.rs`)."""
+    """Hash of all that a sample depends on; the program has the same (`crates/ensemble/src/identity.rs`)."""
     lines = ["enmm sample 1", f"case {digest}", f"version {version}", f"output {_name(output)}"]
     lines += [f"option {name} {_bits(float(value))}" for name, value in sorted(options.items())]
     lines += [f"value {key} {_bits(value)}" for key, value in sorted(values.items())]

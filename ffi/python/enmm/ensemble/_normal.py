@@ -1,4 +1,4 @@
-"""Probability of the normal distribution, the same bits as in the program (`sample/src/normal.rs`).
+"""Probability of the normal distribution, the same bits as in the program (`crates/ensemble/src/normal.rs`).
 
 `statistics.NormalDist.cdf` is not used, since its formula differs between versions of Python.
 """

@@ -1,0 +1,251 @@
+//! `enmm bench`: what standard models cost.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use enmm_bench::{
+    BenchOptions, BenchReport, COMPARED, LARGE, Machine, Measured, Model, Origin, Peer, PeerError, PeerOptions,
+    STANDARD, bench, compare, peers_markdown, predict, threads_markdown, write_peers, write_report,
+};
+use enmm_io::files::write_atomic;
+
+use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
+
+/// What to time.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Models by name, separated by commas: continuum_N, fractured_resting, fractured_failing, slope_NxM (N blocks of M
+    /// elements); or `all`. Default: those that take less than a minute together.
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    models: Vec<String>,
+    /// Wall time for the steps of each model (s).
+    #[arg(long, default_value_t = 2.0)]
+    seconds: f64,
+    /// Threads; default: all.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Leave out the limits of the machine.
+    #[arg(long)]
+    no_limits: bool,
+    /// Run slopes that stand beside other programs through their first second as well, which takes minutes.
+    #[arg(long)]
+    first_second: bool,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Write the case files of the models there and time nothing.
+    #[arg(long, value_name = "DIR")]
+    write: Option<PathBuf>,
+    /// Directory for tables (Markdown and JSON) and plots.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Time other programs on slopes and continua turn by turn with enmm, on one thread: those named of rapier,
+    /// rapier-constraints, box2d and numba, or all. Cargo and pip build them from the sources of the repository.
+    /// Default models: slopes of 500 and 2 000 blocks, continua of 10 000 and 100 000 elements.
+    #[arg(long, value_name = "PROGRAMS", value_delimiter = ',', num_args = 0..=1, default_missing_value = "all")]
+    peers: Option<Vec<String>>,
+    /// Rounds of the comparison.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000), requires = "peers")]
+    rounds: u16,
+    /// Folder of the sources of the other programs.
+    #[arg(long, value_name = "DIR", default_value = "tools/bench/peers", requires = "peers")]
+    peer_sources: PathBuf,
+    /// Predict what a step of the models takes on up to 64 threads. Default models: slopes of 2 000 and 10 000 blocks.
+    #[arg(long, conflicts_with = "peers")]
+    predict_threads: bool,
+    /// What tells these results from others, such as commit and date.
+    #[arg(long, default_value = "Measured", value_name = "TEXT")]
+    label: String,
+}
+
+/// Times models and prints what they cost.
+pub fn run(arguments: &Arguments) -> ExitCode {
+    let models = match models(&arguments.models) {
+        Ok(models) => models,
+        Err(name) => {
+            let message = format!("there is no model {name:?}: try {}, or all", names(&STANDARD));
+            return fail(&message, BAD_INPUT);
+        }
+    };
+    if let Some(folder) = &arguments.write {
+        return write_cases(&models, folder);
+    }
+    if let Some(names) = &arguments.peers {
+        return run_peers(arguments, names, models);
+    }
+    if arguments.predict_threads {
+        return run_prediction(arguments, models);
+    }
+    let options = BenchOptions {
+        models,
+        seconds: arguments.seconds,
+        threads: arguments.threads.map(usize::from),
+        limits: !arguments.no_limits,
+        first_second: arguments.first_second,
+    };
+    let mut begin = |name: &str| {
+        if !arguments.json {
+            tell_line(&format!("{name} …"));
+        }
+    };
+    let report = match bench(&options, &mut begin) {
+        Ok(report) => report,
+        Err(error) => return fail(&error, FAILED),
+    };
+    let written =
+        arguments.output.as_ref().map_or(Ok(()), |folder| write_report(&report, &origin(&arguments.label), folder));
+    print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
+    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+/// Times other programs beside this one and prints how long all took.
+fn run_peers(arguments: &Arguments, names: &[String], models: Vec<Model>) -> ExitCode {
+    let peers = match peers(names) {
+        Ok(peers) => peers,
+        Err(name) => {
+            let known = Peer::ALL.map(Peer::name).join(", ");
+            return fail(&format!("there is no program {name:?} to compare with: try {known}, or all"), BAD_INPUT);
+        }
+    };
+    if arguments.threads.is_some_and(|threads| threads != 1) {
+        return fail(&"--peers compares programs on one thread: leave --threads out", BAD_INPUT);
+    }
+    let default = || COMPARED.into_iter().filter(|model| peers.iter().any(|peer| peer.takes(model))).collect();
+    let models = if arguments.models.is_empty() { default() } else { models };
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let (rounds, sources) = (usize::from(arguments.rounds), arguments.peer_sources.clone());
+    let options = PeerOptions { models, peers, rounds, sources, builds: target.join("peers") };
+    let report = match compare(&options, &mut |what| tell_line(&format!("{what} …"))) {
+        Ok(report) => report,
+        Err(error @ PeerError::Own(_)) => return fail(&error, FAILED),
+        Err(error) => return fail(&error, BAD_INPUT),
+    };
+    let origin = origin(&arguments.label);
+    let written = arguments.output.as_ref().map_or(Ok(()), |folder| write_peers(&report, &origin, folder));
+    let text = || peers_markdown(&report, &origin).trim_end().to_owned();
+    print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text() });
+    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+/// Predicts what a step takes on more threads and prints it.
+fn run_prediction(arguments: &Arguments, models: Vec<Model>) -> ExitCode {
+    let default = vec![Model::Slope(2_000, 4), Model::Slope(10_000, 4)];
+    let mut predictions = Vec::new();
+    for model in if arguments.models.is_empty() { default } else { models } {
+        tell_line(&format!("{model} …"));
+        match predict(&model) {
+            Ok(found) => predictions.push(found),
+            Err(error) => return fail(&error, FAILED),
+        }
+    }
+    let text = threads_markdown(&Machine::here(false), &predictions, &origin(&arguments.label));
+    print_line(&if arguments.json { format!("{:#}", serde_json::json!(predictions)) } else { text.clone() });
+    let write = |folder: &PathBuf| write_atomic(&folder.join("threads.md"), text.as_bytes());
+    let written = arguments.output.as_ref().map_or(Ok(()), write);
+    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+}
+
+fn peers(names: &[String]) -> Result<Vec<Peer>, &str> {
+    if names == ["all"] {
+        return Ok(Peer::ALL.to_vec());
+    }
+    names.iter().map(|name| Peer::parse(name).ok_or(name.as_str())).collect()
+}
+
+/// Writes the case of each model into a file of its name.
+fn write_cases(models: &[Model], folder: &Path) -> ExitCode {
+    let write = || -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        models.iter().try_for_each(|model| {
+            let path = folder.join(format!("{model}.toml"));
+            write_atomic(&path, model.text().as_bytes())?;
+            print_line(&path.display().to_string());
+            Ok(())
+        })
+    };
+    let refused = |error| format!("cannot write to {} ({error}): choose another directory", folder.display());
+    write().map_err(refused).map_or_else(|message| fail(&message, BAD_INPUT), |()| ExitCode::SUCCESS)
+}
+
+fn origin(label: &str) -> Origin {
+    let command: Vec<String> = std::env::args().skip(1).collect();
+    Origin { label: label.to_owned(), command: format!("enmm {}", command.join(" ")) }
+}
+
+fn models(names: &[String]) -> Result<Vec<Model>, &str> {
+    if names.is_empty() {
+        return Ok(STANDARD.to_vec());
+    }
+    if names == ["all"] {
+        return Ok(STANDARD.into_iter().chain(LARGE).collect());
+    }
+    names.iter().map(|name| Model::parse(name).ok_or(name.as_str())).collect()
+}
+
+fn names(models: &[Model]) -> String {
+    models.iter().map(Model::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn text(report: &BenchReport) -> String {
+    let machine = &report.machine;
+    let processor = machine.processor.as_deref().unwrap_or("unknown processor");
+    let mut lines = vec![format!(
+        "enmm {}, {processor}, {} cores, {}; {} threads",
+        report.version,
+        machine.cores,
+        machine.caches.join(", "),
+        report.threads
+    )];
+    for level in &machine.bandwidth {
+        lines.push(format!(
+            "  {:<5} {:7.1} GB/s one thread, {:7.1} all",
+            level.level,
+            level.one / 1e9,
+            level.all / 1e9
+        ));
+    }
+    if let Some([one, all]) = machine.multiply_add {
+        lines.push(format!("  FMA   {:7.1} GFLOP/s one thread, {:5.1} all", one / 1e9, all / 1e9));
+    }
+    lines.extend(report.models.iter().map(model_text));
+    lines.join("\n")
+}
+
+fn model_text(found: &Measured) -> String {
+    let Measured { model, blocks, elements, contacts, .. } = found;
+    let share = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let stages = found.stages.named();
+    let parts = stages.map(|(name, ms)| format!("{name} {ms:.3} ({:.0} %)", 100.0 * ms / found.ms_per_step));
+    let sweeps = found.contact_sweeps_per_second.map_or_else(String::new, |rate| {
+        format!(", {:.2} sweeps at {:.1} M contacts/s", found.sweeps_mean, rate / 1e6)
+    });
+    let heaps = found.heap_bytes.map(|bytes| format!("{:.0}", bytes as f64 / *elements as f64)).join(" + ");
+    let first = found.first_second.map_or_else(String::new, |seconds| format!(", the first one {seconds:.3} s"));
+    let memory = found.memory_peak.map_or_else(String::new, |peak| format!(", peak {:.0} MB", peak as f64 / 1e6));
+    [
+        format!("{model}: {blocks} blocks, {elements} elements ({} held), {contacts} contacts", found.held_elements),
+        format!(
+            "  {:.3} ms a step (median of wall time {:.3}), {:.3} s a simulated second{first}{sweeps}",
+            found.ms_per_step, found.wall_ms_per_step, found.seconds_per_simulated_second
+        ),
+        format!("  ms: {}", parts.join(", ")),
+        format!(
+            "  elements {:.1} M/s, step {:.2} M/s; {:.0} B and {:.0} operations each: {} of bandwidth, {} of FMA",
+            found.elements_per_second / 1e6,
+            found.step_elements_per_second / 1e6,
+            found.bytes_per_element,
+            found.operations_per_element,
+            share(found.share_of_bandwidth),
+            share(found.share_of_operations)
+        ),
+        format!(
+            "  {} searches of {:.3} ms; frame {:.1} ms, checkpoint {:.1} ms; built in {:.2} s{memory}, {heaps} B each",
+            found.searches,
+            found.ms_per_search.unwrap_or(0.0),
+            found.frame_ms,
+            found.checkpoint_ms,
+            found.build_seconds
+        ),
+    ]
+    .join("\n")
+}

@@ -1,0 +1,252 @@
+//! `enmm sample`: the probability of failure of a case with random values. Every sample is worked out by a process of
+//! its own, so that one that is lost ends no other.
+
+use std::path::PathBuf;
+use std::process::{Command, ExitCode, Stdio};
+
+use clap::Args;
+use enmm_io::LoadedCase;
+use enmm_run::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
+use enmm_ensemble::{Interval, Row, beta, medians};
+use serde_json::{Map, Value as Json, json};
+
+use crate::case::CaseArguments;
+use crate::progress::Count;
+use crate::run::{INTERRUPT, directory_of, interrupt};
+use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
+
+/// Exit status of a panic.
+const PANIC: i32 = 101;
+
+/// Arguments of `enmm sample`.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    case: CaseArguments,
+    /// Number of samples; default: `ensemble.samples` of the case.
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    samples: Option<u64>,
+    /// Samples that are worked out at a time; default: one for each processor. Results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Directory for the results; default: the name of the case file, here.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// File that keeps every sample as soon as it is done; what is there is not worked out again. Default:
+    /// ensemble.sqlite in the directory for the results.
+    #[arg(long, value_name = "FILE")]
+    store: Option<PathBuf>,
+    /// Least F that trials of a factor of safety reach.
+    #[arg(long)]
+    low: Option<f64>,
+    /// Greatest F that trials of a factor of safety reach.
+    #[arg(long)]
+    high: Option<f64>,
+    /// Width of the final bracket of a factor of safety relative to F; default: that of `enmm fos`.
+    #[arg(long)]
+    tolerance: Option<f64>,
+    /// Ignore mechanisms of less rock (m²).
+    #[arg(long, value_name = "AREA")]
+    least_area: Option<f64>,
+    /// Work out again the samples that have no answer.
+    #[arg(long)]
+    retry_failed: bool,
+    /// Print one JSON object, that of ensemble.json.
+    #[arg(long)]
+    json: bool,
+    /// Works out one sample of the case with this fingerprint and prints its answer; how the program calls itself.
+    #[arg(long, hide = true, value_name = "HASH")]
+    sample_of: Option<String>,
+    /// A value of that sample.
+    #[arg(long, hide = true, value_name = "KEY=VALUE")]
+    value: Vec<String>,
+}
+
+impl Arguments {
+    fn search(&self) -> SearchOptions {
+        let Self { low, high, tolerance, least_area, .. } = *self;
+        SearchOptions { low, high, tolerance, least_area }
+    }
+
+    /// Refuses options with which no search can be made.
+    fn check(&self) -> Result<(), String> {
+        self.search().fos().check()
+    }
+}
+
+/// Works out an ensemble.
+pub fn sample(arguments: &Arguments) -> ExitCode {
+    if let Err(message) = arguments.check() {
+        return refuse(arguments, &message, BAD_INPUT);
+    }
+    let loaded = match load(arguments) {
+        Ok(loaded) => loaded,
+        Err(error) => return refuse(arguments, &error, BAD_INPUT),
+    };
+    if let Some(hash) = &arguments.sample_of {
+        return work_out(arguments, &loaded, hash);
+    }
+    if let Err(error) = ctrlc::set_handler(interrupt) {
+        return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
+    }
+    let program = match std::env::current_exe() {
+        Ok(program) => program,
+        Err(error) => return refuse(arguments, &format!("cannot find this program again ({error})"), FAILED),
+    };
+    let directory = arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path));
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let options = EnsembleOptions {
+        store: arguments.store.clone().unwrap_or_else(|| directory.join("ensemble.sqlite")),
+        directory,
+        jobs: arguments.jobs.map_or_else(processors, usize::from),
+        search: arguments.search(),
+        retry_failed: arguments.retry_failed,
+        interrupt: &INTERRUPT,
+    };
+    let screen = Count::new(arguments.json);
+    let ask = |k: usize, values: Vec<String>| ask(&mut command(&program, arguments, &loaded, &values), k, &loaded);
+    let found = ensemble(&loaded, &options, ask, &mut |done, n| screen.tell(done, n));
+    screen.close();
+    match found {
+        Ok(found) => report(arguments, &found, &options),
+        Err(error) => {
+            let status = match error {
+                EnsembleError::Case(_) => BAD_INPUT,
+                EnsembleError::Interrupted { .. } => INTERRUPTED,
+                _ => FAILED,
+            };
+            refuse(arguments, &error, status)
+        }
+    }
+}
+
+/// The case; of an ensemble with a look at the middle of its random values, so that wrong keys are found at once.
+fn load(arguments: &Arguments) -> Result<LoadedCase, enmm_io::CaseError> {
+    let mut loaded = arguments.case.load()?;
+    if let Some(n) = arguments.samples {
+        loaded.case.ensemble.samples = n;
+    }
+    if arguments.sample_of.is_none() {
+        let medians = medians(&loaded.case);
+        let medians = medians.map_err(|invalid| loaded.source.locate(&invalid.key, &invalid.message))?;
+        arguments.case.load_with(&medians)?;
+    }
+    Ok(loaded)
+}
+
+fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -> ExitCode {
+    if arguments.json {
+        print_line(&json!({ "error": message.to_string() }).to_string());
+    }
+    fail(message, status)
+}
+
+/// The call of this program that works out one sample.
+fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, values: &[String]) -> Command {
+    let mut command = Command::new(program);
+    command.arg("sample").arg(&arguments.case.path).arg(format!("--sample-of={}", loaded.hash));
+    command.args(loaded.settings.iter().map(|setting| format!("--set={setting}")));
+    command.args(values.iter().map(|value| format!("--value={value}")));
+    let options = arguments.search().given();
+    command.args(options.iter().map(|(name, value)| format!("--{}={value:?}", name.replace('_', "-"))));
+    command.stdin(Stdio::null());
+    command
+}
+
+/// Asks a process for one sample; fails when the process was lost.
+fn ask(command: &mut Command, k: usize, loaded: &LoadedCase) -> Result<Answer, String> {
+    let output = command.output().map_err(|error| format!("the process of sample {k} did not start: {error}"))?;
+    if let Ok(found) = serde_json::from_slice(&output.stdout) {
+        return Ok(read(&found, loaded));
+    }
+    let told = String::from_utf8_lossy(&output.stderr);
+    let told = told.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    match output.status.code() {
+        Some(PANIC) => {
+            let message = format!("the engine failed: {told}");
+            Ok(Answer::Done(Row { outputs: Vec::new(), message }))
+        }
+        // The case cannot be read any more.
+        Some(status) if status == i32::from(BAD_INPUT) => Ok(Answer::Changed),
+        _ => Err(format!("the process of sample {k} ended with {}: {told}", output.status)),
+    }
+}
+
+fn read(found: &Json, loaded: &LoadedCase) -> Answer {
+    if found["changed"].is_string() {
+        return Answer::Changed;
+    }
+    let names = columns(loaded.case.ensemble.output);
+    let output = |name: &&str| Some(((*name).to_owned(), found["outputs"].get(*name)?.clone()));
+    let message = found["message"].as_str().unwrap_or_default().to_owned();
+    Answer::Done(Row { outputs: names.iter().filter_map(output).collect(), message })
+}
+
+/// Works out one sample in this process and prints its answer.
+fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode {
+    if loaded.hash != hash {
+        print_line(&json!({ "changed": loaded.hash }).to_string());
+        return ExitCode::SUCCESS;
+    }
+    let row = match arguments.case.load_with(&arguments.value) {
+        Ok(sample) => answer(&sample, &arguments.search()),
+        Err(error) => Some(Row { outputs: Vec::new(), message: error.to_string() }),
+    };
+    let Some(row) = row else { return ExitCode::from(INTERRUPTED) };
+    let outputs: Map<String, Json> = row.outputs.into_iter().collect();
+    print_line(&json!({ "outputs": outputs, "message": row.message }).to_string());
+    ExitCode::SUCCESS
+}
+
+fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptions) -> ExitCode {
+    if arguments.json {
+        match std::fs::read_to_string(options.directory.join("ensemble.json")) {
+            Ok(text) => print_line(text.trim_end()),
+            Err(error) => return refuse(arguments, &format!("cannot read ensemble.json again ({error})"), FAILED),
+        }
+        return ExitCode::SUCCESS;
+    }
+    print_line(&table(found, options));
+    let n = found.rows.len();
+    let named = |list: &[(usize, String)]| {
+        let shown = list.iter().map(|(k, message)| format!("{k} ({message})")).collect::<Vec<_>>();
+        listed(shown.into_iter())
+    };
+    if !found.failed.is_empty() {
+        tell_line(&format!(
+            "warning: {} of {n} samples have no answer and count neither as failed nor as stable slopes: {}",
+            found.failed.len(),
+            named(&found.failed)
+        ));
+    }
+    if !found.doubtful.is_empty() {
+        tell_line(&format!(
+            "warning: {} of {n} factors are above the bound of limit analysis: {}",
+            found.doubtful.len(),
+            named(&found.doubtful)
+        ));
+    }
+    ExitCode::SUCCESS
+}
+
+/// What was found, as lines of a name and a text.
+fn table(found: &EnsembleResult, options: &EnsembleOptions) -> String {
+    let mut lines = Vec::new();
+    let mut tell = |name: &str, text: String| lines.push(format!("{name:<23} {text}"));
+    let of = &found.ensemble;
+    tell("samples", format!("{} by {}, seed {}", found.rows.len(), of.sampling.name().replace('_', " "), of.seed));
+    tell("below the limit", format!("{} below {}", found.failures(), of.limit));
+    let (p, Interval { low, high }) = (found.probability_of_failure(), found.interval());
+    tell("probability of failure", format!("{p:.4}, 95 % (Wilson): {low:.4} to {high:.4}"));
+    tell("reliability index", format!("{:.3}, 95 %: {:.3} to {:.3}", beta(p), beta(high), beta(low)));
+    let quantiles = found.quantiles().map(|(share, output)| format!("{output:.4} ({:.0} %)", 100.0 * share));
+    let name = columns(of.output)[0].replace('_', " ");
+    tell(&name, format!("mean {:.4}, quantiles {}", found.mean(), quantiles.join(", ")));
+    for (key, correlation) in found.sensitivity() {
+        let text = correlation.map_or("none".to_owned(), |correlation| format!("{correlation:.3}"));
+        tell("rank correlation", format!("{text} of {key}"));
+    }
+    tell("store", options.store.display().to_string());
+    tell("results", options.directory.display().to_string());
+    lines.join("\n")
+}

@@ -1,0 +1,29 @@
+//! Claim: `enmm bench --write` hands out the cases of its models and times nothing, and `--peers` says what it
+//! needs.
+
+mod support;
+
+use support::{Place, case};
+
+#[test]
+fn cases_of_models_are_written_and_can_be_built() {
+    let place = Place::with(&case(0.02));
+    let answer = place.enmm(&["bench", "--models", "slope_20x4,continuum_200", "--write", "models"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    for name in ["models/slope_20x4.toml", "models/continuum_200.toml"] {
+        assert!(answer.stdout.contains(name), "{answer:?}");
+        let check = place.enmm(&["check", name]);
+        assert_eq!(check.status, Some(0), "{check:?}");
+    }
+    place.enmm(&["bench", "--write", "case.toml/x"]).assert_bad_input(&["case.toml/x", "another directory"]);
+}
+
+#[test]
+fn a_comparison_says_what_it_needs() {
+    let place = Place::with(&case(0.02));
+    place.enmm(&["bench", "--peers"]).assert_bad_input(&["tools/bench/peers", "--peer-sources"]);
+    place
+        .enmm(&["bench", "--peers", "rapier,x"])
+        .assert_bad_input(&["\"x\"", "rapier, rapier-constraints, box2d, numba"]);
+    place.enmm(&["bench", "--peers", "--threads", "2"]).assert_bad_input(&["one thread"]);
+}

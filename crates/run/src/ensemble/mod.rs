@@ -1,0 +1,200 @@
+//! An ensemble from case to results: `ensemble.csv`, `ensemble.json` and `ensemble.png`.
+//!
+//! Each answer goes to the store as soon as it is there; the results are written when all are.
+
+mod answer;
+mod record;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use enmm::engine_version;
+use enmm_io::{CaseError, LoadedCase};
+use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key, work};
+use enmm_stability::strength_reduction::MechanismOptions;
+
+use crate::fos::FosOptions;
+
+pub use answer::{answer, columns};
+pub use record::EnsembleResult;
+
+/// Options of the search for each factor of safety; those that are none are the defaults of [`super::FosOptions`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SearchOptions {
+    /// Least F that trials reach.
+    pub low: Option<f64>,
+    /// Greatest F that trials reach.
+    pub high: Option<f64>,
+    /// Width of the final bracket relative to F.
+    pub tolerance: Option<f64>,
+    /// Area (m²) of failing blocks below which a mechanism does not count.
+    pub least_area: Option<f64>,
+}
+
+impl SearchOptions {
+    /// As options of one search, on one thread.
+    pub fn fos(&self) -> FosOptions<'static> {
+        let whole = FosOptions::into_directory(PathBuf::new());
+        FosOptions {
+            low: self.low,
+            high: self.high,
+            tolerance: self.tolerance.unwrap_or(whole.tolerance),
+            mechanisms: MechanismOptions { least_area: self.least_area.unwrap_or(0.0), count: 1 },
+            threads: Some(1),
+            ..whole
+        }
+    }
+
+    /// The options that are given, by name.
+    pub fn given(&self) -> BTreeMap<String, f64> {
+        let all =
+            [("low", self.low), ("high", self.high), ("tolerance", self.tolerance), ("least_area", self.least_area)];
+        all.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
+    }
+}
+
+/// How to work out an ensemble, and where its results go.
+#[derive(Debug)]
+pub struct EnsembleOptions<'a> {
+    /// Where results go.
+    pub directory: PathBuf,
+    /// File of the store.
+    pub store: PathBuf,
+    /// Samples at a time.
+    pub jobs: usize,
+    /// Options of each search.
+    pub search: SearchOptions,
+    /// Work out again the samples that have no answer.
+    pub retry_failed: bool,
+    /// Set by another thread to end with the samples that are under way.
+    pub interrupt: &'a AtomicBool,
+}
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+pub enum EnsembleError {
+    /// The case, its random values or their correlations cannot be used.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The store cannot be read or written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// No sample has an answer.
+    #[error("none of {n} samples has an answer; the first: {message}")]
+    NoAnswer {
+        /// Number of samples.
+        n: usize,
+        /// Why the first has none.
+        message: String,
+    },
+    /// Workers were lost again and again.
+    #[error(
+        "{count} samples were not done, because their workers were lost ({message}); what is done is stored: run \
+             the same command again to continue"
+    )]
+    Lost {
+        /// Number of samples that are not done.
+        count: usize,
+        /// Why the first is not.
+        message: String,
+    },
+    /// The case or a file that it names changed during the work.
+    #[error(
+        "the case changed while its samples were worked out; what is done is stored for the case as it was: run \
+             the same command again"
+    )]
+    Changed,
+    /// The caller asked to stop.
+    #[error("interrupted with {done} of {n} samples done, which are stored: run the same command again to continue")]
+    Interrupted {
+        /// Samples done.
+        done: usize,
+        /// Number of samples.
+        n: usize,
+    },
+    /// A result cannot be written.
+    #[error("cannot write results ({0}): choose another directory with -o")]
+    Output(io::Error),
+}
+
+/// What a worker answers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// The sample is done.
+    Done(Row),
+    /// The case is not the one of the ensemble any more.
+    Changed,
+}
+
+/// Works out the samples of a case that are not in the store yet, and writes the results of all.
+///
+/// `ask` works out one sample: it gets its number and its values as settings of the case, and fails when the worker was
+/// lost. `hear` is called with the number of samples done, and of all.
+///
+/// # Errors
+/// See [`EnsembleError`]; what is done stays in the store.
+pub fn ensemble(
+    loaded: &LoadedCase,
+    options: &EnsembleOptions,
+    ask: impl Fn(usize, Vec<String>) -> Result<Answer, String> + Sync,
+    hear: &mut dyn FnMut(usize, usize),
+) -> Result<EnsembleResult, EnsembleError> {
+    let clock = Instant::now();
+    let located = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
+    let samples = draw(&loaded.case).map_err(located)?;
+    let rows = rows(loaded, options, &samples, ask, hear)?;
+    let result = EnsembleResult::of(loaded, samples, rows)?;
+    result.write(loaded, options, clock.elapsed().as_secs_f64()).map_err(EnsembleError::Output)?;
+    Ok(result)
+}
+
+/// The answers to all samples, from the store or worked out.
+fn rows(
+    loaded: &LoadedCase,
+    options: &EnsembleOptions,
+    samples: &Samples,
+    ask: impl Fn(usize, Vec<String>) -> Result<Answer, String> + Sync,
+    hear: &mut dyn FnMut(usize, usize),
+) -> Result<Vec<Row>, EnsembleError> {
+    let output = loaded.case.ensemble.output;
+    let identity = Identity {
+        case: loaded.hash.clone(),
+        version: engine_version().to_owned(),
+        output: output.name().to_owned(),
+        options: options.search.given(),
+    };
+    if let Some(parent) = options.store.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+        std::fs::create_dir_all(parent).map_err(EnsembleError::Output)?;
+    }
+    let store = Store::open(&options.store)?;
+    let keys: Vec<String> = samples.rows.iter().map(|row| sample_key(&identity, &samples.keys, row)).collect();
+    let mut rows = keys.iter().map(|key| store.find(key, columns(output))).collect::<Result<Vec<_>, _>>()?;
+    let again = |row: &Row| options.retry_failed && !row.is_done();
+    let wanted: Vec<usize> = (0..keys.len()).filter(|&k| rows[k].as_ref().is_none_or(again)).collect();
+    let n = keys.len();
+    let mut done = n - wanted.len();
+    hear(done, n);
+    let timed = |k: usize| {
+        let clock = Instant::now();
+        ask(k, samples.settings(k)).map(|answer| (answer, clock.elapsed().as_secs_f64()))
+    };
+    let lost = work(&wanted, options.jobs, options.interrupt, timed, |k, (answer, seconds)| {
+        let Answer::Done(row) = answer else { return Err(EnsembleError::Changed) };
+        let values: Vec<_> = samples.keys.iter().map(String::as_str).zip(samples.rows[k].iter().copied()).collect();
+        store.add(&keys[k], k, &values, &row, (seconds, engine_version()))?;
+        rows[k] = Some(row);
+        done += 1;
+        hear(done, n);
+        Ok(())
+    })?;
+    if options.interrupt.load(Ordering::Relaxed) && done < n {
+        return Err(EnsembleError::Interrupted { done, n });
+    }
+    if lost.count > 0 {
+        return Err(EnsembleError::Lost { count: lost.count, message: lost.message });
+    }
+    Ok(rows.into_iter().flatten().collect())
+}

@@ -1,0 +1,184 @@
+//! What follows from all samples, and the files that hold it.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+use enmm::engine_version;
+use enmm::model::case::Ensemble;
+use enmm_io::LoadedCase;
+use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
+use enmm_picture::{histogram_picture, number_text};
+use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
+use serde_json::{Value as Json, json};
+
+use super::{EnsembleError, EnsembleOptions, columns};
+
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
+/// Shares of the samples for which quantiles are given.
+const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// The samples that have an answer, and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnsembleResult {
+    /// All samples.
+    pub samples: Samples,
+    /// What each gave.
+    pub rows: Vec<Row>,
+    /// How they were drawn.
+    pub ensemble: Ensemble,
+    /// Places of the samples that have an answer.
+    pub good: Vec<usize>,
+    /// The output of each of these that decides whether it fails.
+    pub outputs: Vec<f64>,
+    /// Samples without an answer, with the reason.
+    pub failed: Vec<(usize, String)>,
+    /// Samples whose factor is above the bound of limit analysis, with the warning.
+    pub doubtful: Vec<(usize, String)>,
+}
+
+impl EnsembleResult {
+    pub(super) fn of(loaded: &LoadedCase, samples: Samples, rows: Vec<Row>) -> Result<Self, EnsembleError> {
+        let ensemble = loaded.case.ensemble.clone();
+        let name = columns(ensemble.output)[0];
+        let (mut good, mut outputs, mut failed, mut doubtful) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (k, row) in rows.iter().enumerate() {
+            match row.output(name).and_then(Json::as_f64).filter(|_| row.is_done()) {
+                Some(output) => {
+                    good.push(k);
+                    outputs.push(output);
+                }
+                None if row.is_done() => failed.push((k, format!("the store has no number {name} of it"))),
+                None => failed.push((k, row.message.clone())),
+            }
+            let doubt = row.output("doubt").and_then(Json::as_str).unwrap_or_default();
+            if !doubt.is_empty() {
+                doubtful.push((k, doubt.to_owned()));
+            }
+        }
+        if good.is_empty() {
+            let message = failed.first().map_or_else(String::new, |(_, message)| message.clone());
+            return Err(EnsembleError::NoAnswer { n: rows.len(), message });
+        }
+        Ok(Self { samples, rows, ensemble, good, outputs, failed, doubtful })
+    }
+
+    /// Number of samples below the limit.
+    pub fn failures(&self) -> usize {
+        self.outputs.iter().filter(|output| **output < self.ensemble.limit).count()
+    }
+
+    /// Share of the samples below the limit.
+    pub fn probability_of_failure(&self) -> f64 {
+        self.failures() as f64 / self.outputs.len() as f64
+    }
+
+    /// Confidence interval (95 %) of that probability, by Wilson's formula.
+    pub fn interval(&self) -> Interval {
+        wilson(self.failures(), self.outputs.len(), CONFIDENCE)
+    }
+
+    /// Mean output.
+    pub fn mean(&self) -> f64 {
+        mean(&self.outputs)
+    }
+
+    /// Shares of the samples, with the output below which each share is.
+    pub fn quantiles(&self) -> [(f64, f64); 3] {
+        SHARES.map(|share| (share, quantile(&self.outputs, share)))
+    }
+
+    /// Spearman's rank correlation of the output with each value but seeds, whose numbers have no order.
+    pub fn sensitivity(&self) -> Vec<(String, Option<f64>)> {
+        let number = |k: usize, i: usize| match self.samples.rows[k][i] {
+            Value::Number(number) => number,
+            Value::Seed(seed) => seed as f64,
+        };
+        let ordered = self.samples.keys.iter().enumerate().filter(|(i, _)| !self.samples.seeds[*i]);
+        let correlation = |i: usize| {
+            let given: Vec<f64> = self.good.iter().map(|&k| number(k, i)).collect();
+            spearman(&given, &self.outputs)
+        };
+        ordered.map(|(i, key)| (key.clone(), correlation(i))).collect()
+    }
+
+    /// Writes all results; `ensemble.json` last, so that it is there when all others are.
+    pub(super) fn write(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> io::Result<()> {
+        let directory = &options.directory;
+        sweep_temporaries(directory)?;
+        self.write_table(&directory.join("ensemble.csv"))?;
+        let Interval { low, high } = self.interval();
+        let caption = format!(
+            "{} samples, {} below {}: probability of failure {}, 95 % from {} to {}",
+            self.outputs.len(),
+            self.failures(),
+            number_text(self.ensemble.limit),
+            number_text(self.probability_of_failure()),
+            number_text(low),
+            number_text(high)
+        );
+        let name = columns(self.ensemble.output)[0].replace('_', " ");
+        let picture = histogram_picture(&loaded.case.title, &caption, &name, &self.outputs, self.ensemble.limit);
+        picture.write_png(&directory.join("ensemble.png"))?;
+        let path = directory.join("ensemble.json");
+        let record = self.record(loaded, options, wall);
+        let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
+        write_atomic(&path, &text)
+    }
+
+    /// A row for each sample that has an answer: its number, its values, its outputs.
+    fn write_table(&self, path: &Path) -> io::Result<()> {
+        let names = columns(self.ensemble.output);
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        let keys = self.samples.keys.iter().map(String::as_str);
+        let head = ["sample"].into_iter().chain(keys).chain(names.iter().copied());
+        csv.write_record(head).map_err(io::Error::from).map_err(at_path(path))?;
+        let text = |value: Option<&Json>| match value {
+            None | Some(Json::Null) => String::new(),
+            Some(Json::String(text)) => text.clone(),
+            Some(value) => value.to_string(),
+        };
+        for &k in &self.good {
+            let values = self.samples.rows[k].iter().map(ToString::to_string);
+            let outputs = names.iter().map(|name| text(self.rows[k].output(name)));
+            let row = [k.to_string()].into_iter().chain(values).chain(outputs);
+            csv.write_record(row).map_err(io::Error::from).map_err(at_path(path))?;
+        }
+        let bytes = csv.into_inner().map_err(|error| error.into_error()).map_err(at_path(path))?;
+        write_atomic(path, &bytes)
+    }
+
+    fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Json {
+        let Interval { low, high } = self.interval();
+        let listed = |list: &[(usize, String)]| -> Vec<Json> {
+            list.iter().map(|(k, message)| json!({ "sample": k, "message": message })).collect()
+        };
+        let given: Vec<Json> = loaded.case.random.iter().map(|row| json!(row)).collect();
+        json!({
+            "title": loaded.case.title,
+            "version": engine_version(),
+            "case_file": loaded.source.file(),
+            "case_hash": loaded.hash,
+            "settings": loaded.settings,
+            "store": options.store,
+            "options": options.search.given(),
+            "ensemble": self.ensemble,
+            "random": given,
+            "random_correlation": loaded.case.random_correlations,
+            "samples": self.rows.len(),
+            "without_answer": listed(&self.failed),
+            "doubtful": listed(&self.doubtful),
+            "failures": self.failures(),
+            "probability_of_failure": self.probability_of_failure(),
+            "interval": [low, high],
+            "confidence": CONFIDENCE,
+            "beta": beta(self.probability_of_failure()),
+            "beta_interval": [beta(high), beta(low)],
+            "mean": self.mean(),
+            "quantiles": self.quantiles().map(|(share, output)| [share, output]),
+            "rank_correlation": self.sensitivity().into_iter().collect::<BTreeMap<_, _>>(),
+            "wall_seconds": wall,
+        })
+    }
+}
