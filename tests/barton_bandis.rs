@@ -1,10 +1,8 @@
 //! Claim D3, Barton–Bandis: τ = σn·tan(φr + JRC·log10(JCS/σn)) and hyperbolic closure, with a closed energy ledger, the
 //! strength factor on it, and errors for keys that do not belong to it.
 
-mod common;
-
-use common::claims::{advance, assert_ledger, block_at};
-use common::simulation;
+use crate::common::claims::{advance, assert_ledger, block_at};
+use crate::common::simulation;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 

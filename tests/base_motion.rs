@@ -1,13 +1,11 @@
 //! Claim: a base motion acts by its exact impulse, from the start of its stage, and its work is in the ledger.
 
-mod common;
-
 use std::path::Path;
 
-use common::claims::assert_ledger;
-use common::{run_all, run_stage, simulation};
+use crate::common::claims::assert_ledger;
+use crate::common::parts::{dynamic, rock};
+use crate::common::{run_all, run_stage, simulation};
 use enmm::model::Simulation;
-use enmm_verification::parts::{dynamic, rock};
 
 /// A free block without gravity, its motions, and a dynamic stage of `seconds`.
 fn block(motions: &str, stages: &str) -> String {

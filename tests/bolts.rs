@@ -1,10 +1,8 @@
 //! Rock bolts hang, yield, break and hold joints together as elastic–plastic bars do, at any stiffness, through
 //! checkpoints to the bit, and with a closed ledger.
 
-mod common;
-
-use common::claims::{advance, assert_ledger, block_at};
-use common::{run_stage, simulation};
+use crate::common::claims::{advance, assert_ledger, block_at};
+use crate::common::{run_stage, simulation};
 use enmm::model::Simulation;
 use enmm::model::case::Case;
 

@@ -1,9 +1,7 @@
 //! Claim: a run that is continued from a checkpoint has the same state to the bit as one that was never stopped, for
 //! any number of threads; a checkpoint that is not whole, or not of this case and version, is refused.
 
-mod common;
-
-use common::simulation;
+use crate::common::simulation;
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::state::bytes::{BytesError, decode, encode};

@@ -1,10 +1,8 @@
 //! Claim: lengths of the contacts of two faces add up to the length that the faces share, however their nodes lie: what
 //! cohesion and a joint's own stiffness act on.
 
-mod common;
-
-use common::{run_stage, simulation};
-use enmm_verification::parts::rock;
+use crate::common::parts::rock;
+use crate::common::{run_stage, simulation};
 
 /// A block of 1 m that has settled on a base from `left` to `right`: the sum of the lengths of its contacts (m).
 fn length(left: f64, right: f64, size: f64) -> f64 {

@@ -1,8 +1,6 @@
 //! Claim: the contact solver that steps use finds what plain Gauss–Seidel over the equations of theory §5 finds.
 
-mod common;
-
-use common::simulation;
+use crate::common::simulation;
 use enmm::contact::{Approach, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
 use enmm::model::Simulation;
 

@@ -1,11 +1,9 @@
 //! Co-simulation: steps cover exactly what is asked, on a grid that no host can shift, all or nothing; saved states,
 //! events, inputs and parameters.
 
-mod common;
-
 use std::path::Path;
 
-use common::saved::Whole;
+use crate::common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
 use enmm::model::BlockState;

@@ -1,12 +1,10 @@
 //! Claim: where joints cross, blocks are held by nothing but strength: they slide over level tops as the closed form
 //! says, and a step catches them.
 
-mod common;
-
-use common::{run_stage, simulation, varied_rules};
+use crate::common::parts::rock;
+use crate::common::{run_stage, simulation, varied_rules};
 use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
-use enmm_verification::parts::rock;
 
 /// Gravity on a plane of 30° in axes along it (m/s²).
 const ALONG: f64 = 4.905;

@@ -1,10 +1,8 @@
 //! Runs are the same to the bit on one and on two threads, and when run again.
 
-mod common;
-
-use common::simulation;
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 use enmm::state::State;
-use enmm_verification::parts::{dynamic, rock};
 
 /// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several
 /// groups.

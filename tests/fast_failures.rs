@@ -1,14 +1,12 @@
 //! Claim: in fast failures no corner enters unseen: blocks overlap by less than a hundredth of the mesh size, by the
 //! audit of their polygons alone, and no rock is faster than its fall explains.
 
-mod common;
-
-use common::claims::motion;
-use common::overlap::Audit;
-use common::{run_stage, simulation, varied_rules};
+use crate::common::claims::motion;
+use crate::common::overlap::Audit;
+use crate::common::parts::{dynamic, rock};
+use crate::common::{run_stage, simulation, varied_rules};
 use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
-use enmm_verification::parts::{dynamic, rock};
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;
@@ -189,6 +187,6 @@ fn small_slopes_fail_cleanly() {
 
 #[test]
 fn long_small_slopes_fail_cleanly() {
-    let last = if std::env::var_os("ENMM_LONG").is_some() { 16 } else { 4 };
+    let last = if crate::common::extent::is_long() { 16 } else { 4 };
     (3..last).for_each(fails_cleanly);
 }

@@ -1,11 +1,9 @@
 //! Claim: the fractured slope of the README rests, then fails, without energy from nowhere or blocks in each other.
 
-mod common;
-
 use std::path::Path;
 
-use common::overlap::Audit;
-use common::{run_stage, tell};
+use crate::common::overlap::Audit;
+use crate::common::{run_stage, tell};
 use enmm::contact::EntranceRule;
 use enmm::model::{Case, Simulation};
 
@@ -21,7 +19,7 @@ const PATHS: [f64; 4] = [0.0, 1.1e-11, 1.4e-11, -1.4e-11];
 
 #[test]
 fn long_the_fractured_slope_rests_and_then_fails() {
-    let is_long = std::env::var_os("ENMM_LONG").is_some();
+    let is_long = crate::common::extent::is_long();
     let paths = if is_long { &PATHS[..] } else { &PATHS[..1] };
     paths.iter().for_each(|&change| rests_and_then_fails(change, is_long));
 }
@@ -88,7 +86,7 @@ fn rests_and_then_fails(change: f64, is_long: bool) {
 /// slope rests at 45° and is still moving after 12 s at 41°.
 #[test]
 fn long_the_slope_that_dilates_rests_where_limit_analysis_says() {
-    let seconds = if std::env::var_os("ENMM_LONG").is_some() { 12.0 } else { 0.05 };
+    let seconds = if crate::common::extent::is_long() { 12.0 } else { 0.05 };
     for (angle_deg, rests) in [(45.0, true), (41.0, false)] {
         let mut case = fractured_slope();
         case.stages.truncate(1);

@@ -1,10 +1,8 @@
 //! Claim: a plane wave that enters a wide model between free-field columns stays plane and is that of a column of rock.
 
-mod common;
-
-use common::simulation;
+use crate::common::parts::dynamic;
+use crate::common::simulation;
 use enmm::model::Simulation;
-use enmm_verification::parts::dynamic;
 
 const WIDTH: f64 = 120.0;
 const HEIGHT: f64 = 60.0;

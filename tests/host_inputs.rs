@@ -1,8 +1,6 @@
 //! What hosts set moves the rock as mechanics says: base acceleration (Newmark, C4), water, tractions, pressures,
 //! strength factor, gravity, block forces, with closed ledgers.
 
-mod common;
-
 use std::path::Path;
 
 use enmm::cosimulation::Cosimulation;

@@ -1,11 +1,9 @@
 //! Claim: the implicit integrator slides, sticks and rests as the explicit one, with the same bits after a rollback.
 
-mod common;
-
-use common::claims::{assert_ledger, motion};
-use common::{run_stage, simulation};
+use crate::common::claims::{assert_ledger, motion};
+use crate::common::parts::{dynamic, rock, turn};
+use crate::common::{run_stage, simulation};
 use enmm::model::Simulation;
-use enmm_verification::parts::{dynamic, rock, turn};
 
 const IMPLICIT: &str = "[solver]\nintegrator = \"implicit\"\n";
 

@@ -1,8 +1,6 @@
 //! Claim: rock under in-situ stress that its supports and joints balance stays where it is; excavation lets it move.
 
-mod common;
-
-use common::{run_stage, simulation};
+use crate::common::{run_stage, simulation};
 
 /// A square cut by two crossing joints, held all round, under stress that does not vary; then one block goes.
 fn case(stress: [f64; 3]) -> String {

@@ -1,10 +1,8 @@
 //! A joint that bears shear by cohesion and no normal force was swept to the limit, and its steps halved: forces were
 //! measured against the normal force alone.
 
-mod common;
-
-use common::simulation;
-use enmm_verification::parts::{dynamic, rock};
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 
 /// Two blocks, one held, joined by cohesion, one pulled along the joint: no step is halved or left unsettled, and a
 /// step takes few sweeps.

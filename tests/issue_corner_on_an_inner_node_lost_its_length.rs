@@ -1,9 +1,7 @@
 //! A corner that stands on an inner node of another face once had its length or nothing of it, as it stood a hair to
 //! one side or the other: the stiffness of the joint flipped from step to step and fed the block with energy.
 
-mod common;
-
-use common::{run_stage, simulation};
+use crate::common::{run_stage, simulation};
 
 /// A block on a joint of its own stiffness; the mesh puts a node of the ground under the block's corner.
 const CASE: &str = "title = \"rest\"\n[domain]\n\

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::common::random::Random;
 use enmm::geometry::{Label, Point, Segment, TraceId, arrange, arrange_within};
 use enmm::model::{BuildStage, Simulation};
 use enmm_io::parse_case;
-use enmm_verification::random::Random;
 
 /// A square of 10 m with some joints, and a limit of memory (bytes).
 fn case(joints: &str, memory: u64) -> String {

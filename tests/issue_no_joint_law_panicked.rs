@@ -1,7 +1,5 @@
 //! Claim: a case without any joint law, which only a continuum may be, runs. Its first step used to panic.
 
-mod common;
-
 #[test]
 fn a_continuum_without_joint_laws_runs() {
     let text = r#"
@@ -21,8 +19,8 @@ name = "fall"
 kind = "dynamic"
 duration = 0.1
 "#;
-    let mut simulation = common::simulation(text);
-    common::run_all(&mut simulation);
+    let mut simulation = crate::common::simulation(text);
+    crate::common::run_all(&mut simulation);
     let blocks = simulation.block_states();
     assert!(blocks.len() == 1 && blocks[0].detached, "{blocks:?}");
 }

@@ -5,9 +5,7 @@
 //!
 //! Claim: a corner bears until the corners have parted, or the other corner takes over.
 
-mod common;
-
-use common::{run_stage, simulation};
+use crate::common::{run_stage, simulation};
 use enmm::contact::{EdgeId, VertexEdge};
 use enmm::geometry::Point;
 use enmm::model::Simulation;

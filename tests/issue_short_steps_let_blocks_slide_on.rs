@@ -1,10 +1,8 @@
 //! The dashpot of contacts shrank with the step, so that short steps let sliding blocks vibrate: at a quarter of the
 //! default step a block of 12 by 6 m slid 21 times as far as Coulomb friction lets it.
 
-mod common;
-
-use common::simulation;
-use enmm_verification::parts::{dynamic, rock};
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 
 const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 40.0;

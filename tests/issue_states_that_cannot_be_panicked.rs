@@ -1,12 +1,10 @@
 //! Claim: bytes with a good checksum whose numbers, indices or lengths no state of the model can have are refused when
 //! they are read, by the name of what is wrong; whatever is not refused makes nothing panic.
 
-mod common;
-
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use common::saved::Whole;
+use crate::common::saved::Whole;
 use enmm::contact::{EdgeId, LawId, NodeId, SideId};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;

@@ -1,11 +1,9 @@
 //! The unbalanced ratio is a finite number also where nothing is applied: it was force over the least number there is,
 //! and `null` in `summary.json`.
 
-mod common;
-
-use common::simulation;
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 use enmm::geometry::Vector;
-use enmm_verification::parts::{dynamic, rock};
 
 #[test]
 fn a_block_that_swings_without_load_is_wholly_out_of_balance_and_one_that_does_not_is_in_balance() {

@@ -1,9 +1,7 @@
 //! Claim: the default stiffness of joints is a property of the rock: jointed rock settles alike on any mesh of at
 //! most a metre.
 
-mod common;
-
-use common::{run_stage, simulation};
+use crate::common::{run_stage, simulation};
 
 const YOUNG: f64 = 1e9;
 const POISSON: f64 = 0.25;

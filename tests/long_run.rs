@@ -1,15 +1,13 @@
 //! An undamped elastic block keeps its energy: leapfrog drifts by less than 1e-6 in 2e4 steps. A million steps lose
 //! neither energy nor memory nor bits.
 
-mod common;
-
-use common::simulation;
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::state::bytes::{decode, encode};
 use enmm::step::energies;
-use enmm_verification::parts::{dynamic, rock};
 
 /// One irregular block that swings freely after a uniform stretch.
 fn case(mesh: &str) -> String {
@@ -82,7 +80,7 @@ fn bouncing() -> Simulation {
 fn resting() -> Simulation {
     let text = include_str!("../examples/cases/block_on_incline.toml").replace("duration = 1.0", "duration = 1e9");
     let mut simulation = simulation(&text.replace("friction_deg = 20.0", "friction_deg = 34.0"));
-    common::run_stage(&mut simulation);
+    crate::common::run_stage(&mut simulation);
     assert!(simulation.next_stage().expect("a stage"));
     simulation
 }
@@ -167,7 +165,7 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
 /// from the stress of turning rock, which is not linear, and falls with the step.
 #[test]
 fn long_a_million_steps_lose_neither_energy_nor_memory_nor_bits() {
-    let steps = if std::env::var_os("ENMM_LONG").is_some() { 1_000_000 } else { 10_000 };
+    let steps = if crate::common::extent::is_long() { 1_000_000 } else { 10_000 };
     for (name, make) in [("bounces", bouncing as fn() -> Simulation), ("rests", resting)] {
         let clock = std::time::Instant::now();
         let endured = endure(make, steps);

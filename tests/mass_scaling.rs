@@ -1,12 +1,10 @@
 //! Claim: a static stage with lighter free blocks reaches the same state of rest in fewer steps, its ledger closes, and
 //! the stage after it has the masses of the rock.
 
-mod common;
-
 use std::path::Path;
 
-use common::claims::assert_ledger;
-use common::run_stage;
+use crate::common::claims::assert_ledger;
+use crate::common::run_stage;
 use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;

@@ -1,9 +1,7 @@
 //! Claim: a model settles alike however it lies: mirrored, turned, shifted or with its points and joints listed in
 //! another order, the mesh going with it.
 
-mod common;
-
-use common::{run_stage, simulation};
+use crate::common::{run_stage, simulation};
 
 type Place = [f64; 2];
 

@@ -1,8 +1,6 @@
 //! Claim: block states and snapshots show the motion, stress and contact forces that the state holds.
 
-mod common;
-
-use common::{run_all, simulation};
+use crate::common::{run_all, simulation};
 use enmm::contact::ContactState;
 use enmm::geometry::{Vector, polygon};
 

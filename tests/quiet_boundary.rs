@@ -1,14 +1,12 @@
 //! Claim: a quiet boundary holds in static stages, bears on in dynamic ones, lets plane waves leave and brings them in.
 
-mod common;
-
-use common::claims::stresses;
-use common::{run_stage, simulation};
+use crate::common::claims::stresses;
+use crate::common::parts::dynamic;
+use crate::common::{run_stage, simulation};
 use enmm::model::Simulation;
 use enmm::state::State;
 use enmm::state::bytes::{decode, encode};
 use enmm::step::StepReport;
-use enmm_verification::parts::dynamic;
 
 const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
 

@@ -1,13 +1,11 @@
 //! Claim: a run stops with block, place and speed when rock outruns its waves, and not because a cover that a grain has
 //! cut does, whose star lies far from the grain's rock and turns with it.
 
-mod common;
-
-use common::claims::block_at;
-use common::simulation;
+use crate::common::claims::block_at;
+use crate::common::parts::{dynamic, rock};
+use crate::common::simulation;
 use enmm::model::Simulation;
 use enmm::step::Failure;
-use enmm_verification::parts::{dynamic, rock};
 
 const YOUNG: f64 = 1e9;
 const DENSITY: f64 = 2500.0;

@@ -1,5 +1,7 @@
 //! The rules of the house, read off the files of the repository. Every check is also seen failing on a small text.
 
+mod circles;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -9,23 +11,42 @@ const COLUMNS_MAX: usize = 120;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
 const ENGINE_LINES_MAX: usize = 23_200;
 /// Folders of programs that may print.
-const PRINTERS: [&str; 5] = ["crates/cli/", "tools/xtask/", "tests/", "benches/", "examples/"];
+const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
+/// Floors of the house: a crate depends on crates of lower floors alone, tests excepted.
+const FLOORS: [&[&str]; 8] = [
+    &["enmm-case", "enmm-lanes"],
+    &["enmm"],
+    &["enmm-io", "enmm-stability", "enmm-ensemble"],
+    &["enmm-picture", "enmm-report", "enmm-fmi", "enmm-capi"],
+    &["enmm-run", "enmm-fmi-raw"],
+    &["enmm-verification", "enmm-fmi2", "enmm-fmi3"],
+    &["enmm-cli"],
+    &["enmm-bench", "enmm-fuzz", "enmm-header", "enmm-overhead", "xtask"],
+];
 /// Rooms whose results must not depend on the order of a hash.
 const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
 /// Folders whose results have the same bits on every platform.
-const SAME_BITS: [&str; 6] = ["src/", "crates/case/src/", "crates/stability/src/", "crates/run/src/", "crates/report/src/", "crates/picture/src/"];
+const SAME_BITS: [&str; 6] = [
+    "src/",
+    "crates/case/src/",
+    "crates/stability/src/",
+    "crates/run/src/",
+    "crates/report/src/",
+    "crates/picture/src/",
+];
 /// Functions whose last bits differ from system to system; those of `libm` do not.
 const OF_THE_SYSTEM: [&str; 22] = [
     "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
     "ln", "ln_1p", "log2", "log10", "powf", "cbrt", "hypot", "mul_add",
 ];
 /// Folders of packages that are no part of a release.
-const TOOLS: [&str; 4] = ["tools/xtask/", "tools/fuzz/", "ffi/header/", "tools/overhead/"];
+const TOOLS: [&str; 2] = ["tools/", "ffi/header/"];
 const THEORY: &str = "docs/theory.md";
 /// Documents that send the reader to files of the repository.
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
 /// What stands in guides for a path of the reader's choice.
-const PLACEHOLDERS: [&str; 3] = ["tests/issue_what_it_did.rs", "tests/NAME.rs", "crates/verification/src/problems/xx.rs"];
+const PLACEHOLDERS: [&str; 3] =
+    ["tests/issue_what_it_did.rs", "tests/NAME.rs", "crates/verification/src/problems/xx.rs"];
 /// Table of contents of the site.
 const SUMMARY: &str = "docs/SUMMARY.md";
 const GLOSSARY: &str = "docs/glossary.md";
@@ -47,6 +68,11 @@ impl File {
 
     fn within(&self, folders: &[&str]) -> bool {
         folders.iter().any(|folder| self.path.starts_with(folder))
+    }
+
+    /// Whether it lies in the tests of the engine or of another crate.
+    fn is_test(&self) -> bool {
+        self.path.starts_with("tests/") || self.path.contains("/tests/")
     }
 
     fn name(&self) -> &str {
@@ -105,8 +131,29 @@ fn no_host_of_a_registry_is_named() {
 }
 
 #[test]
-fn every_test_file_says_what_it_claims() {
-    hold(each(&[".rs"], &["tests/"], header_problems));
+fn every_test_file_says_what_it_claims_and_is_compiled() {
+    hold(each(&[".rs"], &[""], header_problems));
+    hold(lost_tests(&repository()));
+}
+
+#[test]
+fn crates_depend_on_lower_floors_alone() {
+    let manifests: Vec<File> = repository().into_iter().filter(|file| file.name() == "Cargo.toml").collect();
+    let manifests: Vec<&File> = manifests.iter().filter(|file| !file.path.contains("/peers/")).collect();
+    hold(manifests.iter().flat_map(|file| floor_problems(file)).collect());
+    let known = manifests.iter().filter(|file| floor(&package(&file.text)).is_some()).count();
+    assert_eq!(known, FLOORS.iter().map(|floor| floor.len()).sum::<usize>(), "every crate has a floor");
+}
+
+#[test]
+fn modules_with_children_are_called_mod() {
+    let files = repository();
+    let has_folder = |file: &File| {
+        let folder = format!("{}/", file.path.trim_end_matches(".rs"));
+        !file.is_test() && files.iter().any(|other| other.path.starts_with(&folder) && other.is(".rs"))
+    };
+    let twice = files.iter().filter(|file| file.is(".rs") && has_folder(file));
+    hold(twice.map(|file| format!("{}: say mod.rs in its folder", file.path)).collect());
 }
 
 #[test]
@@ -116,7 +163,8 @@ fn equations_are_numbered_in_order_and_citations_exist() {
     let numbers = equation_numbers(&theory.text);
     assert_eq!(numbers, (1..=numbers.len() as u32).collect::<Vec<_>>(), "equations of {THEORY}, in their order");
     assert!(numbers.len() >= 19);
-    let citing = files.iter().filter(|file| (file.is(".rs") && file.within(&["src/", "crates/cli/"])) || file.is(".md"));
+    let citing =
+        files.iter().filter(|file| (file.is(".rs") && file.within(&["src/", "crates/cli/"])) || file.is(".md"));
     hold(citing.flat_map(|file| citation_problems(file, &numbers)).collect());
 }
 
@@ -217,7 +265,7 @@ fn without_marks(line: &str) -> String {
 }
 
 fn length_problems(file: &File) -> Vec<String> {
-    let limit = if file.within(&["tests/", "benches/", "examples/"]) { 80 } else { 60 };
+    let limit = if file.is_test() || file.within(&["examples/"]) { 80 } else { 60 };
     let long = functions(&code_only(&file.text)).into_iter().filter(|&(_, _, length)| length > limit);
     long.map(|(line, name, length)| format!("{}:{line}: `{name}` has {length} lines", file.path)).collect()
 }
@@ -228,8 +276,10 @@ fn word_problems(file: &File) -> Vec<String> {
     for (line, word, follows) in words(&code) {
         let bad = match word {
             "todo" | "unimplemented" | "dbg" => follows == Some('!'),
-            "print" | "println" | "eprint" | "eprintln" => follows == Some('!') && !file.within(&PRINTERS),
-            "unsafe" => !file.within(&["ffi/", "crates/lanes/"]),
+            "print" | "println" | "eprint" | "eprintln" => {
+                follows == Some('!') && !file.is_test() && !file.within(&PRINTERS)
+            }
+            "unsafe" => !file.within(&["ffi/", "crates/lanes/", "tools/"]),
             "HashMap" | "HashSet" => file.within(&ORDERED),
             _ => false,
         };
@@ -290,9 +340,49 @@ fn host_problems(file: &File) -> Vec<String> {
     lines.filter_map(|(k, line)| Some(format!("{}:{k}: names {}", file.path, named(line)?))).collect()
 }
 
+/// Files that are no helpers of tests begin with their claim.
 fn header_problems(file: &File) -> Vec<String> {
-    let bare = file.path.matches('/').count() == 1 && !file.text.starts_with("//! ");
+    let own = file.path.rsplit_once('/').is_some_and(|(folder, _)| folder.ends_with("tests"));
+    let bare = own && !file.path.contains("/src/") && !file.path.contains("/peers/") && !file.text.starts_with("//! ");
     bare.then(|| format!("{}: does not begin with a `//!` line", file.path)).into_iter().collect()
+}
+
+/// Files beside a `main.rs` of tests that neither it nor the manifest names: cargo compiles no others.
+fn lost_tests(files: &[File]) -> Vec<String> {
+    let text = |path: &str| files.iter().find(|file| file.path == path).map_or("", |file| &file.text);
+    let tests = files.iter().filter(|file| file.is(".rs") && file.is_test() && !file.path.contains("/src/"));
+    let lost = |file: &&File| {
+        let (folder, name) = file.path.rsplit_once('/').unwrap_or_default();
+        let (owner, stem) = (folder.trim_end_matches("tests"), name.trim_end_matches(".rs"));
+        let named = |from: &str| text(&format!("{folder}/{from}.rs")).contains(&format!("mod {stem};"));
+        let manifest = text(&format!("{owner}Cargo.toml"));
+        folder.ends_with("tests")
+            && !["main", "tidy"].iter().any(|from| named(from))
+            && !manifest.contains(&format!("\"tests/{name}\""))
+    };
+    tests.filter(lost).map(|file| format!("{}: no test binary names it", file.path)).collect()
+}
+
+/// Name of the package of a manifest.
+fn package(manifest: &str) -> String {
+    let name = manifest.split("[package]").nth(1).and_then(|rest| rest.split("name = \"").nth(1));
+    name.and_then(|rest| rest.split('"').next()).unwrap_or_default().to_owned()
+}
+
+fn floor(package: &str) -> Option<usize> {
+    FLOORS.iter().position(|floor| floor.contains(&package))
+}
+
+/// Dependencies of a package, not those of its tests, on its own floor or above.
+fn floor_problems(file: &File) -> Vec<String> {
+    let own = package(&file.text);
+    let Some(rank) = floor(&own) else { return vec![format!("{}: `{own}` is on no floor", file.path)] };
+    let section = file.text.split("\n[dependencies]\n").nth(1).unwrap_or_default();
+    let section = section.split("\n[").next().unwrap_or_default();
+    let names = numbered(section).map(|(_, line)| line.split(['.', ' ', '=']).next().unwrap_or_default());
+    let names = names.map(|name| if name == "engine" { "enmm" } else { name });
+    let upward = names.filter(|name| floor(name).is_some_and(|other| other >= rank));
+    upward.map(|name| format!("{}: `{own}` depends on `{name}`, which is no lower floor", file.path)).collect()
 }
 
 fn citation_problems(file: &File, numbers: &[u32]) -> Vec<String> {

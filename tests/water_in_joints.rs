@@ -1,12 +1,10 @@
 //! Claim: a host shifts the water table by what it moves the level, and pressure in a joint pushes both of its faces
 //! with opposite forces, by its table of time. The pressures themselves are checked by verification problem C9.
 
-mod common;
-
-use common::claims::{advance, block_at};
+use crate::common::claims::{advance, block_at};
+use crate::common::parts::{dynamic, rock};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm_verification::parts::{dynamic, rock};
 
 /// Foot (m) of a tension crack 14 m deep, behind a face 60 m high of 50° over a plane of 35°; the toe is the origin.
 fn foot() -> [f64; 2] {
@@ -18,7 +16,7 @@ fn slope(more: &str) -> Simulation {
     let ([x, y], crest) = (foot(), 60.0 / 50f64.to_radians().tan());
     let right = x + 20.0;
     let outline = [[-20.0, -20.0], [right, -20.0], [right, 60.0], [crest, 60.0], [0.0, 0.0], [-20.0, 0.0]];
-    common::simulation(&format!(
+    crate::common::simulation(&format!(
         "title = \"plane slide\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = 7.0\norigin = [0.13, 0.07]\n\
          [[joint]]\npoints = [[0.0, 0.0], [{x:?}, {y:?}], [{x:?}, 60.0]]\n[joint_law.joint]\nfriction_deg = 35.0\n\
          {}[[fix]]\nblock = [-10.0, -10.0]\n{more}{}",

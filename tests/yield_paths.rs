@@ -2,9 +2,7 @@
 //! in
 //! every element of a cut mesh and in any rotated frame.
 
-mod common;
-
-use common::simulation;
+use crate::common::simulation;
 use enmm::cover::ElementId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;

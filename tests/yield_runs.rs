@@ -1,9 +1,7 @@
 //! Claims of runs with rock that yields: energy and momentum, bits, the strength factor of hosts, warnings.
 
-mod common;
-
-use common::claims::{advance, assert_ledger};
-use common::simulation;
+use crate::common::claims::{advance, assert_ledger};
+use crate::common::simulation;
 use enmm::model::Simulation;
 use enmm::state::State;
 
@@ -112,7 +110,7 @@ fn the_strength_factor_reduces_rock() {
         let mut simulation = simulation(text);
         let drive = simulation.drive();
         (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
-        let report = common::run_stage(&mut simulation);
+        let report = crate::common::run_stage(&mut simulation);
         (simulation.at_rest(&report), simulation.yielded_elements())
     };
     // The foot is an element's height, h/2 or less, above the base: its stress is less by 6 %, so it holds 6 %

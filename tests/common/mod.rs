@@ -2,9 +2,16 @@
 #![allow(dead_code)]
 
 pub mod claims;
+pub mod extent;
+pub mod geometry;
 pub mod overlap;
 pub mod saved;
 pub mod shared;
+
+#[path = "../../crates/verification/src/parts.rs"]
+pub mod parts;
+#[path = "../../crates/verification/src/random.rs"]
+pub mod random;
 
 use std::path::Path;
 
@@ -19,6 +26,12 @@ pub fn tell(name: &str, value: f64) {
     let written = std::fs::create_dir_all(&folder)
         .and_then(|()| std::fs::write(Path::new(&folder).join(name), format!("{value:?}\n")));
     written.unwrap_or_else(|e| panic!("{name}: {e}"));
+}
+
+/// Root of the repository, from the tests of any crate.
+pub fn root() -> &'static Path {
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    folders.into_iter().find(|folder| folder.join("Cargo.lock").is_file()).expect("a crate of the repository")
 }
 
 /// Builds a simulation from the text of a case.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode, Stdio};
 
 use clap::Args;
+use enmm_ensemble::{Interval, Row, beta, medians};
 use enmm_io::LoadedCase;
 use enmm_run::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
-use enmm_ensemble::{Interval, Row, beta, medians};
 use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;

@@ -1,10 +1,8 @@
 //! Claim: bad input exits with 2 and one line that names file, line, key and remedy, and nothing is written.
 
-mod support;
-
 use std::fs;
 
-use support::{Place, case};
+use crate::support::{Place, case};
 
 /// Runs a case that cannot run; asserts that nothing was written.
 fn refuse(case: &str, parts: &[&str]) {

@@ -1,9 +1,7 @@
 //! Claim: `enmm bench --write` hands out the cases of its models and times nothing, and `--peers` says what it
 //! needs.
 
-mod support;
-
-use support::{Place, case};
+use crate::support::{Place, case};
 
 #[test]
 fn cases_of_models_are_written_and_can_be_built() {

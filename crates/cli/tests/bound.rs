@@ -1,9 +1,7 @@
 //! Claim: `enmm bound` prints the bounds of a case as text and as JSON, tells factors from none and from no end, and
 //! answers with the promised statuses.
 
-mod support;
-
-use support::{Place, incline};
+use crate::support::{Place, incline};
 
 #[test]
 fn a_block_on_an_incline_is_bounded_by_its_tangents() {

@@ -1,11 +1,9 @@
 //! Claim: `enmm fos` finds the factor of safety of a block on an incline, writes its results and answers with the
 //! promised statuses.
 
-mod support;
-
 use std::fs;
 
-use support::{Place, incline, json};
+use crate::support::{Place, incline, json};
 
 #[test]
 fn stages_that_are_left_out_are_told_once() {
@@ -120,7 +118,7 @@ fn an_interrupt_exits_with_130_and_keeps_the_trials() {
     use std::process::Command;
     use std::time::Duration;
 
-    use support::Outcome;
+    use crate::support::Outcome;
 
     let place = Place::with(&incline(0.65, "").replace("size = 0.9", "size = 0.12"));
     let child = place.start(&["fos", "case.toml", "-o", "out"]);

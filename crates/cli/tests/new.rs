@@ -1,10 +1,8 @@
 //! Claim: each case that `enmm new` writes runs as it is, and does what its first lines promise.
 
-mod support;
-
 use std::fs;
 
-use support::{Place, json};
+use crate::support::{Place, json};
 
 const KINDS: [&str; 4] = ["slope", "topple", "pit", "coupled"];
 

@@ -2,12 +2,10 @@
 
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs::OpenOptions;
 use std::process::{Command, Stdio};
 
-use support::{Place, case};
+use crate::support::{Place, case};
 
 /// Status and errors of a command whose standard output is a full device.
 fn into_full(place: &Place, arguments: &[&str]) -> (Option<i32>, String) {

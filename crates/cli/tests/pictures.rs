@@ -1,13 +1,11 @@
 //! Claim: a run draws the pictures that its case asks for, those of the end of a stage at the end of each; a check
 //! draws the model alone.
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use support::{Place, case};
+use crate::support::{Place, case};
 
 /// Names and bytes of the pictures in a folder.
 fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {

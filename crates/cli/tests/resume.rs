@@ -3,12 +3,10 @@
 
 #![cfg(unix)]
 
-mod support;
-
 use std::fs;
 use std::process::Command;
 
-use support::{Place, case};
+use crate::support::{Place, case};
 
 /// A folder with an ended run in `first`.
 fn ended() -> Place {
@@ -37,7 +35,7 @@ fn a_checkpoint_without_its_past_says_so() {
     let answer = place.enmm(&["run", "case.toml", "-o", "second", "--resume", "alone.enmm"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
     assert!(answer.stderr.contains("warning: history.csv and frames in second begin at t = "), "{answer:?}");
-    let summary = support::json(&place.path("second/summary.json"));
+    let summary = crate::support::json(&place.path("second/summary.json"));
     assert!(summary["warnings"].to_string().contains("begin at t = "), "{summary}");
 }
 

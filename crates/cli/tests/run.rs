@@ -1,13 +1,11 @@
 //! Claim: `enmm run` leaves every promised result; a failed or interrupted run keeps what there is with a checkpoint
 //! from which it continues to the same results.
 
-mod support;
-
 use std::fs;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use support::{Outcome, Place, case, json};
+use crate::support::{Outcome, Place, case, json};
 
 #[test]
 fn every_promised_file_is_there_and_whole() {

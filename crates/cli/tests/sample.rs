@@ -1,13 +1,11 @@
 //! Claim: `enmm sample` finds the probability of failure of a case with random values; its table does not depend on the
 //! number of jobs, and whoever is killed, nothing that is stored is lost.
 
-mod support;
-
 use std::fs;
 use std::time::Duration;
 
+use crate::support::{Outcome, Place, incline, json};
 use enmm_ensemble::Store;
-use support::{Outcome, Place, incline, json};
 
 /// Block on an incline of tangent 0.5 with tan φ ~ N(0.55, 0.05): F = tan φ/0.5, P(F < 1) = Φ(−1).
 const RANDOM: &str = r#"

@@ -1,10 +1,8 @@
 //! Claim: `--set key=value` gives a case another value in each command that reads one, and is named by what it breaks.
 
-mod support;
-
 use std::fs;
 
-use support::{Place, case, incline, json};
+use crate::support::{Place, case, incline, json};
 
 /// FoS = tan φ/tan a = 2·tan φ: that of the value that is set, within the bracket and 0.5 % for the judge.
 #[test]

@@ -1,9 +1,7 @@
 //! Claim: `enmm verify` prints computed beside exact values, as a table or as JSON, writes cases that run, and exits
 //! with 0 when all pass, 1 when one does not, 2 when it is asked for what there is not.
 
-mod support;
-
-use support::{Place, case};
+use crate::support::{Place, case};
 
 fn place() -> Place {
     Place::with(&case(0.02))

@@ -1,11 +1,9 @@
 //! A film gives back what was put in, within the errors that it claims, and is small.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::{BOLT, Chunk, MONITOR, Moment, Reader, SURFACE, Slope, chunks, head};
 use enmm_report::{EdgeState, FilmError, FilmWriter, Note, QUANTUM, write_page};
-use support::{BOLT, Chunk, MONITOR, Moment, Reader, SURFACE, Slope, chunks, head};
 use tempfile::tempdir;
 
 /// Single precision and five digits (the last byte is left out).

@@ -209,7 +209,7 @@ fn d5_drop_of_less_on_a_softer_spring() {
 /// Sixty seconds; the wall of 20 × 20 bricks with `ENMM_LONG=1`, one of 5 × 5 otherwise.
 #[test]
 fn long_e2_a_wall_rests_for_a_minute() {
-    let side = if std::env::var("ENMM_LONG").is_ok_and(|value| value == "1") { 20.0 } else { 5.0 };
+    let side = if crate::extent::is_long() { 20.0 } else { 5.0 };
     let failing = solve("E2", false, &[("columns", side), ("courses", side), ("seconds", 60.0)]);
     assert!(failing.is_empty(), "{failing:#?}");
 }

@@ -133,7 +133,7 @@ const ALWAYS: &[&str] = &["A3", "B1", "B2", "B3", "C1", "C6", "E2"];
 
 #[test]
 fn long_the_full_set_gives_what_the_report_states() {
-    let all = std::env::var("ENMM_LONG").is_ok_and(|value| value == "1");
+    let all = crate::extent::is_long();
     let (record, now) = (committed(), solve(false, if all { &[] } else { ALWAYS }));
     let stated = |id: &str| record.problem(id).unwrap_or_else(|| panic!("{id} is not in the report"));
     let of =

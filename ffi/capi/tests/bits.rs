@@ -1,13 +1,11 @@
 //! A run through the C ABI, with its second half in another model, gives the bits of the façade.
 
-mod support;
-
 use std::fmt::Write;
 use std::process::Command;
 
+use crate::support::{SMALL, host, root, succeed};
 use engine::geometry::Vector;
 use engine::model::BlockState;
-use support::{SMALL, host, root, succeed};
 
 const H: f64 = 0.003;
 const STEPS: usize = 40;

@@ -1,11 +1,9 @@
 //! Hosts in C and C++ use the library as it is built: header, every function, leaks, threads, a coupled run.
 
-mod support;
-
 use std::path::Path;
 use std::process::Command;
 
-use support::{SMALL, compiler, has, host, host_with, libraries, root, run, say, succeed};
+use crate::support::{SMALL, compiler, has, host, host_with, libraries, root, run, say, succeed};
 
 const COUPLED: &str = "examples/cases/coupled_slope.toml";
 

@@ -1,12 +1,10 @@
 //! What `cargo xtask install` installs can be moved, and is found and used by pkg-config and CMake.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use support::{SMALL, compiler, has, root, succeed};
+use crate::support::{SMALL, compiler, has, root, succeed};
 
 const PROJECT: &str = "
 cmake_minimum_required(VERSION 3.10)

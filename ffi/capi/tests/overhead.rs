@@ -1,11 +1,9 @@
 //! Tells what a communication step of one internal step costs above the engine's own step; asserts no time.
 
-mod support;
-
 use std::process::Command;
 use std::time::Instant;
 
-use support::{host, root, say, succeed};
+use crate::support::{host, root, say, succeed};
 
 const CASE: &str = "examples/cases/block_on_incline.toml";
 const STEPS: u32 = 5000;

@@ -1,12 +1,10 @@
 //! FMI 2: the bits of the façade, legal calls, refused values, discarded steps, saved states, all spellings of
 //! resources.
 
-mod common;
-
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use common::{ERROR, Fmu, OK, write_resources};
+use crate::common::{ERROR, Fmu, OK, write_resources};
 use enmm::geometry::Vector;
 use enmm_fmi2::*;
 
@@ -286,7 +284,7 @@ fn energy_from_nowhere_is_a_warning_in_the_log() {
     let doubts = |fmu: &Fmu| {
         let instance = fmu.instantiate(&fmu.table.token, &fmu.uri(), 1, true).unwrap();
         instance.start();
-        let is_doubt = |(_, _, text): &common::Line| text.contains(": the energy residual is ");
+        let is_doubt = |(_, _, text): &crate::common::Line| text.contains(": the energy residual is ");
         instance
             .lines()
             .into_iter()

@@ -1,11 +1,9 @@
 //! FMI 3 instances: what is refused at birth, which calls are legal when, what setters refuse, what the log says.
 
-mod common;
-
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use common::{ERROR, Fmu, OK, Options, write_resources};
+use crate::common::{ERROR, Fmu, OK, Options, write_resources};
 use enmm_fmi3::*;
 
 fn refusal(fmu: &Fmu, options: &Options) -> String {

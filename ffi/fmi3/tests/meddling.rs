@@ -1,11 +1,9 @@
 //! FMI 3 importers that call within a step: from the logger, and from another thread.
 
-mod common;
-
 use std::ffi::c_void;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-use common::{ERROR, Fmu, Instance, Log, OK, Options, update};
+use crate::common::{ERROR, Fmu, Instance, Log, OK, Options, update};
 use enmm_fmi3::*;
 
 /// An update that only counts.

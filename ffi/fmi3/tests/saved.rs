@@ -1,10 +1,8 @@
 //! FMI 3 states: the same bits after a rollback and in another instance; damaged bytes and freed states are refused.
 
-mod common;
-
 use std::ptr::null_mut;
 
-use common::{ERROR, Fmu, OK};
+use crate::common::{ERROR, Fmu, OK};
 use enmm_fmi3::*;
 
 #[test]
@@ -61,7 +59,7 @@ fn a_state_in_bytes_goes_on_in_a_fresh_process_with_the_same_bits() {
     let file = fmu.folder.path().join("state");
     std::fs::write(&file, instance.bytes(instance.save())).unwrap();
     let mut child = std::process::Command::new(std::env::current_exe().unwrap());
-    let name = "a_state_in_bytes_goes_on_in_a_fresh_process_with_the_same_bits";
+    let name = "saved::a_state_in_bytes_goes_on_in_a_fresh_process_with_the_same_bits";
     assert!(child.args(["--exact", name]).env(FILE, &file).output().unwrap().status.success());
     instance.run_from(0.03, 0.01, 0.05);
     assert_eq!(std::fs::read(&file).unwrap(), instance.snapshot());

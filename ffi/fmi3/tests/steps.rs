@@ -1,8 +1,6 @@
 //! FMI 3 steps have the bits of the façade, however instances, threads and communication steps are arranged.
 
-mod common;
-
-use common::{ERROR, Fmu, Instance, OK, Options, update};
+use crate::common::{ERROR, Fmu, Instance, OK, Options, update};
 use enmm::geometry::Vector;
 use enmm_fmi3::{Status, fmi3EnterInitializationMode, fmi3ExitInitializationMode, fmi3Reset};
 
@@ -398,7 +396,7 @@ fn energy_from_nowhere_is_a_warning_in_the_log() {
     let doubts = |fmu: &Fmu| {
         let instance = fmu.instantiate(&Options { logging: true, ..Options::default() }).unwrap();
         instance.start();
-        let is_doubt = |(_, _, text): &common::Line| text.contains(": the energy residual is ");
+        let is_doubt = |(_, _, text): &crate::common::Line| text.contains(": the energy residual is ");
         instance
             .lines()
             .into_iter()

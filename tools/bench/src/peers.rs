@@ -1,8 +1,8 @@
 //! Other programs on the same models, turn by turn with this one, on one thread: Rapier's soft bodies and Box2D on
 //! sliding slopes, a Numba kernel on elements.
 //!
-//! Each is a small program of its own below `tools/bench/peers`, outside the workspace, with its own pinned dependencies.
-//! It is built when it is asked for and tells its result as one JSON object.
+//! Each is a small program of its own below `tools/bench/peers`, outside the workspace, with its own pinned
+//! dependencies. It is built when it is asked for and tells its result as one JSON object.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,8 +1,8 @@
 //! What is worked out of one sample.
 
 use enmm::model::case::EnsembleOutput;
-use enmm_io::LoadedCase;
 use enmm_ensemble::Row;
+use enmm_io::LoadedCase;
 use enmm_stability::limit_analysis::{Collapse, Factor};
 use enmm_stability::strength_reduction::End;
 use serde_json::{Value, json};

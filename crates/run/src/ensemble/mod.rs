@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use enmm::engine_version;
-use enmm_io::{CaseError, LoadedCase};
 use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key, work};
+use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
 use crate::fos::FosOptions;

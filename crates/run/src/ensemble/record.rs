@@ -6,10 +6,10 @@ use std::path::Path;
 
 use enmm::engine_version;
 use enmm::model::case::Ensemble;
+use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
 use enmm_picture::{histogram_picture, number_text};
-use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
 use serde_json::{Value as Json, json};
 
 use super::{EnsembleError, EnsembleOptions, columns};

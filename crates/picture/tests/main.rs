@@ -1,0 +1,5 @@
+//! Tests of the pictures.
+
+mod joint_pieces;
+mod pictures;
+mod sample;

@@ -1,0 +1,4 @@
+//! Tests of films and pages.
+
+mod film;
+mod support;

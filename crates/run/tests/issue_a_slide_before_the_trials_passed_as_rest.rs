@@ -1,0 +1,64 @@
+//! A slope with F < 1 that slid in its static stage until other rock stopped it passed as a slope at rest: its factor
+//! of safety was that of the debris, 1.858 instead of 0.775.
+
+use std::path::Path;
+
+use enmm::model::case::{Case, Pictures};
+use enmm_io::{LoadedCase, load_case};
+use enmm_run::{RunOptions, run};
+use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
+
+/// The plane slide of the examples without water, and with less strength than it needs.
+fn weak_slide([friction_deg, cohesion]: [f64; 2]) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/cases/plane_slide.toml");
+    let mut case = load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
+    let plane = case.joint_laws.get_mut("plane").expect("the law of the plane");
+    (plane.friction_deg, plane.cohesion) = (friction_deg, cohesion);
+    case.water = None;
+    case
+}
+
+/// Bolts that a second static stage installs tie the wedge that has slid in the first one: its slip did not count any
+/// more.
+#[test]
+fn a_slide_before_the_bolts_are_installed_is_a_failure() {
+    let case = weak_slide([28.0, 2e3]);
+    assert!(case.stages.len() == 2 && !case.stages[1].install.is_empty());
+    let found = factor_of_safety(&case, &ReductionOptions::default(), &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+    assert!(found.rest_factor > 1.0, "{}", found.rest_factor);
+    assert!(found.warnings.iter().any(|warning| warning.contains("a failure that other rock stopped")));
+}
+
+/// `enmm run` said no more than that the stage was at rest.
+#[test]
+fn a_run_warns_of_a_slide_in_a_static_stage() {
+    let mut case = weak_slide([28.0, 2e3]);
+    case.stages.truncate(1);
+    case.bolts.clear();
+    (case.output.frames, case.output.pictures) = (false, Pictures::Usual(false));
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
+    let loaded = LoadedCase::of(case, "case").expect("a case");
+    let summary = run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(summary.warnings.iter().any(|warning| warning.contains("rock slid until other rock stopped it")));
+}
+
+/// The closed form of Hoek and Bray, F = (cA + W·cos ψ·tan φ)/(W·sin ψ), for H = 30 m, ψ = 35°, ψf = 60° and a crack of
+/// 7 m.
+#[test]
+fn a_slope_that_slides_in_its_static_stage_has_the_factor_of_its_slide() {
+    let (friction_deg, cohesion) = (28.0f64, 2e3);
+    let mut case = weak_slide([friction_deg, cohesion]);
+    case.bolts.clear();
+    case.stages.truncate(1);
+    let found = factor_of_safety(&case, &ReductionOptions::default(), &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+    let (height, crack) = (30.0f64, 7.0f64);
+    let [dip, face] = [35.0f64, 60.0].map(f64::to_radians);
+    let area = (height - crack) / dip.sin();
+    let weight =
+        0.5 * 2650.0 * 9.81 * height.powi(2) * ((1.0 - (crack / height).powi(2)) / dip.tan() - 1.0 / face.tan());
+    let exact = (cohesion * area + weight * dip.cos() * friction_deg.to_radians().tan()) / (weight * dip.sin());
+    let factor = found.factor().expect("a factor");
+    assert!((factor / exact - 1.0).abs() < 5e-3, "{factor}, exact {exact}");
+    assert!(found.warnings.iter().any(|warning| warning.contains("a failure that other rock stopped")));
+}

@@ -1,0 +1,9 @@
+//! Tests of what a run writes.
+
+mod history;
+mod issue_a_slide_before_the_trials_passed_as_rest;
+mod issue_history_did_not_sum_to_its_residual;
+#[path = "../../picture/tests/sample.rs"]
+mod sample;
+mod time_left;
+mod vtu;

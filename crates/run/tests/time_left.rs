@@ -1,0 +1,39 @@
+//! The simulated time that a run expects to need is right within a factor of 1.5 after the first tenth of its steps.
+
+use std::path::Path;
+
+use enmm::model::case::Pictures;
+use enmm_run::{Observer, RunOptions, RunProgress, run};
+
+/// Simulated time at each step, and that which was expected to be left.
+#[derive(Default)]
+struct Record(Vec<(f64, Option<f64>)>);
+
+impl Observer for Record {
+    fn step(&mut self, progress: &RunProgress) {
+        self.0.push((progress.time, progress.time_expected));
+    }
+}
+
+/// Expected over true time left after a tenth of the steps of a case.
+fn ratio_after_a_tenth(case: &str) -> f64 {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/cases").join(case);
+    let mut loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{case}: {error}"));
+    (loaded.case.output.frames, loaded.case.output.pictures) = (false, Pictures::Usual(false));
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
+    let mut record = Record::default();
+    run(&loaded, &options, &mut record).unwrap_or_else(|error| panic!("{case}: {error}"));
+    let (time, expected) = record.0[record.0.len() / 10];
+    let end = record.0.last().expect("steps").0;
+    expected.unwrap_or_else(|| panic!("{case}: nothing is expected after a tenth")) / (end - time)
+}
+
+#[test]
+fn the_time_left_is_right_within_half_after_a_tenth() {
+    let ramped = ["block_on_incline", "coupled_slope", "goodman_bray", "masonry_wall", "plane_slide", "shaken_slope"];
+    for case in ramped.into_iter().chain(["simply_supported_beam"]) {
+        let ratio = ratio_after_a_tenth(&format!("{case}.toml"));
+        assert!((1.0 / 1.5..1.5).contains(&ratio), "{case}: {ratio}");
+    }
+}

@@ -1,0 +1,138 @@
+//! The example cases that show claims parse, build and run, and show what their comments say.
+
+use std::path::PathBuf;
+
+use crate::common::{run_all, tell};
+use enmm::model::{Case, Simulation};
+use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
+
+/// Folder of the example cases.
+fn folder() -> PathBuf {
+    crate::common::root().join("examples/cases")
+}
+
+/// The text of `examples/cases/NAME.toml`.
+fn text(name: &str) -> String {
+    let path = folder().join(format!("{name}.toml"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn case(name: &str, text: &str) -> Case {
+    enmm_io::parse_case(text, name, &folder()).unwrap_or_else(|e| panic!("{e}")).case
+}
+
+/// The simulation of `examples/cases/NAME.toml`.
+fn example(name: &str) -> Simulation {
+    Simulation::new(case(name, &text(name))).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What `enmm fos` finds.
+fn factor(name: &str, text: &str) -> f64 {
+    let found = factor_of_safety(&case(name, text), &ReductionOptions::default(), &mut |_, _| {});
+    found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
+}
+
+/// `text` without what lies between the first `from` and the next `to`, or the end.
+fn without(text: &str, from: &str, to: &str) -> String {
+    let (before, rest) = text.split_once(from).expect(from);
+    rest.find(to).filter(|_| !to.is_empty()).map_or(before.to_owned(), |end| format!("{before}{}", &rest[end..]))
+}
+
+/// 0.906407 m at 1 s; the rock of 10 GPa rings a little more than that of the claim test: 5e-4.
+#[test]
+fn the_block_slides_as_its_comment_says() {
+    let mut simulation = example("block_on_incline");
+    crate::common::run_stage(&mut simulation);
+    assert!(simulation.next_stage().expect("a stage"));
+    let start = simulation.monitor(0).0;
+    crate::common::run_stage(&mut simulation);
+    let time = simulation.time() - simulation.state().stage_start;
+    let way = (simulation.monitor(0).0 - start).norm();
+    assert!((way / (0.906407 * time * time) - 1.0).abs() < 5e-4, "{way}");
+}
+
+/// 15.97188 mm within 1 %: the bending error of 16 rows and the dents of the supports.
+#[test]
+fn the_beam_sags_as_its_comment_says() {
+    let mut simulation = example("simply_supported_beam");
+    run_all(&mut simulation);
+    let sag = -simulation.monitor(0).0.y;
+    assert!((sag / 15.97188e-3 - 1.0).abs() < 1e-2, "{sag}");
+}
+
+/// The middle column topples by metres, the highest stays within centimetres.
+#[test]
+fn the_columns_topple_as_their_comment_says() {
+    let mut simulation = example("goodman_bray");
+    run_all(&mut simulation);
+    let [toe, middle, top] = [0, 1, 2].map(|k| simulation.monitor(k).0.norm());
+    assert!(toe > 1.0 && middle > 1.0 && top < 0.05, "{toe} {middle} {top}");
+}
+
+/// Settlement of the top is that of its weight; it moves no more in the second half of the rest.
+#[test]
+fn the_wall_rests_as_its_comment_says() {
+    let mut simulation = example("masonry_wall");
+    crate::common::run_stage(&mut simulation);
+    assert!(simulation.next_stage().expect("a stage"));
+    let half = simulation.steps_in(5.0);
+    crate::common::claims::advance(&mut simulation, half);
+    let before = simulation.monitor(0).0;
+    let report = crate::common::claims::advance(&mut simulation, half);
+    assert!((simulation.monitor(0).0 - before).norm() < 1e-6 && report.penetration_max < 1e-3, "{report:?}");
+}
+
+/// Its bolts are put in with 350 kN a bar; the rock gives a fraction of a millimetre, and nothing slips.
+#[test]
+fn the_wedge_rests_on_its_bolts() {
+    let mut simulation = example("plane_slide");
+    let reports = run_all(&mut simulation);
+    assert_eq!(reports.len(), 2);
+    assert!(reports.iter().all(|report| report.unbalanced < 1e-5), "{reports:?}");
+}
+
+/// The comment has the factors of the wedge with and without bolts beside the formula of Hoek and Bray.
+fn wedge_as_its_comment_says(text: &str, case: &str) -> f64 {
+    let found = factor("plane_slide", text);
+    let row = text.lines().find(|line| line.starts_with(&format!("# {case} "))).expect(case);
+    assert!(row.contains(&format!("    {found:.4}")), "{found} instead of {row}");
+    found
+}
+
+#[test]
+fn the_wedge_with_water_has_the_factors_that_its_comment_says() {
+    let text = text("plane_slide");
+    tell("plane_slide.fos", wedge_as_its_comment_says(&text, "water and bolts"));
+    let bare = without(&text, "[[stage]]\nname = \"bolts\"", "");
+    tell("plane_slide.fos_without_bolts", wedge_as_its_comment_says(&bare, "water, no bolts"));
+}
+
+#[test]
+fn the_dry_wedge_has_the_factors_that_its_comment_says() {
+    let text = without(&text("plane_slide"), "\n[water]", "\n[[fix]]");
+    wedge_as_its_comment_says(&text, "dry and bolts");
+    let bare = without(&text, "[[stage]]\nname = \"bolts\"", "");
+    wedge_as_its_comment_says(&bare, "dry, no bolts");
+}
+
+/// Strength reduction of the columns without dilation stays below limit analysis, which lets joints dilate.
+#[test]
+fn the_columns_bear_less_than_limit_analysis_allows() {
+    let found = factor("goodman_bray", &text("goodman_bray"));
+    assert!((2.0..2.626).contains(&found), "{found}");
+    tell("goodman_bray.fos", found);
+}
+
+/// It starts from rest under its joints of Barton and Bandis; the wave takes 60 ms to the crest, which is 50 m at
+/// 877 m/s. The slope still moves as its base does, for the record has hardly begun.
+#[test]
+fn the_slope_begins_to_shake_as_its_comment_says() {
+    let mut simulation = example("shaken_slope");
+    crate::common::run_stage(&mut simulation);
+    assert!(simulation.next_stage().expect("a stage"));
+    let start = [0, 2].map(|k| simulation.monitor(k).0);
+    let steps = simulation.steps_in(1.5);
+    crate::common::claims::advance(&mut simulation, steps);
+    let [crest, base] = [(0, start[0]), (2, start[1])].map(|(k, before)| (simulation.monitor(k).0 - before).x);
+    assert!(base.abs() > 1e-4 && (crest - base).abs() < 0.5 * base.abs(), "{crest} {base}");
+}

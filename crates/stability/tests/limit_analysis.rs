@@ -1,0 +1,166 @@
+//! Limit analysis gives known factors, keeps its bounds in order, follows the stages of a case, and refuses by name
+//! what it cannot treat. Closed forms of single mechanisms are the verification problems F1 to F7.
+
+use std::path::Path;
+
+use crate::common::{simulation, tell};
+use enmm_io::{load_case, parse_case};
+use enmm_stability::limit_analysis::{Bound, BoundError, Factor, bound};
+
+fn of_text(text: &str) -> Result<Bound, BoundError> {
+    bound(simulation(text).case())
+}
+
+fn of_example(name: &str) -> Bound {
+    let path = crate::common::root().join("examples/cases").join(name);
+    bound(&load_case(&path).expect("a case").case).expect("a bound")
+}
+
+fn near(factor: Factor, exact: f64) {
+    assert!((factor.value() / exact - 1.0).abs() < 3e-4, "{factor:?} instead of {exact}");
+}
+
+/// A slope 20 m high with two joint sets, mirrored or not, of friction tan φ = `tangent`.
+fn jointed(tangent: f64, mirror: f64, more: &str) -> String {
+    let place = |points: &[[f64; 2]]| format!("{:?}", points.iter().map(|p| [mirror * p[0], p[1]]).collect::<Vec<_>>());
+    let outline = place(&[[0.0, -10.0], [60.0, -10.0], [60.0, 20.0], [20.2, 20.0], [10.0, 0.0], [0.0, 0.0]]);
+    let mut joints = String::new();
+    for k in 0..5 {
+        let up = 4.0 * f64::from(k);
+        joints += &format!("[[joint]]\npoints = {}\n", place(&[[9.0, up - 1.0], [49.0, up + 26.0]]));
+        joints += &format!("[[joint]]\npoints = {}\n", place(&[[12.0 + up, 2.1], [5.5 + up, 24.3]]));
+    }
+    let [bottom, side] = [[[0.0, -10.0], [60.0, -10.0]], [[60.0, -10.0], [60.0, 20.0]]].map(|edge| place(&edge));
+    format!(
+        "title = \"jointed\"\n[domain]\noutline = {outline}\n[mesh]\nsize = 2.0\norigin = [0.31, 0.17]\n{joints}\
+         [rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = {:?}\n\
+         [[fix]]\nedge = {bottom}\n[[fix]]\nedge = {side}\naxes = \"x\"\n{more}\
+         [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\n",
+        tangent.atan().to_degrees()
+    )
+}
+
+/// 2.626 is what a linear program that was written apart from this one found for these columns.
+#[test]
+fn columns_of_goodman_and_bray_bear_2_626_when_joints_dilate() {
+    let found = of_example("goodman_bray.toml");
+    near(found.associated.factor, 2.626);
+    near(found.level_tops.factor, 2.626);
+    tell("goodman_bray.bound", found.associated.factor.value());
+    assert!(found.associated.mechanism.len() > 8, "{:?}", found.associated.mechanism);
+}
+
+/// With water and bolts 1.2501 by the formula of Hoek and Bray that the case quotes.
+#[test]
+fn the_plane_slide_of_the_examples_bears_what_its_formula_gives() {
+    let found = of_example("plane_slide.toml");
+    near(found.associated.factor, 1.2501);
+    tell("plane_slide.bound", found.associated.factor.value());
+    assert_eq!((found.blocks, found.associated.mechanism.len()), ([2, 1], 1));
+}
+
+/// Joints that dilate by their friction need 42.75° there, so that 50° gives tan 50°/tan 42.75°; ±0.05° are 0.2 %.
+#[test]
+fn long_the_fractured_slope_needs_42_75_degrees() {
+    if crate::common::extent::is_long() {
+        let found = of_example("fractured_slope.toml");
+        let expected = 50f64.to_radians().tan() / 42.75f64.to_radians().tan();
+        assert!((found.associated.factor.value() / expected - 1.0).abs() < 2e-3, "{found:?}");
+        assert!(found.least.value() <= found.level_tops.factor.value());
+    } else {
+        near(
+            of_example("block_on_incline.toml").associated.factor,
+            35f64.to_radians().tan() / 30f64.to_radians().tan(),
+        );
+    }
+}
+
+#[test]
+fn bounds_are_in_order_and_repeat_to_the_bit() {
+    let found = of_text(&jointed(0.9, 1.0, "")).expect("a bound");
+    let [free, least, level, catching] =
+        [found.associated.factor, found.least, found.level_tops.factor, found.catching.factor].map(|f| f.value());
+    assert!(found.corners > 10 && free.is_finite(), "{found:?}");
+    assert!(free <= least * (1.0 + 1e-6) && least <= level && level <= catching * (1.0 + 1e-6), "{found:?}");
+    let fastest = &found.level_tops.mechanism[0];
+    assert!((fastest.speed - 1.0).abs() < 1e-12 && fastest.velocity.x < 0.0 && fastest.mass > 0.0, "{fastest:?}");
+    assert_eq!(of_text(&jointed(0.9, 1.0, "")).expect("a bound"), found);
+}
+
+/// Without cohesion F divides tan φ alone.
+#[test]
+fn a_factor_is_proportional_to_friction_and_the_same_in_a_mirror() {
+    let found = of_text(&jointed(0.9, 1.0, "")).expect("a bound");
+    let double = of_text(&jointed(1.8, 1.0, "")).expect("a bound");
+    let mirrored = of_text(&jointed(0.9, -1.0, "")).expect("a bound");
+    let pairs = [(double.associated, 2.0), (mirrored.associated, 1.0), (double.catching, 2.0)];
+    let own = [&found.associated, &found.associated, &found.catching];
+    for ((other, by), own) in pairs.into_iter().zip(own) {
+        assert!((other.factor.value() / (by * own.factor.value()) - 1.0).abs() < 5e-5, "{other:?} {own:?}");
+    }
+}
+
+/// A block W = 2 m · 0.8 m · 25 kN/m³ hangs on its joint by σt·L; with or without cohesion the factor is σt·L/W.
+#[test]
+fn tensile_strength_holds_a_block_below_a_roof() {
+    for cohesion in [0.0, 1e5] {
+        let text = format!(
+            "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\nislands = [[[0, -0.8], [2, \
+             -0.8], [2, 0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n[joint_law.joint]\nfriction_deg = \
+             30.0\ntension = 5e4\ncohesion = {cohesion:e}\n[rock.rock]\ndensity = 2500\nyoung = 2e10\npoisson = 0.2\n\
+             [[fix]]\nblock = [-0.5, 0.5]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\n"
+        );
+        near(of_text(&text).expect("a bound").associated.factor, 5e4 * 2.0 / (1.6 * 2500.0 * 9.81));
+    }
+}
+
+/// A change of law in a later static stage counts; stages from the first dynamic one on do not, and are named.
+#[test]
+fn the_last_static_stage_counts() {
+    let weaker = "[[stage]]\nname = \"weaker\"\nkind = \"static\"\nduration = 1.0\n[[stage.law]]\nlaw = \"joint\"\n\
+                  friction_deg = 30.0\n";
+    let shaken = "[[stage]]\nname = \"after\"\nkind = \"dynamic\"\nduration = 1.0\n[[stage.law]]\nlaw = \"joint\"\n\
+                  friction_deg = 10.0\n";
+    let own = of_text(&jointed(30f64.to_radians().tan(), 1.0, "")).expect("a bound");
+    let found = of_text(&(jointed(0.9, 1.0, "") + weaker + shaken)).expect("a bound");
+    assert!((found.associated.factor.value() / own.associated.factor.value() - 1.0).abs() < 5e-5);
+    assert!(found.warnings.iter().any(|warning| warning.contains("after")), "{:?}", found.warnings);
+}
+
+/// A base moves in dynamic stages only, which are left out: the factor is that of the slope at rest.
+#[test]
+fn a_motion_of_the_base_is_left_out_with_a_warning() {
+    let shaken = jointed(0.9, 1.0, "[[base_motion]]\ntable = [[0, 0], [1, 1]]\n")
+        + "[[stage]]\nname = \"shaken\"\nkind = \"dynamic\"\nduration = 1.0\n";
+    let [still, shaken] = [jointed(0.9, 1.0, ""), shaken].map(|text| of_text(&text).expect("a bound"));
+    assert_eq!(shaken.associated.factor, still.associated.factor);
+    assert!(shaken.warnings.iter().any(|warning| warning.contains("base motion is left out")), "{:?}", shaken.warnings);
+}
+
+#[test]
+fn what_cannot_be_treated_is_refused_by_its_key() {
+    let plain = jointed(0.9, 1.0, "");
+    let refusals = [
+        (plain.replace("poisson = 0.25", "poisson = 0.25\ncohesion = 1e6"), "rock.rock.cohesion"),
+        (
+            plain.replace("[joint_law.joint]", "[joint_law.joint]\nkind = \"barton_bandis\"\njrc = 8\njcs = 1e8"),
+            "joint_law.joint.kind",
+        ),
+        (jointed(0.9, 1.0, "[[quiet]]\nedge = [[0, -10], [0, 0]]\n"), "quiet[0]"),
+        (
+            jointed(0.9, 1.0, "[[load]]\nkind = \"body\"\nacceleration = [0.1, 0]\ntable = [[0, 0], [1, 1]]\n"),
+            "load[0].table",
+        ),
+        (plain.replace("kind = \"static\"", "kind = \"dynamic\""), "stage[0].kind"),
+    ];
+    for (text, key) in refusals {
+        let case = parse_case(&text, "case.toml", Path::new(".")).unwrap_or_else(|error| panic!("{key}: {error}")).case;
+        match bound(&case) {
+            Err(BoundError::Case(invalid)) => {
+                assert_eq!(invalid.key, key, "{}", invalid.message);
+                assert!(invalid.message.contains(": "), "no remedy: {}", invalid.message);
+            }
+            other => panic!("{key}: {other:?}"),
+        }
+    }
+}

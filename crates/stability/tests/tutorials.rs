@@ -1,0 +1,197 @@
+//! The cases of the tutorials run and show what their comments and the pages in `docs/book` say.
+
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+use crate::common::{run_all, tell};
+use enmm::model::{Case, Simulation};
+use enmm_stability::limit_analysis::bound;
+use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
+
+fn folder() -> PathBuf {
+    crate::common::root().join("examples/cases")
+}
+
+/// The text of `examples/cases/NAME.toml`.
+fn text(name: &str) -> String {
+    let path = folder().join(format!("{name}.toml"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn case(text: &str) -> Case {
+    enmm_io::parse_case(text, "case.toml", &folder()).unwrap_or_else(|e| panic!("{e}")).case
+}
+
+fn simulation(text: &str) -> Simulation {
+    Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What `enmm fos` finds.
+fn factor(text: &str) -> f64 {
+    let found = factor_of_safety(&case(text), &ReductionOptions::default(), &mut |_, _| {});
+    found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
+}
+
+/// What `enmm bound` finds for joints that dilate by their friction angle.
+fn limit(text: &str) -> f64 {
+    bound(&case(text)).unwrap_or_else(|e| panic!("{e}")).associated.factor.value()
+}
+
+/// `text` without what lies between the first `from` and the next `to`.
+fn without(text: &str, from: &str, to: &str) -> String {
+    let (before, rest) = text.split_once(from).expect(from);
+    format!("{before}{}", &rest[rest.find(to).expect(to)..])
+}
+
+/// Factor of the wedge of `road_cut.toml` as one rigid body by the formula of Hoek and Bray, which shares no code with
+/// the engine, with `crack_water` (m) in the tension crack and the force of the bolts `bolts` (N/m).
+fn hoek_and_bray(crack_water: f64, bolts: f64) -> f64 {
+    let (toe, foot, crest) = ([0.8, 2.0], [16.0, 11.49801], [8.0, 20.0]);
+    let polygon = [toe, foot, [foot[0], crest[1]], crest];
+    let twice = |k: usize| polygon[k][0] * polygon[(k + 1) % 4][1] - polygon[(k + 1) % 4][0] * polygon[k][1];
+    let area = (0..4).map(twice).sum::<f64>() / 2.0;
+    let (run, rise): (f64, f64) = (foot[0] - toe[0], foot[1] - toe[1]);
+    let (dip, below) = (rise.atan2(run), 10.0 * PI / 180.0);
+    let weight = 2650.0 * 9.81 * area;
+    let uplift = 1000.0 * 9.81 * crack_water * run.hypot(rise) / 2.0;
+    let thrust = 1000.0 * 9.81 * crack_water * crack_water / 2.0;
+    let normal = weight * dip.cos() - uplift - thrust * dip.sin() + bolts * (dip + below).sin();
+    let driving = weight * dip.sin() + thrust * dip.cos() - bolts * (dip + below).cos();
+    normal * 36f64.to_radians().tan() / driving
+}
+
+/// Asserts that the comment of a case has the row `name` with these numbers.
+fn assert_row(text: &str, name: &str, numbers: [f64; 2]) {
+    let row = text.lines().find(|line| line.starts_with(&format!("# {name} "))).expect(name);
+    let [formula, found] = numbers.map(|number| format!("{number:.4}"));
+    assert!(row.contains(&format!("  {formula}    {found}")), "{numbers:?} instead of {row}");
+}
+
+/// Text and formula of the road cut with water, and dry, both without bolts.
+fn without_bolts(all: &str) -> [(String, f64); 2] {
+    let wet = without(all, "[[stage]]\nname = \"bolts\"", "[[monitor]]");
+    let dry = without(&wet, "\n[water]", "# The base is held");
+    [(wet, hoek_and_bray(3.0, 0.0)), (dry, hoek_and_bray(0.0, 0.0))]
+}
+
+/// Strength reduction agrees with the formula within 0.5 %, the width of its bracket: the fault is plane and without
+/// cohesion, so that joints in the wedge change nothing. The comment of the case has both.
+fn wedge_as_its_comment_says(all: &str, name: &str, text: &str, exact: f64) -> f64 {
+    let found = factor(text);
+    assert!((found / exact - 1.0).abs() < 5e-3, "{name}: {found} instead of {exact}");
+    assert_row(all, name, [exact, found]);
+    found
+}
+
+#[test]
+fn the_road_cut_has_the_factors_of_hoek_and_bray() {
+    let all = text("road_cut");
+    let bolts = 3.0 * 250e3 / 2.0;
+    tell("road_cut.formula", hoek_and_bray(3.0, bolts));
+    tell("road_cut.fos", wedge_as_its_comment_says(&all, "water and bolts", &all, hoek_and_bray(3.0, bolts)));
+    let [_, (dry, exact)] = without_bolts(&all);
+    wedge_as_its_comment_says(&all, "dry, no bolts", &dry, exact);
+}
+
+/// Two trials close to the factor creep for half a minute of computing; the small version leaves strength reduction
+/// out.
+#[test]
+fn long_the_road_cut_without_bolts_has_the_factor_of_hoek_and_bray() {
+    let all = text("road_cut");
+    let [(wet, exact), _] = without_bolts(&all);
+    let limit = limit(&wet);
+    assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
+    tell("road_cut.bound_without_bolts", limit);
+    tell("road_cut.formula_without_bolts", exact);
+    if crate::common::extent::is_long() {
+        wedge_as_its_comment_says(&all, "water, no bolts", &wet, exact);
+    }
+}
+
+/// Limit analysis agrees with the formula within the rounding of the coordinates.
+#[test]
+fn limit_analysis_of_the_road_cut_gives_hoek_and_bray() {
+    let all = text("road_cut");
+    let [_, (dry, dry_exact)] = without_bolts(&all);
+    for (text, exact) in [(&all, hoek_and_bray(3.0, 3.0 * 250e3 / 2.0)), (&dry, dry_exact)] {
+        let found = limit(text);
+        assert!((found / exact - 1.0).abs() < 3e-4, "{found} instead of {exact}");
+    }
+}
+
+/// Both static stages end at rest, and the bolts move the crest by less than a millimetre.
+#[test]
+fn the_road_cut_rests_before_and_after_bolting() {
+    let mut simulation = simulation(&text("road_cut"));
+    let reports = run_all(&mut simulation);
+    assert_eq!(reports.len(), 2);
+    assert!(reports.iter().all(|report| report.unbalanced < 1e-5), "{reports:?}");
+    assert!(simulation.monitor(0).0.norm() < 1e-3, "{:?}", simulation.monitor(0));
+}
+
+/// The column at the crest moves out of the slope (to the left) by more than a metre, and by more than it falls; the
+/// rock behind stays.
+#[test]
+fn the_columns_of_the_drawing_topple() {
+    let mut simulation = simulation(&text("toppling"));
+    crate::common::run_stage(&mut simulation);
+    assert!(simulation.monitor(0).0.norm() < 0.01, "the fresh slope rests: {:?}", simulation.monitor(0));
+    assert!(simulation.next_stage().expect("a stage"));
+    crate::common::run_stage(&mut simulation);
+    let [crest, behind] = [0, 1].map(|k| simulation.monitor(k).0);
+    assert!(crest.x < -1.0 && crest.x.abs() > crest.y.abs() && behind.norm() < 0.01, "{crest:?} {behind:?}");
+}
+
+/// Fresh columns without dilation bear less than limit analysis allows, which lets joints dilate.
+#[test]
+fn the_fresh_columns_bear_less_than_limit_analysis_allows() {
+    let text = text("toppling");
+    let (found, limit) = (factor(&text), limit(&text));
+    assert!(found > 1.0 && found < limit, "{found} {limit}");
+    assert!(text.contains(&format!("{found:.4}")) && text.contains(&format!("{limit:.4}")), "{found} {limit}");
+    tell("toppling.fos", found);
+    tell("toppling.bound", limit);
+}
+
+/// No stage of the pit fails, and the floor rises with each stage as rock is taken off.
+#[test]
+fn the_pit_is_dug_in_three_stages() {
+    let mut simulation = simulation(&text("pit"));
+    crate::common::run_stage(&mut simulation);
+    let mut rises = vec![simulation.monitor(2).0.y];
+    assert!(rises[0].abs() < 5e-5, "nothing moves before the pit: {rises:?}");
+    while simulation.next_stage().expect("a stage") {
+        crate::common::run_stage(&mut simulation);
+        rises.push(simulation.monitor(2).0.y);
+    }
+    assert_eq!(rises.len(), 4);
+    assert!(rises.windows(2).all(|pair| pair[1] > pair[0] + 1e-4), "{rises:?}");
+    assert!(simulation.monitor(0).0.norm() < 1e-3, "{:?}", simulation.monitor(0));
+}
+
+/// The wedge on the fault of the finished pit has the factor tan φ / tan ψ of a body on a plane without cohesion.
+#[test]
+fn the_finished_pit_has_the_factor_of_its_wedge() {
+    let text = text("pit");
+    let exact = 44f64.to_radians().tan() / (15.5 / 19.0);
+    let (found, limit) = (factor(&text), limit(&text));
+    assert!((found / exact - 1.0).abs() < 5e-3, "{found} instead of {exact}");
+    assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
+    assert!(text.contains(&format!("{exact:.4}. enmm fos: {found:.4}")), "{exact} {found}");
+    tell("pit.fos", found);
+    tell("pit.formula", exact);
+}
+
+/// The first line of every example leads editors to the schema.
+#[test]
+fn every_example_names_its_schema() {
+    let files = std::fs::read_dir(folder()).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let cases: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    assert!(cases.len() >= 11, "{cases:?}");
+    for path in cases {
+        let text = std::fs::read_to_string(&path).expect("a case");
+        let schema = text.lines().next().and_then(|line| line.strip_prefix("#:schema "));
+        let schema = schema.unwrap_or_else(|| panic!("{}: begins without `#:schema`", path.display()));
+        assert!(folder().join(schema).is_file(), "{}: {schema}", path.display());
+    }
+}

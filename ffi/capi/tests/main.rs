@@ -1,0 +1,7 @@
+//! Tests of the C library: hosts in C and C++, what is installed, the same bits as in Rust.
+
+mod bits;
+mod hosts;
+mod install;
+mod overhead;
+mod support;
