@@ -104,7 +104,7 @@ fn sanitizes(flag: &str) -> bool {
     let built = run(compiler("empty.cpp").arg(flag).arg(source).arg("-o").arg(&program)).status.success();
     let there = built && run(&mut Command::new(program)).status.success();
     if !there {
-        say(&format!("skipped: the compiler makes no programs with {flag}"));
+        say(&format!("left out: the compiler makes no programs with {flag}"));
     }
     there
 }

@@ -8,9 +8,9 @@ use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
 use crate::parts;
-use crate::platform::{Cross, Platform, WINDOWS_QUICK};
+use crate::platform::{AARCH64_QUICK, Cross, Platform, WINDOWS_QUICK};
 use crate::repository::{self, Beside, Repository};
-use crate::venv::{self, succeeds};
+use crate::venv::{self, Packages, succeeds};
 use crate::wheel;
 
 /// Header that C programs need.
@@ -25,36 +25,11 @@ const PYTHON: &str = "python_tests/windows/run.py";
 const FMU_CASE: &str = "examples/cases/coupled_slope.toml";
 /// Steps before its rollback.
 const FMU_STEPS: &str = "50";
-/// Settings of a build that takes a quarter of the time. They move no bit.
-const QUICK: [&str; 3] = ["profile.release.opt-level=1", "profile.release.debug=false", "profile.release.lto=\"off\""];
-/// Packages that take long to optimize, and do little or nothing in quick results.
-const COLD: [&str; 19] = [
-    "clap_builder",
-    "faer",
-    "gemm-c32",
-    "gemm-c64",
-    "gemm-f32",
-    "gemm-f64",
-    "harfrust",
-    "libsqlite3-sys",
-    "nano-gemm-c32",
-    "nano-gemm-c64",
-    "nano-gemm-f32",
-    "nano-gemm-f64",
-    "object",
-    "private-gemm-x86",
-    "read-fonts",
-    "skrifa",
-    "svgtypes",
-    "usvg",
-    "zip",
-];
-
 /// What an FMU may have for each platform (bytes).
 const FMU_SIZE_MAX: u64 = 8_000_000;
 
 /// Builds for a platform; with `--test` in `words` it then tests what it has built. `--quick` is the share of
-/// `cargo xtask test`.
+/// `cargo xtask test --all`.
 ///
 /// # Errors
 /// When the words are others, the machine lacks something, something does not build, or a test fails.
@@ -63,58 +38,52 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
     match words {
         [] => build(repository, platform, cross).map(|_| ()),
         ["--test"] => test(repository, platform, cross),
-        ["--quick"] if platform.is_windows() => {
-            repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
-            bits::all_good(quick(repository, start_quick(repository)?)?)
+        ["--quick"] => {
+            repository.build(&["--workspace"])?;
+            let platform = if platform.is_windows() { &WINDOWS_QUICK } else { &AARCH64_QUICK };
+            bits::all_good(quick(repository, start_quick(repository, platform)?)?)
         }
-        _ => {
-            let quick = if platform.is_windows() { " or --quick" } else { "" };
-            Err(format!("usage: cargo xtask {} [--test{quick}]", platform.name))
-        }
+        _ => Err(format!("usage: cargo xtask {} [--test or --quick]", platform.name)),
     }
 }
 
-/// The build for Windows of `cargo xtask test`, and whether there is an emulator to run it.
+/// A build for a platform by the profile of tests, and whether there is an emulator to run it.
 pub struct Quick {
+    platform: &'static Platform,
     build: Beside,
     runs: bool,
 }
 
-/// Starts to build what is shipped for Windows, hardly optimized, or to check it where there is no Wine. None, with a
+/// Starts to build libraries and program for a platform, or to check them where there is no emulator. None, with a
 /// message, where standard library or compiler are missing.
 ///
 /// # Errors
 /// When cargo does not start.
-pub fn start_quick(repository: &Repository) -> Result<Option<Quick>, String> {
-    const PURPOSE: &str = "tests for Windows";
-    let Some(cross) = WINDOWS_QUICK.cross.as_ref().filter(|cross| is_ready(cross, PURPOSE)) else { return Ok(None) };
-    let runs = has_emulator(cross, PURPOSE);
+pub fn start_quick(repository: &Repository, platform: &'static Platform) -> Result<Option<Quick>, String> {
+    let purpose = format!("tests for {}", platform.name);
+    let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else { return Ok(None) };
+    let runs = has_emulator(cross, &purpose);
     // It yields to the tests beside it.
     let mut cargo = repository.command("nice");
     cargo.arg(repository.cargo(&[]).get_program()).arg(if runs { "build" } else { "check" });
-    cargo.args(["--release", "--target", cross.triple]).args(wheel::packages());
-    let cold = COLD.into_iter().map(|name| format!("profile.release.package.{name}.opt-level=0"));
-    let settings = QUICK.into_iter().map(str::to_owned).chain(cold);
-    cargo.args(settings.flat_map(|setting| ["--config".to_owned(), setting]));
-    cargo.env("CARGO_TARGET_DIR", WINDOWS_QUICK.cargo(repository));
-    let build = repository::start(cargo, repository.target.join("windows-quick.txt"))?;
-    Ok(Some(Quick { build, runs }))
+    cargo.args(["--target", cross.triple]).args(wheel::packages()).envs(cross.settings.iter().copied());
+    cargo.env("CARGO_TARGET_DIR", platform.cargo(repository));
+    let build = repository::start(cargo, repository.target.join(format!("{}.txt", platform.name)))?;
+    Ok(Some(Quick { platform, build, runs }))
 }
 
-/// Compares quick results of that build, under Wine, with the golden table, those of FMUs with a rollback among them,
+/// Compares quick results of that build, on its emulator, with the golden table, those of FMUs with a rollback among them,
 /// and calls every function of the C library.
 ///
 /// # Errors
 /// When something does not compile or does not run.
 pub fn quick(repository: &Repository, quick: Option<Quick>) -> Result<Counts, String> {
-    let (Some(Quick { build, runs }), Some(cross)) = (quick, &WINDOWS_QUICK.cross) else {
-        return Ok(Counts::default());
-    };
+    let Some(Quick { platform, build, runs }) = quick else { return Ok(Counts::default()) };
+    let Some(cross) = &platform.cross else { return Ok(Counts::default()) };
     build.finish()?;
     if !runs {
         return Ok(Counts::default());
     }
-    let platform = &WINDOWS_QUICK;
     let place = Place::new(repository, platform, cross)?;
     let (built, shipped) = (platform.built(repository), platform.shipped(repository));
     platform
@@ -174,7 +143,7 @@ fn test(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<(
     if !has_emulator(cross, &purpose) {
         return Ok(());
     }
-    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    repository.build(&["--workspace"])?;
     let place = Place::new(repository, platform, cross)?;
     place.c_library()?;
     let host = place.compile(FMU_HOST, &[])?;
@@ -232,7 +201,7 @@ impl<'a> Place<'a> {
 
     /// Compares what the wheel does in a Python for Windows with the package on this machine.
     fn python(&self, wheel: &Path) -> Result<(), String> {
-        let mut python = venv::command(self.repository)?;
+        let mut python = venv::command(self.repository, Packages::All)?;
         python.arg(PYTHON).arg(wheel).arg(&self.folder).arg(self.cross.compiler).args(self.emulator.words());
         self.emulator.prepare(&mut python);
         repository::run(&mut python)
@@ -254,13 +223,13 @@ impl<'a> Place<'a> {
             return Err(format!("{}: has {size} bytes, must have at most {}", packed.display(), 2 * FMU_SIZE_MAX));
         }
         for words in [&["validate"] as &[&str], &["simulate", "--stop-time", "0.1"]] {
-            let mut fmpy = venv::command(self.repository)?;
+            let mut fmpy = venv::command(self.repository, Packages::Usual)?;
             fmpy.args(["-m", "fmpy", words[0]]).arg(&packed).args(&words[1..]);
             repository::capture(&mut fmpy)?;
         }
         let steps = |name: &str, words: &[&str]| -> Result<_, String> {
             let folder = self.folder.join(format!("{name}_fmi{version}"));
-            let mut steps = venv::command(self.repository)?;
+            let mut steps = venv::command(self.repository, Packages::Usual)?;
             steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&folder).args(["--before", FMU_STEPS]).args(words);
             self.emulator.prepare(&mut steps);
             repository::run(&mut steps)?;

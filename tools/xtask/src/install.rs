@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::repository::{self, Repository};
+use crate::repository::Repository;
 
 /// Libraries of the C ABI, and of the FMUs where they have been built.
 const LIBRARIES: [&str; 4] = ["libenmm.so", "libenmm.a", "libenmm_fmi2.so", "libenmm_fmi3.so"];
@@ -16,9 +16,8 @@ const SYSTEM_LIBRARIES: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 /// # Errors
 /// When something does not build or cannot be copied.
 pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
-    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
-    let release = repository.target.join("release");
-    let from = |name: &str| release.join(name);
+    repository.build(&["--workspace"])?;
+    let from = |name: &str| repository.built().join(name);
     copy(&repository.enmm(), &prefix.join("bin"))?;
     for name in LIBRARIES.into_iter().filter(|name| name.starts_with("libenmm.") || from(name).exists()) {
         copy(&from(name), &prefix.join("lib"))?;

@@ -17,21 +17,25 @@ mod platform;
 mod python;
 mod repository;
 mod sanitize;
+mod steps;
 mod supply;
 mod tasks;
+mod test;
 mod venv;
 mod wheel;
 
 use std::process::ExitCode;
 
+use repository::{Profile, Repository};
+
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  test [--quick]   format, lints, build, tests, documentation, schema, Python;
-                   --quick leaves out the last three
+  test             what a newcomer and every commit runs: format, lints, build, tests, hosts in C and C++,
+                   ctypes, FMPy, header, schema, quick bits; installs nothing outside the target folder
+  test --all       the same first, then what is long or needs other systems: Windows, ARM, Chromium,
+                   rustdoc, oldest compiler, licences, notebooks, fuzz, faults, sanitizers, long forms
   python           the Python tests alone
-  figures [--long] writes the figures that documents quote; --long those of the long
-                   campaigns, too
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   fuzz [--minutes N] [--seed S] [--part NAME]
                    throws wrong cases, joint networks, calls and states at every entrance; without
@@ -71,17 +75,23 @@ usage: cargo xtask TASK
   pictures         runs the main case, the tutorials and the couplings and writes their pictures into docs/pictures
                    and docs/book/pictures";
 
+/// The profile by which a task builds.
+fn profile(words: &[&str]) -> Profile {
+    match words {
+        ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults", ..] => Profile::Tested,
+        _ => Profile::Shipped,
+    }
+}
+
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let done = repository::Repository::find().and_then(|repository| match words[..] {
-        ["test"] => Ok(tasks::test(&repository, tasks::Extent::Full)),
-        ["test", "--quick"] => Ok(tasks::test(&repository, tasks::Extent::Quick)),
-        ["python"] => Ok(tasks::python(&repository)),
-        ["figures"] => tasks::write_figures(&repository, false).map(|()| ExitCode::SUCCESS),
-        ["figures", "--long"] => tasks::write_figures(&repository, true).map(|()| ExitCode::SUCCESS),
-        ["long"] => Ok(tasks::long(&repository)),
-        ["fuzz", ref words @ ..] => tasks::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),
+    let done = Repository::find(profile(&words)).and_then(|repository| match words[..] {
+        ["test"] => Ok(test::usual(&repository)),
+        ["test", "--all"] => Ok(test::all(&repository)),
+        ["python"] => Ok(test::python(&repository)),
+        ["long"] => Ok(test::long(&repository)),
+        ["fuzz", ref words @ ..] => test::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),
         ["faults", ref words @ ..] => faults::run(&repository, words).map(|()| ExitCode::SUCCESS),
         ["sanitize"] => sanitize::run(&repository).map(|()| ExitCode::SUCCESS),
         ["verify"] => tasks::verification(&repository, "report").map(|()| ExitCode::SUCCESS),
@@ -94,7 +104,7 @@ fn main() -> ExitCode {
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
         ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
-        ["ensembles"] => Ok(tasks::ensembles(&repository)),
+        ["ensembles"] => Ok(test::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&repository)).map(|()| ExitCode::SUCCESS)

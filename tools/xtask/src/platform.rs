@@ -19,6 +19,8 @@ pub struct Platform {
     strip: Option<&'static [&'static str]>,
     /// Folder of cargo in the target folder; empty for the target folder itself.
     cargo: &'static str,
+    /// Folder of the profile by which a cross build is made.
+    profile: &'static str,
 }
 
 /// What a cross build needs.
@@ -57,6 +59,7 @@ pub const HERE: Platform = Platform {
         _ => Some(&["strip", "--strip-unneeded"]),
     },
     cargo: "",
+    profile: "release",
 };
 
 /// Windows by mingw-w64.
@@ -79,10 +82,8 @@ pub const WINDOWS: Platform = Platform {
     program: ".exe",
     strip: Some(&["x86_64-w64-mingw32-strip", "--strip-unneeded"]),
     cargo: "",
+    profile: "release",
 };
-
-/// The same as `cargo xtask test` builds it: beside the tests, for which cargo locks its folder, and with all symbols.
-pub const WINDOWS_QUICK: Platform = Platform { name: "windows-quick", strip: None, cargo: "windows-build", ..WINDOWS };
 
 /// Linux on ARM.
 pub const AARCH64: Platform = Platform {
@@ -103,9 +104,22 @@ pub const AARCH64: Platform = Platform {
     program: "",
     strip: Some(&["aarch64-linux-gnu-strip", "--strip-unneeded"]),
     cargo: "",
+    profile: "release",
 };
 
+/// Windows as `cargo xtask test --all` builds it.
+pub const WINDOWS_QUICK: Platform = WINDOWS.for_tests("windows-quick");
+
+/// ARM as `cargo xtask test --all` builds it.
+pub const AARCH64_QUICK: Platform = AARCH64.for_tests("aarch64-quick");
+
 impl Platform {
+    /// The platform as tests build it: by their profile, with all symbols, and in a folder that cargo does not lock
+    /// for the tests beside it.
+    const fn for_tests(self, name: &'static str) -> Self {
+        Self { name, strip: None, cargo: "cross-build", profile: "debug", ..self }
+    }
+
     /// File name of the library `name`.
     pub fn library(&self, name: &str) -> String {
         let [prefix, suffix] = self.library;
@@ -135,8 +149,10 @@ impl Platform {
 
     /// Folder in which cargo leaves what it builds.
     pub fn built(&self, repository: &Repository) -> PathBuf {
-        let folder = self.cross.as_ref().map_or_else(PathBuf::new, |cross| PathBuf::from(cross.triple));
-        self.cargo(repository).join(folder).join("release")
+        match &self.cross {
+            None => repository.built(),
+            Some(cross) => self.cargo(repository).join(cross.triple).join(self.profile),
+        }
     }
 
     /// Folder of the binaries as they are shipped.

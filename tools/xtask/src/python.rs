@@ -7,7 +7,7 @@ use crate::counts::{self, Counts};
 use crate::debian;
 use crate::platform::HERE;
 use crate::repository::{self, Repository};
-use crate::venv;
+use crate::venv::{self, Packages};
 use crate::wheel;
 
 /// Short case whose results the Python tests read.
@@ -26,43 +26,75 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "g
 const WORKERS: &str = "2";
 
 /// All Python tests.
-pub const ALL: &str = "python_tests";
+const ALL: &str = "python_tests";
+/// Those of the ensembles.
+const ENSEMBLES: &str = "python_tests/test_ensemble.py";
+/// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages alone.
+const USUAL: [&str; 10] = [
+    "python_tests/test_coupling.py",
+    "python_tests/test_ctypes.py",
+    "python_tests/test_ctypes_life.py",
+    "python_tests/test_fmu_description.py",
+    "python_tests/test_fmu_errors.py",
+    "python_tests/test_fmu_fmi3.py",
+    "python_tests/test_fmu_runs.py",
+    "python_tests/test_fmu_standard.py",
+    "python_tests/test_fmu_states.py",
+    "python_tests/test_results.py",
+];
 
-/// Runs the short case, then pytest over its results in these files or folders.
+/// A share of the Python tests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// That of `cargo xtask test`.
+    Usual,
+    /// The others.
+    Others,
+    /// All.
+    All,
+    /// The campaigns of the ensembles, in full.
+    Ensembles,
+}
+
+impl Share {
+    /// What pytest takes to find it.
+    fn arguments(self) -> Vec<&'static str> {
+        match self {
+            Self::Usual => USUAL.to_vec(),
+            Self::Others => [ALL].into_iter().chain(USUAL.into_iter().flat_map(|file| ["--ignore", file])).collect(),
+            Self::All => vec![ALL],
+            Self::Ensembles => vec![ENSEMBLES],
+        }
+    }
+
+    fn packages(self) -> Packages {
+        if self == Self::Usual { Packages::Usual } else { Packages::All }
+    }
+}
+
+/// Runs the short case, then pytest over a share of the tests.
 ///
 /// # Errors
 /// When the environment cannot be made or the case does not run.
-pub fn test(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
-    pytest(repository, places, None)
-}
-
-/// The same with ENMM_LONG, so that campaigns run in full.
-///
-/// # Errors
-/// As [`test()`].
-pub fn test_in_full(repository: &Repository, places: &[&str]) -> Result<Counts, String> {
-    pytest(repository, places, Some(("ENMM_LONG", "1")))
-}
-
-fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>) -> Result<Counts, String> {
+pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     let results = repository.target.join("python-results");
     if results.exists() {
         std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
     }
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let mut pytest = venv::command(repository)?;
+    let mut pytest = venv::command(repository, share.packages())?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", WORKERS, "--dist", "loadfile"]);
-    pytest.args(places).envs(extent);
-    // Without it the test says that it was left out.
-    let library = "import ctypes; ctypes.CDLL('libEGL.so.1')";
-    let draws = || venv::command(repository).is_ok_and(|mut python| venv::succeeds(python.args(["-c", library])));
-    debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
-    if !has_browser() {
-        println!("SKIPPED {BROWSER_TEST}: there is no Chromium on this machine (Debian: apt-get install chromium)");
-        pytest.args(["--ignore", BROWSER_TEST]);
+    pytest.args(share.arguments());
+    if share == Share::Ensembles {
+        pytest.env("ENMM_LONG", "1");
     }
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
-    pytest.env("ENMM_EXAMPLE", repository.example("cosimulation")).env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
+    pytest.env("ENMM_EXAMPLE", repository.program("examples/cosimulation"));
+    if share != Share::Usual {
+        provide_drawing(repository);
+        provide_browser();
+        pytest.env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
+    }
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);
     if !good && counts.failed == 0 {
@@ -71,10 +103,17 @@ fn pytest(repository: &Repository, places: &[&str], extent: Option<(&str, &str)>
     Ok(counts)
 }
 
-/// Whether there is a Chromium; where Debian's packages can be installed it is installed first.
-fn has_browser() -> bool {
+/// Installs what the test of drawings needs where Debian's packages can be; without it the test skips itself.
+fn provide_drawing(repository: &Repository) {
+    let load = ["-c", "import ctypes; ctypes.CDLL('libEGL.so.1')"];
+    let draws = || venv::command(repository, Packages::All).is_ok_and(|mut python| venv::succeeds(python.args(load)));
+    debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
+}
+
+/// Installs a Chromium where Debian's packages can be; without one the tests of pages skip themselves.
+fn provide_browser() {
     let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
-    debian::provide(BROWSER_TEST, "chromium", found)
+    debian::provide(BROWSER_TEST, "chromium", found);
 }
 
 /// Packs the FMUs of the tests; returns their folder.

@@ -7,21 +7,31 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
+/// The profile of cargo by which libraries and programs are built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Profile {
+    /// `dev`: quick to build, with checks for overflow; for tests.
+    Tested,
+    /// `release`: optimized; for whatever is measured or leaves this machine.
+    Shipped,
+}
+
 /// Paths of the repository.
 pub struct Repository {
     /// Root of the repository.
     pub root: PathBuf,
     /// Cargo's target directory.
     pub target: PathBuf,
+    profile: Profile,
     cargo: OsString,
 }
 
 impl Repository {
-    /// Asks cargo for the paths.
+    /// Reads the paths from cargo.
     ///
     /// # Errors
-    /// When `cargo metadata` fails or tells no target directory.
-    pub fn find() -> Result<Self, String> {
+    /// When `cargo metadata` fails or names no target directory.
+    pub fn find(profile: Profile) -> Result<Self, String> {
         let manifest = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
         let root = Path::new(&manifest).ancestors().nth(2).ok_or("xtask has no parent directory")?.to_owned();
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -30,17 +40,31 @@ impl Repository {
         let answer = ask.output().map_err(|error| format!("cargo metadata: {error}"))?;
         let target = json_string(&String::from_utf8_lossy(&answer.stdout), "target_directory");
         let target = target.ok_or("cargo metadata names no target_directory")?.into();
-        Ok(Self { root, target, cargo })
+        Ok(Self { root, target, profile, cargo })
     }
 
-    /// The command line program as `cargo build --release` leaves it.
+    /// Builds packages, as `args` of cargo name them, by the profile.
+    ///
+    /// # Errors
+    /// When one does not build.
+    pub fn build(&self, args: &[&str]) -> Result<(), String> {
+        let release: &[&str] = if self.profile == Profile::Shipped { &["--release"] } else { &[] };
+        run(self.cargo(&["build"]).args(release).args(args))
+    }
+
+    /// Folder in which cargo leaves libraries and programs.
+    pub fn built(&self) -> PathBuf {
+        self.target.join(if self.profile == Profile::Shipped { "release" } else { "debug" })
+    }
+
+    /// A program as it is built.
+    pub fn program(&self, name: &str) -> PathBuf {
+        self.built().join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    }
+
+    /// The command line program as it is built.
     pub fn enmm(&self) -> PathBuf {
-        self.target.join("release").join(format!("enmm{}", std::env::consts::EXE_SUFFIX))
-    }
-
-    /// An example as `cargo build --release --workspace --examples` leaves it.
-    pub fn example(&self, name: &str) -> PathBuf {
-        self.target.join("release").join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+        self.program("enmm")
     }
 
     /// Folder in which tests tell the figures that documents quote.

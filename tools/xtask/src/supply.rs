@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn the_promised_version_is_that_of_every_document() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
         let version = promised(&text("Cargo.toml")).unwrap();
         for name in ["README.md", "CONTRIBUTING.md"] {

@@ -2,31 +2,52 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use crate::repository::{self, Repository};
 
-const REQUIREMENTS: &str = "python_tests/requirements.txt";
+/// Packages of the usual tests, and those that the others need beside them.
+const REQUIREMENTS: [&str; 2] = ["python_tests/requirements.txt", "python_tests/requirements-all.txt"];
 /// Folder of the package `enmm`.
 const PACKAGES: &str = "ffi/python";
 const REMEDY: &str = "(Debian: apt-get install python3 python3-venv), then run `cargo xtask test` again";
 
-/// The C library as `cargo build --release` leaves it.
-fn library(repository: &Repository) -> PathBuf {
-    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    repository.target.join("release").join(name)
+/// Which packages an environment holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Packages {
+    /// Those of the usual tests: pytest, FMPy, numpy, and what builds a wheel.
+    Usual,
+    /// Those of all tests and examples.
+    All,
 }
 
-/// Makes the environment, which takes a while; who needs it says what went wrong.
-pub fn prepare(repository: &Repository) {
-    let _ = environment(repository);
+impl Packages {
+    /// Files that name them.
+    fn requirements(self) -> &'static [&'static str] {
+        match self {
+            Self::Usual => &REQUIREMENTS[..1],
+            Self::All => &REQUIREMENTS,
+        }
+    }
+}
+
+/// The C library as it is built.
+fn library(repository: &Repository) -> PathBuf {
+    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    repository.built().join(name)
+}
+
+/// Makes the environment, which takes a while; the step that needs it reports what went wrong.
+pub fn prepare(repository: &Repository, packages: Packages) {
+    let _ = environment(repository, packages);
 }
 
 /// Python of the environment, which finds the package `enmm` and its library.
 ///
 /// # Errors
 /// When the environment cannot be made.
-pub fn command(repository: &Repository) -> Result<Command, String> {
-    let mut python = repository.command(environment(repository)?);
+pub fn command(repository: &Repository, packages: Packages) -> Result<Command, String> {
+    let mut python = repository.command(environment(repository, packages)?);
     python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(repository));
     python.env("ENMM_PROGRAM", repository.enmm());
     // Cargo names folders with our library here, which would hide that a search does not find it.
@@ -39,25 +60,37 @@ pub fn command(repository: &Repository) -> Result<Command, String> {
 /// # Errors
 /// When the environment cannot be made.
 pub fn program(repository: &Repository, name: &str) -> Result<Option<PathBuf>, String> {
-    let path = environment(repository)?.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    let path =
+        environment(repository, Packages::All)?.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     Ok(path.exists().then_some(path))
 }
 
-/// Makes the environment where it is missing or was made for other requirements; returns its Python.
-fn environment(repository: &Repository) -> Result<PathBuf, String> {
+/// Makes the environment where it is missing or was made for other requirements, and adds the packages that it lacks;
+/// returns its Python.
+fn environment(repository: &Repository, packages: Packages) -> Result<PathBuf, String> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (system, version) = system_python()?;
-    let wanted = std::fs::read_to_string(repository.root.join(REQUIREMENTS));
-    let wanted = format!("{version}\n{}", wanted.map_err(|error| format!("{REQUIREMENTS}: {error}"))?);
+    let mut texts = vec![version];
+    for path in REQUIREMENTS {
+        let text = std::fs::read_to_string(repository.root.join(path));
+        texts.push(text.map_err(|error| format!("{path}: {error}"))?);
+    }
     let place = repository.target.join("venv");
     let python = place.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    // Version and requirements by which it was made.
     let stamp = place.join("enmm-requirements");
-    if python.exists() && std::fs::read_to_string(&stamp).is_ok_and(|found| found == wanted) {
+    let made = std::fs::read_to_string(&stamp).ok().filter(|_| python.exists()).unwrap_or_default();
+    let wanted = texts[..=packages.requirements().len()].join("\n");
+    if made.starts_with(&wanted) {
         return Ok(python);
     }
-    make_environment(system, &place)?;
+    if !made.starts_with(&texts[..2].join("\n")) {
+        make_environment(system, &place)?;
+    }
     let mut pip = repository.command(&python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]);
-    repository::run(&mut pip)?;
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    repository::run(pip.args(packages.requirements().iter().flat_map(|path| ["-r", path])))?;
     std::fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))?;
     Ok(python)
 }

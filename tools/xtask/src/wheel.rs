@@ -59,7 +59,7 @@ pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, Str
     for name in platform.binaries() {
         platform.strip(repository, &platform.built(repository).join(&name), &binaries.join(&name))?;
     }
-    let mut pip = venv::command(repository)?;
+    let mut pip = venv::command(repository, venv::Packages::Usual)?;
     pip.args(["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]);
     pip.envs(platform.cross.as_ref().map(|cross| ("ENMM_PLATFORM", cross.wheel)));
     repository::run(pip.arg("--wheel-dir").arg(&wheels).arg(PACKAGE).env("ENMM_BINARIES", &binaries))?;

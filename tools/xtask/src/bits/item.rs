@@ -206,7 +206,7 @@ impl Maker<'_> {
         let mut pack = self.repository.command(self.host.map_or(self.program, |_| self.writer));
         pack.args(["fmu", &case(name), "--fmi", version, "-o"]).arg(&packed);
         let run = place.join("run");
-        let mut steps = venv::command(self.repository)?;
+        let mut steps = venv::command(self.repository, venv::Packages::Usual)?;
         steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run);
         if let Some(host) = self.host {
             pack.args(["--library", &library(self.repository, self.platform, version)]);

@@ -40,7 +40,7 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
         ["--renew"] => renew,
         _ => return Err(USAGE.to_owned()),
     };
-    repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    repository.build(&["--workspace"])?;
     act(repository)
 }
 
@@ -224,6 +224,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::repository::Profile;
 
     fn results(files: &[(&str, &str)]) -> Results {
         files.iter().map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec())).collect()
@@ -244,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_table_of_the_repository_has_the_items() {
-        let golden = Golden::read(&Repository::find().expect("the repository").root).expect("a table");
+        let golden = Golden::read(&Repository::find(Profile::Shipped).expect("the repository").root).expect("a table");
         let items: BTreeSet<&str> = ITEMS.iter().filter(|item| item.golden).map(|item| item.name).collect();
         assert_eq!(golden.items().collect::<BTreeSet<_>>(), items, "run `cargo xtask bits --renew`");
     }

@@ -48,7 +48,7 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
         ["--rounds", number] => number.parse().map_err(|_| format!("{number} is no number"))?,
         _ => return Err("usage: cargo xtask faults [--rounds N]".to_owned()),
     };
-    crate::repository::run(&mut repository.cargo(&["build", "--release", "--workspace"]))?;
+    repository.build(&["--workspace"])?;
     let counts = rounds_of(repository, rounds)?;
     println!("{} held, {} did harm", counts.passed, counts.failed);
     if counts.failed == 0 { Ok(()) } else { Err(format!("{} faults did harm: see above", counts.failed)) }

@@ -222,9 +222,10 @@ pub fn tellers(root: &Path) -> Result<[Vec<String>; 2], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::repository::Profile;
 
     fn root() -> &'static Path {
-        Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the root")
+        Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the root")
     }
 
     /// Marks of all documents, with theirs.
@@ -240,7 +241,7 @@ mod tests {
 
     #[test]
     fn constants_and_verified_values_that_documents_quote_are_true() {
-        let repository = Repository::find().expect("the repository");
+        let repository = Repository::find(Profile::Shipped).expect("the repository");
         let constants: Vec<_> = all_marks().into_iter().filter(|(_, mark)| mark.name.contains(' ')).collect();
         let judged = constants.iter().map(|(document, mark)| judge(&repository, document, mark));
         let problems: Vec<_> = judged.filter_map(Result::err).collect();
@@ -294,7 +295,7 @@ mod tests {
     /// The marks of a document see it: a figure that is changed by one in its last digit is named with its line.
     #[test]
     fn a_figure_that_is_wrong_is_named_with_place_and_remedy() {
-        let repository = Repository::find().expect("the repository");
+        let repository = Repository::find(Profile::Shipped).expect("the repository");
         let judged = |text: &str| judge(&repository, "docs/a.md", &marks(text).expect("a mark")[0]);
         assert_eq!(judged("of 0.05<!--=LIGHT cover/host.rs-->"), Ok(Some(())));
         let why = judged("\nof 0.06<!--=LIGHT cover/host.rs-->").expect_err("a wrong figure");
@@ -307,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_told_figure_is_compared_and_written() {
-        let mut repository = Repository::find().expect("the repository");
+        let mut repository = Repository::find(Profile::Shipped).expect("the repository");
         repository.target = std::env::temp_dir().join(format!("enmm-figures-{}", std::process::id()));
         std::fs::create_dir_all(repository.figures()).expect("a folder");
         std::fs::write(repository.figures().join("slip"), "0.19694\n").expect("a file");

@@ -1,0 +1,153 @@
+//! The test command in its two extents, and the shares of it that have commands of their own.
+//!
+//! All of it is built by the profile of tests, so that nothing is compiled twice.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use crate::bits;
+use crate::counts::{self, Counts};
+use crate::cross;
+use crate::faults;
+use crate::platform::{AARCH64_QUICK, WINDOWS_QUICK};
+use crate::python::{self, Share};
+use crate::repository::{self, Beside, Repository};
+use crate::sanitize;
+use crate::steps::Steps;
+use crate::supply;
+use crate::venv::{self, Packages};
+
+/// The schema of the case file.
+pub const SCHEMA: &str = "docs/case.schema.json";
+/// Left to `cargo xtask test --all`.
+const LEFT_OUT: &str = "Windows and ARM, Chromium, rustdoc, the oldest compiler, licences and advisories of \
+    dependencies, notebooks and other Python tests, fuzzing, faults, sanitizers, the long forms of tests";
+
+/// The tests of a newcomer and of every commit: they install nothing outside the target folder.
+pub fn usual(repository: &Repository) -> ExitCode {
+    let mut steps = Steps::default();
+    take_usual(repository, &mut steps);
+    println!("\nleft out, for `cargo xtask test --all`: {LEFT_OUT}");
+    steps.close()
+}
+
+/// The usual tests, then those that take long or need other systems.
+pub fn all(repository: &Repository) -> ExitCode {
+    let mut steps = Steps::default();
+    if take_usual(repository, &mut steps) {
+        steps.print_counts();
+        take_others(repository, &mut steps);
+    }
+    steps.close()
+}
+
+/// Every step runs, whatever failed before, but for those that need the build; returns whether there is one.
+fn take_usual(repository: &Repository, steps: &mut Steps) -> bool {
+    let cargo = |args: &[&str]| repository::run(&mut repository.cargo(args)).map(|()| Counts::default());
+    steps.take("format", || cargo(&["fmt", "--all", "--check"]));
+    std::thread::scope(|scope| {
+        // The installation waits for the network more than it computes.
+        scope.spawn(|| venv::prepare(repository, Packages::Usual));
+        steps.take("lints", || cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
+        if !steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
+            return false;
+        }
+        steps.take("tests", || cargo_test(repository, &[], None));
+        steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
+        steps.take("bits", || bits::quick(repository));
+        steps.take("python", || python::test(repository, Share::Usual));
+        true
+    })
+}
+
+fn take_others(repository: &Repository, steps: &mut Steps) {
+    // Builds that need target folders of their own: they fill the time in which tests leave a processor idle.
+    let oldest = supply::start_oldest_compiler(repository);
+    let platforms = [&WINDOWS_QUICK, &AARCH64_QUICK];
+    let platforms = platforms.map(|platform| (platform.name, cross::start_quick(repository, platform)));
+    steps.take("documentation", || {
+        let mut doc = repository.cargo(&["doc", "--workspace", "--no-deps"]);
+        repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
+    });
+    steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
+    steps.take("other python", || python::test(repository, Share::Others));
+    steps.take("full tests", || cargo_test(repository, &["full_", "long_"], Some(("ENMM_FULL", "1"))));
+    steps.take("faults", || faults::rounds_of(repository, 1));
+    steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
+    steps.take("sanitizers", || sanitize::over_hosts(repository).map(|()| Counts::default()));
+    steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
+    for (name, build) in platforms {
+        steps.take(name, || cross::quick(repository, build?));
+    }
+}
+
+/// Runs the long campaigns; it fails when one failed, or there is none.
+pub fn long(repository: &Repository) -> ExitCode {
+    let mut steps = Steps::default();
+    steps.take("long campaigns", || cargo_test(repository, &["long_"], Some(("ENMM_LONG", "1"))));
+    steps.close()
+}
+
+/// Builds, and runs all Python tests.
+pub fn python(repository: &Repository) -> ExitCode {
+    built(repository, "python", || python::test(repository, Share::All))
+}
+
+/// Builds, and runs the full campaigns of the ensembles in Python.
+pub fn ensembles(repository: &Repository) -> ExitCode {
+    built(repository, "ensembles", || python::test(repository, Share::Ensembles))
+}
+
+/// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
+///
+/// # Errors
+/// When the program does not build, or finds something.
+pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
+    repository.build(&["--workspace"])?;
+    throw(repository, words)
+}
+
+fn built(repository: &Repository, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> ExitCode {
+    let mut steps = Steps::default();
+    let build = || repository.build(&["--workspace", "--examples"]).map(|()| Counts::default());
+    if steps.take("build", build) {
+        steps.take(name, act);
+    }
+    steps.close()
+}
+
+fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {
+    let mut fuzz = repository.command(repository.program("enmm-fuzz"));
+    repository::run(fuzz.arg("--finds").arg(repository.target.join("fuzz")).args(words))
+}
+
+/// Runs the tests whose names contain one of `names`; all where none is given.
+fn cargo_test(repository: &Repository, names: &[&str], extent: Option<(&str, &str)>) -> Result<Counts, String> {
+    let mut test = repository.cargo(&["test", "--workspace", "--no-fail-fast", "--"]);
+    let (lines, good) = repository::run_and_listen(test.args(names).envs(extent))?;
+    let counts = counts::of_cargo(&lines);
+    if !good && counts.failed == 0 {
+        return Err("cargo test failed without a failed test: see above".to_owned());
+    }
+    Ok(counts)
+}
+
+/// The schema as the program prints it.
+///
+/// # Errors
+/// When the program does not run.
+pub fn schema(repository: &Repository) -> Result<Vec<u8>, String> {
+    repository::capture(repository.command(repository.enmm()).arg("schema"))
+}
+
+fn compare_schema(repository: &Repository) -> Result<(), String> {
+    let printed = schema(repository)?;
+    let path: &Path = &repository.root.join(SCHEMA);
+    let committed = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    if printed == committed {
+        return Ok(());
+    }
+    let lines = printed.split(|&b| b == b'\n').zip(committed.split(|&b| b == b'\n'));
+    let line = 1 + lines.take_while(|(a, b)| a == b).count();
+    Err(format!("{SCHEMA} is not what the sources make from line {line} on: run `cargo xtask schema` and commit"))
+}
