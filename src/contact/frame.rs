@@ -111,7 +111,7 @@ impl Frames {
             fill(edges, 0, next, &position);
         } else {
             let parts = edges.par_chunks_mut(GRAIN).enumerate();
-            enmm_fork::each("edges", parts, |(k, part): (_, &mut [_])| fill(part, k * GRAIN, next, &position));
+            parts.for_each(|(k, part): (_, &mut [_])| fill(part, k * GRAIN, next, &position));
         }
         let at = |point: EdgeId| edges[point.index()][0];
         let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
@@ -123,8 +123,7 @@ impl Frames {
             nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
         } else {
             let all = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
-            let length = node_point.len();
-            enmm_fork::spread("nodes", length, GRAIN, || all.map(node).collect_into_vec(nodes));
+            all.map(node).collect_into_vec(nodes);
         }
     }
 }

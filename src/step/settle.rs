@@ -98,7 +98,7 @@ impl Step<'_> {
             runs.zip(outcomes.iter_mut()).for_each(settle);
         } else {
             let runs = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
-            enmm_fork::each("histories", runs.zip(outcomes.par_iter_mut()), settle);
+            runs.zip(outcomes.par_iter_mut()).for_each(settle);
         }
         let counters = &mut state.counters;
         for outcome in &*outcomes {

@@ -3,10 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm_bench::{
-    BenchOptions, BenchReport, COMPARED, LARGE, Machine, Measured, Model, Origin, Peer, PeerError, PeerOptions,
-    STANDARD, bench, compare, peers_markdown, predict, threads_markdown, write_peers, write_report,
-};
+use enmm_bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
 use enmm_io::files::write_atomic;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
@@ -39,20 +36,6 @@ pub struct Arguments {
     /// Directory for tables (Markdown and JSON) and plots.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Time other programs on slopes and continua turn by turn with enmm, on one thread: those named of rapier,
-    /// rapier-constraints, box2d and numba, or all. Cargo and pip build them from the sources of the repository.
-    /// Default models: slopes of 500 and 2 000 blocks, continua of 10 000 and 100 000 elements.
-    #[arg(long, value_name = "PROGRAMS", value_delimiter = ',', num_args = 0..=1, default_missing_value = "all")]
-    peers: Option<Vec<String>>,
-    /// Rounds of the comparison.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000), requires = "peers")]
-    rounds: u16,
-    /// Folder of the sources of the other programs.
-    #[arg(long, value_name = "DIR", default_value = "tools/bench/peers", requires = "peers")]
-    peer_sources: PathBuf,
-    /// Predict what a step of the models takes on up to 64 threads. Default models: slopes of 2 000 and 10 000 blocks.
-    #[arg(long, conflicts_with = "peers")]
-    predict_threads: bool,
     /// What tells these results from others, such as commit and date.
     #[arg(long, default_value = "Measured", value_name = "TEXT")]
     label: String,
@@ -69,12 +52,6 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     };
     if let Some(folder) = &arguments.write {
         return write_cases(&models, folder);
-    }
-    if let Some(names) = &arguments.peers {
-        return run_peers(arguments, names, models);
-    }
-    if arguments.predict_threads {
-        return run_prediction(arguments, models);
     }
     let options = BenchOptions {
         models,
@@ -96,60 +73,6 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         arguments.output.as_ref().map_or(Ok(()), |folder| write_report(&report, &origin(&arguments.label), folder));
     print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
     written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
-}
-
-/// Times other programs beside this one and prints how long all took.
-fn run_peers(arguments: &Arguments, names: &[String], models: Vec<Model>) -> ExitCode {
-    let peers = match peers(names) {
-        Ok(peers) => peers,
-        Err(name) => {
-            let known = Peer::ALL.map(Peer::name).join(", ");
-            return fail(&format!("there is no program {name:?} to compare with: try {known}, or all"), BAD_INPUT);
-        }
-    };
-    if arguments.threads.is_some_and(|threads| threads != 1) {
-        return fail(&"--peers compares programs on one thread: leave --threads out", BAD_INPUT);
-    }
-    let default = || COMPARED.into_iter().filter(|model| peers.iter().any(|peer| peer.takes(model))).collect();
-    let models = if arguments.models.is_empty() { default() } else { models };
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let (rounds, sources) = (usize::from(arguments.rounds), arguments.peer_sources.clone());
-    let options = PeerOptions { models, peers, rounds, sources, builds: target.join("peers") };
-    let report = match compare(&options, &mut |what| tell_line(&format!("{what} …"))) {
-        Ok(report) => report,
-        Err(error @ PeerError::Own(_)) => return fail(&error, FAILED),
-        Err(error) => return fail(&error, BAD_INPUT),
-    };
-    let origin = origin(&arguments.label);
-    let written = arguments.output.as_ref().map_or(Ok(()), |folder| write_peers(&report, &origin, folder));
-    let text = || peers_markdown(&report, &origin).trim_end().to_owned();
-    print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text() });
-    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
-}
-
-/// Predicts what a step takes on more threads and prints it.
-fn run_prediction(arguments: &Arguments, models: Vec<Model>) -> ExitCode {
-    let default = vec![Model::Slope(2_000, 4), Model::Slope(10_000, 4)];
-    let mut predictions = Vec::new();
-    for model in if arguments.models.is_empty() { default } else { models } {
-        tell_line(&format!("{model} …"));
-        match predict(&model) {
-            Ok(found) => predictions.push(found),
-            Err(error) => return fail(&error, FAILED),
-        }
-    }
-    let text = threads_markdown(&Machine::here(false), &predictions, &origin(&arguments.label));
-    print_line(&if arguments.json { format!("{:#}", serde_json::json!(predictions)) } else { text.clone() });
-    let write = |folder: &PathBuf| write_atomic(&folder.join("threads.md"), text.as_bytes());
-    let written = arguments.output.as_ref().map_or(Ok(()), write);
-    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
-}
-
-fn peers(names: &[String]) -> Result<Vec<Peer>, &str> {
-    if names == ["all"] {
-        return Ok(Peer::ALL.to_vec());
-    }
-    names.iter().map(|name| Peer::parse(name).ok_or(name.as_str())).collect()
 }
 
 /// Writes the case of each model into a file of its name.

@@ -1,5 +1,4 @@
-//! Claim: `enmm bench --write` hands out the cases of its models and times nothing, and `--peers` says what it
-//! needs.
+//! Claim: `enmm bench --write` writes the cases of its models and times nothing.
 
 use crate::support::{Place, case};
 
@@ -14,14 +13,4 @@ fn cases_of_models_are_written_and_can_be_built() {
         assert_eq!(check.status, Some(0), "{check:?}");
     }
     place.enmm(&["bench", "--write", "case.toml/x"]).assert_bad_input(&["case.toml/x", "another directory"]);
-}
-
-#[test]
-fn a_comparison_says_what_it_needs() {
-    let place = Place::with(&case(0.02));
-    place.enmm(&["bench", "--peers"]).assert_bad_input(&["tools/bench/peers", "--peer-sources"]);
-    place
-        .enmm(&["bench", "--peers", "rapier,x"])
-        .assert_bad_input(&["\"x\"", "rapier, rapier-constraints, box2d, numba"]);
-    place.enmm(&["bench", "--peers", "--threads", "2"]).assert_bad_input(&["one thread"]);
 }

@@ -113,7 +113,7 @@ impl SearchGrid {
         grid.lay(view);
         let nodes = view.boundary.node_count();
         // Asked outside a pool, the number of threads would start one.
-        let (length, piece) = if view.serial { (nodes.max(1), 1) } else { (RUN, RUNS * enmm_fork::threads()) };
+        let (length, piece) = if view.serial { (nodes.max(1), 1) } else { (RUN, RUNS * rayon::current_num_threads()) };
         runs.resize_with(nodes.div_ceil(length).min(piece), Run::default);
         let find = |first: usize, k: usize, run: &mut Run| {
             let from = first + k * length;
@@ -126,7 +126,7 @@ impl SearchGrid {
             let count = (nodes - first).div_ceil(length).min(piece);
             match &mut runs[..count] {
                 [run] => find(first, 0, run),
-                runs => enmm_fork::each("search", runs.par_iter_mut().enumerate(), |(k, run)| find(first, k, run)),
+                runs => runs.par_iter_mut().enumerate().for_each(|(k, run)| find(first, k, run)),
             }
             runs[..count].iter().for_each(|run| pairs.extend_from_slice(&run.near_pairs));
         }

@@ -40,7 +40,7 @@ impl NarrowPhase<'_> {
         } else {
             let parts = contacts.par_chunks_mut(GRAIN).zip(candidates.par_chunks(GRAIN));
             let make = |(contacts, candidates): (&mut [_], &[_])| dispatch(Make { narrow: self, candidates, contacts });
-            enmm_fork::each("contacts", parts, make);
+            parts.for_each(make);
         }
         end
     }

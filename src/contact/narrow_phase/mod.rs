@@ -192,7 +192,7 @@ pub fn entrance_edges(
     accepted.near_side.clear();
     let mut made = 0;
     // In pieces: what is accepted of all near sides together would be as large as the contacts.
-    let piece = if narrow.serial { 1 } else { RUNS * enmm_fork::threads() };
+    let piece = if narrow.serial { 1 } else { RUNS * rayon::current_num_threads() };
     let mut first = 0;
     while first < near_sides.runs() {
         let end = near_sides.runs().min(first + piece);
@@ -224,7 +224,7 @@ impl NarrowPhase<'_> {
             near_side.extend(run.accepted.iter().map(|candidate| candidate.near_side));
             return self.make(&run.accepted, contacts, made);
         }
-        enmm_fork::each("vertex rule", range.into_par_iter().zip(&mut *runs), apply);
+        range.into_par_iter().zip(&mut *runs).for_each(apply);
         candidates.clear();
         runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
         near_side.extend(candidates.iter().map(|candidate| candidate.near_side));

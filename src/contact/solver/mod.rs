@@ -318,7 +318,7 @@ impl OpenClose {
             finish((contacts, slots));
         } else {
             let parts = contacts.par_chunks_mut(CONTACTS).zip(slots.par_chunks(CONTACTS));
-            enmm_fork::each("forces", parts, finish);
+            parts.for_each(finish);
         }
     }
 

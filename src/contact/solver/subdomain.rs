@@ -88,7 +88,7 @@ impl Subdomain<'_> {
         let (a, b) = if pass.from.options.serial || small {
             (first.run(pass), second.run(pass))
         } else {
-            enmm_fork::join("sweep", || first.run(pass), || second.run(pass))
+            rayon::join(|| first.run(pass), || second.run(pass))
         };
         a.and(b).and(dispatch(SubdomainKernel { subdomain: self, from: between, pass }))
     }

@@ -12,7 +12,7 @@ use crate::mechanics::Chunks;
 const GRAIN: usize = 4096;
 /// Covers below which a run of chunks is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
-    if serial || enmm_fork::threads() == 1 { usize::MAX } else { GRAIN }
+    if serial || rayon::current_num_threads() == 1 { usize::MAX } else { GRAIN }
 }
 
 thread_local! {
@@ -62,7 +62,7 @@ impl<W: Work> Run<'_, '_, W> {
         let covers = self.chunks.get(end - 1).covers.end - self.chunks.get(start).covers.start;
         if covers > grain && end - start > 1 {
             let (left, right) = self.cut(start + (end - start) / 2);
-            enmm_fork::join("chunks", || left.share(grain), || right.share(grain));
+            rayon::join(|| left.share(grain), || right.share(grain));
         } else {
             TABLES.with_borrow_mut(|tables| dispatch(InHand { run: self, tables }));
         }

@@ -28,7 +28,7 @@ pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time:
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
     } else {
         let runs = workspace.yielded.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate();
-        enmm_fork::each("yield", runs, |(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
+        runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
     }
     state.ledger.yielding += workspace.yielded.iter().sum::<f64>();
 }

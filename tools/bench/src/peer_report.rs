@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use super::peers::{Compared, PeerReport, Timed};
-use super::report::{Origin, digits, none, push_machine, push_table};
+use enmm_bench::{Origin, digits, none, push_machine, push_table};
 use enmm_io::files::{at_path, write_atomic};
 
 const INTRODUCTION: &str = "\

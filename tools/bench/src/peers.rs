@@ -9,11 +9,10 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use super::clock::timed;
-use super::models::advance;
-use super::scene::{Outcome, Placed, Scene};
-use super::{BenchError, BenchOptions, Machine, Model, in_pool, measure};
 use enmm::engine_version;
+use enmm_bench::{BenchError, BenchOptions, Machine, Model, advance, in_pool, measure, sizes, timed};
+
+use super::scene::{Outcome, Placed, Scene};
 
 /// Models that are compared when none is named.
 pub const COMPARED: [Model; 4] =
@@ -273,7 +272,7 @@ impl Task {
         let Self::Slope(scene) = self else {
             let (seconds, models) = (SECONDS, Vec::new());
             let options = BenchOptions { models, seconds, threads: None, limits: false, first_second: false };
-            let found = measure::measure(model, &options, &Machine::default())?;
+            let found = measure(model, &options, &Machine::default())?;
             let (seconds, elements) = (UPDATES / found.elements_per_second, Some(found.elements));
             return Ok(Answer { program, settings, seconds, elements, contacts: None, blocks: Vec::new() });
         };
@@ -285,7 +284,7 @@ impl Task {
             program,
             settings,
             seconds: seconds / scene.duration,
-            elements: Some(measure::sizes(&simulation).elements),
+            elements: Some(sizes(&simulation).elements),
             contacts: Some(simulation.state().contacts.len()),
             blocks: scene.placed(&simulation),
         })

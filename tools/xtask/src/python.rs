@@ -29,7 +29,8 @@ const WORKERS: &str = "2";
 const ALL: &str = "python_tests";
 /// Those of the ensembles.
 const ENSEMBLES: &str = "python_tests/test_ensemble.py";
-/// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages alone.
+/// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages
+/// alone.
 const USUAL: [&str; 10] = [
     "python_tests/test_coupling.py",
     "python_tests/test_ctypes.py",

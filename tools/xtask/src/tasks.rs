@@ -51,16 +51,18 @@ pub fn write_schema(repository: &Repository) -> Result<(), String> {
     Ok(())
 }
 
-/// Times standard models on one thread, or as `options` say, and writes tables and plots with commit and date.
+/// Times standard models on one thread, or with `--peers` in `options` other programs beside enmm, and writes tables
+/// and plots with commit and date.
 ///
 /// # Errors
 /// When the program does not build or run.
 pub fn write_benchmark(repository: &Repository, options: &[&str]) -> Result<(), String> {
-    repository.build(&["--package", "enmm-cli"])?;
-    let mut bench = repository.command(repository.enmm());
-    bench.args(["bench", "--output", BENCHMARK, "--label", &label(repository)?]);
+    repository.build(&["--package", "enmm-cli", "--package", "enmm-peers"])?;
+    let beside_others = options.contains(&"--peers");
+    let mut bench = repository.command(repository.program(if beside_others { "enmm-peers" } else { "enmm" }));
     let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
-    repository::run(bench.args(threads).args(options))
+    bench.args(if beside_others { vec![] } else { [&["bench"], threads].concat() });
+    repository::run(bench.args(["--output", BENCHMARK, "--label", &label(repository)?]).args(options))
 }
 
 /// Commit and date, without which a time says nothing.

@@ -84,7 +84,7 @@ const BUILD_HEAD: [&str; 11] = [
     "checkpoint ms",
 ];
 
-pub(super) fn push_machine(text: &mut String, machine: &Machine) {
+pub fn push_machine(text: &mut String, machine: &Machine) {
     let processor = machine.processor.as_deref().unwrap_or("unknown processor");
     let _ = writeln!(text, "Machine: {processor}, {} cores, {}.\n", machine.cores, machine.caches.join(", "));
     let level = |name: String, unit: &str, one: f64, all: f64| {
@@ -97,7 +97,7 @@ pub(super) fn push_machine(text: &mut String, machine: &Machine) {
     push_table(text, "Limits, measured in the same run", &["limit", "one thread", "all"], bandwidth.chain(peak));
 }
 
-pub(super) fn push_table(text: &mut String, title: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+pub fn push_table(text: &mut String, title: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {
         return;
@@ -214,14 +214,14 @@ fn families(
 }
 
 /// A number in three digits.
-pub(super) fn digits(value: f64) -> String {
+pub fn digits(value: f64) -> String {
     let size = value.abs();
     let decimals =
         if size >= 100.0 || size == 0.0 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) as usize };
     format!("{value:.decimals$}")
 }
 
-pub(super) fn none() -> String {
+pub fn none() -> String {
     "–".to_owned()
 }
 

@@ -5,28 +5,18 @@ mod clock;
 mod machine;
 mod measure;
 mod models;
-mod peer_report;
-mod peers;
 mod report;
-mod scene;
-mod schedule;
 mod slope;
 mod survey;
-mod thread_report;
-mod threads;
 
 use serde::Serialize;
 
+pub use clock::timed;
 pub use machine::{Bandwidth, Machine};
-pub use measure::{Measured, StageMilliseconds};
-pub use models::{LARGE, Model, STANDARD};
-pub use peer_report::{peers_markdown, write_peers};
-pub use peers::{COMPARED, Compared, Peer, PeerError, PeerOptions, PeerReport, Timed, compare};
-pub use report::{Origin, markdown, write_report};
-pub use scene::{Outcome, Placed, Scene, SceneBlock};
+pub use measure::{Measured, StageMilliseconds, measure, sizes};
+pub use models::{LARGE, Model, STANDARD, advance};
+pub use report::{Origin, digits, markdown, none, push_machine, push_table, write_report};
 pub use slope::{continuum_case, slope_case};
-pub use thread_report::threads_markdown;
-pub use threads::{Predicted, Prediction, predict};
 
 use enmm::engine_version;
 use enmm::model::case::Invalid;
@@ -91,7 +81,10 @@ pub fn bench(options: &BenchOptions, begin: &mut (dyn FnMut(&str) + Send)) -> Re
 }
 
 /// Works in a pool of its own with so many threads, so that one thread does all that it counts as its time.
-fn in_pool<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BenchError> {
+///
+/// # Errors
+/// Threads that the system refuses.
+pub fn in_pool<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BenchError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     Ok(pool.map_err(|_| BenchError::Threads(threads))?.install(work))
 }
@@ -104,7 +97,7 @@ fn bench_here(options: &BenchOptions, begin: &mut dyn FnMut(&str)) -> Result<Ben
     let mut models = Vec::new();
     for model in &options.models {
         begin(&model.to_string());
-        models.push(measure::measure(model, options, &machine)?);
+        models.push(measure(model, options, &machine)?);
     }
     Ok(BenchReport { version: engine_version().to_owned(), threads: rayon::current_num_threads(), machine, models })
 }

@@ -1,0 +1,93 @@
+//! Times other programs on slopes and continua in turn with enmm, on one thread, and writes how long all took.
+#![forbid(unsafe_code)]
+
+mod peer_report;
+mod peers;
+mod scene;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use enmm_bench::{Model, Origin};
+
+use peer_report::{peers_markdown, write_peers};
+use peers::{COMPARED, Peer, PeerOptions, compare};
+
+/// Time other programs in turn with enmm. Cargo and pip build them from the sources of the repository.
+#[derive(Parser)]
+struct Arguments {
+    /// Programs, separated by commas: rapier, rapier-constraints, box2d, numba, or all.
+    #[arg(long, value_name = "PROGRAMS", value_delimiter = ',', num_args = 0..=1, default_value = "all",
+          default_missing_value = "all")]
+    peers: Vec<String>,
+    /// Models, as `enmm bench` names them. Default: slopes of 500 and 2 000 blocks, continua of 10 000 and 100 000
+    /// elements.
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    models: Vec<String>,
+    /// Rounds of the comparison.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    rounds: u16,
+    /// Folder of the sources of the other programs.
+    #[arg(long, value_name = "DIR", default_value = "tools/bench/peers")]
+    peer_sources: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Directory for the tables (Markdown and JSON).
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// What distinguishes these results from others, such as commit and date.
+    #[arg(long, default_value = "Measured", value_name = "TEXT")]
+    label: String,
+}
+
+fn main() -> ExitCode {
+    run(&Arguments::parse()).map_or_else(
+        |message| {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        },
+        |()| ExitCode::SUCCESS,
+    )
+}
+
+fn run(arguments: &Arguments) -> Result<(), String> {
+    let peers = peers(&arguments.peers)?;
+    let models = models(&arguments.models, &peers)?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let (rounds, sources) = (usize::from(arguments.rounds), arguments.peer_sources.clone());
+    let options = PeerOptions { models, peers, rounds, sources, builds: target.join("peers") };
+    let report = compare(&options, &mut |what| eprintln!("{what} …")).map_err(|error| error.to_string())?;
+    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+    let origin = Origin { label: arguments.label.clone(), command: format!("cargo xtask bench {command}") };
+    if let Some(folder) = &arguments.output {
+        write_peers(&report, &origin, folder).map_err(|error| error.to_string())?;
+    }
+    if arguments.json {
+        println!("{:#}", serde_json::json!(report));
+    } else {
+        println!("{}", peers_markdown(&report, &origin).trim_end());
+    }
+    Ok(())
+}
+
+fn peers(names: &[String]) -> Result<Vec<Peer>, String> {
+    if names == ["all"] {
+        return Ok(Peer::ALL.to_vec());
+    }
+    let known = || Peer::ALL.map(Peer::name).join(", ");
+    let read = |name: &String| {
+        Peer::parse(name)
+            .ok_or_else(|| format!("there is no program {name:?} to compare with: try {}, or all", known()))
+    };
+    names.iter().map(read).collect()
+}
+
+fn models(names: &[String], peers: &[Peer]) -> Result<Vec<Model>, String> {
+    if names.is_empty() {
+        return Ok(COMPARED.into_iter().filter(|model| peers.iter().any(|peer| peer.takes(model))).collect());
+    }
+    let read = |name: &String| Model::parse(name).ok_or_else(|| format!("there is no model {name:?}"));
+    names.iter().map(read).collect()
+}
