@@ -11,14 +11,6 @@ import pytest
 from fmu_support import Fmu, Instance
 
 
-def tell(name: str, value: float) -> None:
-    """Tells a figure that a document quotes behind a mark of this name, for `cargo xtask figures` and `test`."""
-    folder = os.environ.get("ENMM_FIGURES")
-    if folder:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        (Path(folder) / name).write_text(f"{float(value)!r}\n", encoding="utf-8")
-
-
 def from_environment(name: str) -> Path:
     """The existing path that the variable holds; a missing one fails the test, because no test may be skipped."""
     value = os.environ.get(name)

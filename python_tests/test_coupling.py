@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy
 import pytest
-from conftest import tell
 from fmu_support import DISCARD, Instance
 
 END = 0.4
@@ -202,22 +201,6 @@ def test_explicit_coupling_blows_up_where_implicit_holds(slope_fmu, reference):
     with pytest.raises(Torn):
         couple(slope_fmu, 0.02, explicit)
     assert couple(slope_fmu, 0.02, implicit).error(reference) < 0.4
-
-
-def test_the_table_of_the_document(slope_fmu, reference, explicit_errors):
-    """`docs/coupling.md` quotes errors and iterations."""
-    for name, h in ("coupling.explicit_10", 0.01), ("coupling.explicit_5", 0.005), ("coupling.explicit_2_5", 0.0025):
-        tell(name, explicit_errors[h])
-    for error, mean, most, h in (
-        ("coupling.implicit_20", "coupling.mean_20", "coupling.most_20", 0.02),
-        ("coupling.implicit_10", "coupling.mean_10", "coupling.most_10", 0.01),
-        ("coupling.implicit_5", "coupling.mean_5", "coupling.most_5", 0.005),
-        ("coupling.implicit_2_5", "coupling.mean_2_5", "coupling.most_2_5", 0.0025),
-    ):
-        course = couple(slope_fmu, h, implicit)
-        tell(error, course.error(reference))
-        tell(mean, numpy.mean(course.iterations))
-        tell(most, max(course.iterations))
 
 
 def test_rejected_iterations_leave_no_trace(slope_fmu):

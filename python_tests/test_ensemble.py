@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import from_environment, tell
+from conftest import from_environment
 from ensemble_support import FRICTION, PLANE_COHESION, PLANE_FRICTION, block, plane_slide, plane_slide_factor
 from scipy import stats
 
@@ -286,7 +286,6 @@ def test_failures_of_a_block_are_as_probable_as_the_closed_form(ensemble, packag
     assert np.max(np.abs(found.values / exact - 1)) < 0.005
     probability = stats.norm(*TANGENT).cdf(math.tan(math.radians(30)))
     assert probability == pytest.approx(0.110006, abs=5e-7)
-    tell("ensemble.block", probability)
     low, high = found.interval()
     assert low < probability < high
     assert abs(found.beta - stats.norm.isf(probability)) < (0.1 if LONG else 0.6)
@@ -308,8 +307,6 @@ def test_failures_of_a_plane_slide_are_as_probable_as_the_closed_form(ensemble):
     deviation = math.hypot(plane_slide_factor(20e3, 0.0), plane_slide_factor(0.0, 0.06))
     beta = (mean - 1) / deviation
     assert beta == pytest.approx(1.177326, abs=5e-6)
-    tell("ensemble.slide", stats.norm.sf(beta))
-    tell("ensemble.slide_beta", beta)
     low, high = found.interval()
     assert stats.norm.sf(beta) == pytest.approx(0.119533, abs=1e-6)
     assert low < stats.norm.sf(beta) < high

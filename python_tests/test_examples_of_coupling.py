@@ -4,7 +4,6 @@ import importlib.util
 from pathlib import Path
 
 import numpy as np
-from conftest import tell
 
 FOLDER = Path(__file__).parents[1] / "examples" / "coupling"
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "accel" / "elcentro_1940_ns.csv"
@@ -29,8 +28,6 @@ def test_a_block_in_an_earthquake_slips_as_newmark_says(package, tmp_path):
     assert newmark[-1] > 0.1
     assert abs(slip[-1] - newmark[-1]) < 0.01 * newmark[-1]
     assert np.max(np.abs(slip - newmark)) < 0.01 * newmark[-1]
-    tell("earthquake.slip", slip[-1])
-    tell("earthquake.newmark", newmark[-1])
     toe = result["slope"][:, 0]
     assert 0.05 < toe[-1] < 1.0, "the slope slips in the strong part"
     assert abs(toe[-1] - toe[-150]) < 1e-3 * toe[-1], "and has come to rest"

@@ -1,4 +1,4 @@
-//! Helpers that tests share: cases from text, runs, figures.
+//! Helpers that tests share: cases from text, runs.
 #![allow(dead_code)]
 
 pub mod claims;
@@ -18,15 +18,6 @@ use std::path::Path;
 use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 use enmm::step::StepReport;
-
-/// Tells a figure that a document quotes behind a mark of this name: where `ENMM_FIGURES` names a folder, as `cargo
-/// xtask test` and `cargo xtask figures` do, the value goes into a file of that name there.
-pub fn tell(name: &str, value: f64) {
-    let Some(folder) = std::env::var_os("ENMM_FIGURES") else { return };
-    let written = std::fs::create_dir_all(&folder)
-        .and_then(|()| std::fs::write(Path::new(&folder).join(name), format!("{value:?}\n")));
-    written.unwrap_or_else(|e| panic!("{name}: {e}"));
-}
 
 /// Root of the repository, from the tests of any crate.
 pub fn root() -> &'static Path {
