@@ -80,12 +80,6 @@ pub struct Boundary {
     pub node_previous: Vec<NodeId>,
     /// Node after each node on its loop.
     pub node_next: Vec<NodeId>,
-    /// First edge of each side.
-    pub side_first: Vec<EdgeId>,
-    /// Last edge of each side.
-    pub side_last: Vec<EdgeId>,
-    /// Corner at the start of each side.
-    pub side_corner: Vec<Corner>,
     /// Side before each side on its loop.
     pub side_previous: Vec<SideId>,
     /// Side after each side on its loop.
@@ -210,14 +204,14 @@ impl Boundary {
         block: BlockId,
         stations: &[Station],
     ) {
-        let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_first.len());
+        let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_ends.len());
         let last = first + stations.len() - 1;
         for (k, station) in stations.iter().enumerate() {
             let edge = EdgeId::new(first + k);
             if station.corner {
-                self.side_first.push(edge);
-                self.side_last.push(edge);
-                self.side_corner.push(if station.turn > 0.0 { Corner::Convex } else { Corner::Reflex });
+                let corner = if station.turn > 0.0 { Corner::Convex } else { Corner::Reflex };
+                let [start, end] = [edge, edge].map(|edge| SideEnd { edge, round: edge, point: edge, corner });
+                self.side_ends.push([start, end]);
             }
             if station.node {
                 self.node_point.push(edge);
@@ -233,22 +227,22 @@ impl Boundary {
             self.reference.push(station.piece.a);
             self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));
             self.block.push(block);
-            self.side.push(SideId::new(self.side_first.len() - 1));
+            self.side.push(SideId::new(self.side_ends.len() - 1));
             self.node_before.push(NodeId::new(self.node_count() - 1));
             self.trace.push(station.piece.trace);
             self.partial.push(station.piece.partial);
-            if let Some(end) = self.side_last.last_mut() {
-                *end = edge;
+            if let Some([_, end]) = self.side_ends.last_mut() {
+                end.edge = edge;
             }
         }
         ring(&mut self.node_previous, &mut self.node_next, first_node..self.node_point.len(), NodeId::new);
-        ring(&mut self.side_previous, &mut self.side_next, first_side..self.side_first.len(), SideId::new);
-        for side in first_side..self.side_first.len() {
+        ring(&mut self.side_previous, &mut self.side_next, first_side..self.side_ends.len(), SideId::new);
+        for side in first_side..self.side_ends.len() {
             let (previous, next) = (self.side_previous[side], self.side_next[side]);
-            let ([first, last], round) = ([self.side_first[side], self.side_last[side]], self.side_first[next]);
-            let start =
-                SideEnd { edge: first, round: self.side_last[previous], point: first, corner: self.side_corner[side] };
-            self.side_ends.push([start, SideEnd { edge: last, round, point: round, corner: self.side_corner[next] }]);
+            let (last_before, first_after) = (self.side_ends[previous][1].edge, self.side_ends[next][0]);
+            let [start, end] = &mut self.side_ends[side];
+            start.round = last_before;
+            *end = SideEnd { edge: end.edge, round: first_after.edge, point: first_after.edge, ..first_after };
         }
     }
 }

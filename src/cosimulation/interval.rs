@@ -184,7 +184,7 @@ impl Cosimulation {
         } else {
             drive.arrive();
         }
-        let doublings = |steps: u64| ((steps - self.progress.origin) / JUDGED_FROM).checked_ilog2();
+        let doublings = |steps: u64| (steps.saturating_sub(self.progress.origin) / JUDGED_FROM).checked_ilog2();
         if doublings(self.simulation.state().step) > doublings(interval.steps_before) {
             interval.info.doubt = self.doubt();
         }

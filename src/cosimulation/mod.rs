@@ -119,7 +119,7 @@ impl Cosimulation {
     /// Time (s) as whole internal steps and a part of one make it.
     fn grid_time(&self) -> f64 {
         let state = self.simulation.state();
-        (state.step - self.progress.origin) as f64 * self.internal_step() + state.part
+        state.step.saturating_sub(self.progress.origin) as f64 * self.internal_step() + state.part
     }
 
     /// Internal step (s).

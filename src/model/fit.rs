@@ -224,7 +224,7 @@ impl Simulation {
                 intact: _,
             } = contact;
             index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
-            index(format_args!("contacts[{k}].side"), side.number(), boundary.side_first.len())?;
+            index(format_args!("contacts[{k}].side"), side.number(), boundary.side_ends.len())?;
             index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
             for (field, value, most) in [
                 ("normal_force", normal_force, FORCE),
@@ -247,7 +247,7 @@ impl Simulation {
         let boundary = &self.model().boundary;
         for (k, pair) in neighbours.pairs.iter().enumerate() {
             index(format_args!("neighbours.pairs[{k}].node"), pair.node.number(), boundary.node_count())?;
-            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.side_first.len())?;
+            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.side_ends.len())?;
             index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
         }
         in_order("neighbours.pairs", neighbours.pairs.is_sorted())?;

@@ -145,11 +145,10 @@ fn boundary(boundary: &Boundary) -> usize {
     let Boundary { covers, edge_covers, weights, reference, next, block, side, node_before, trace, partial, .. } =
         boundary;
     let Boundary { node_point, node_convex, node_edge_before, node_previous, node_next, .. } = boundary;
-    let Boundary { side_first, side_last, side_corner, side_previous, side_next, side_ends, block_thickness, .. } =
-        boundary;
+    let Boundary { side_previous, side_next, side_ends, block_thickness, .. } = boundary;
     sum(&[covers, edge_covers, weights, reference, next, block, side, node_before, trace, partial])
         + sum(&[node_point, node_convex, node_edge_before, node_previous, node_next])
-        + sum(&[side_first, side_last, side_corner, side_previous, side_next, side_ends, block_thickness])
+        + sum(&[side_previous, side_next, side_ends, block_thickness])
 }
 
 /// What the buffers share with the model.

@@ -99,7 +99,7 @@ impl NarrowPhase<'_> {
             return [0.0; 2];
         }
         let is_inner = |k: usize| match k {
-            0 => boundary.side_first[candidate.side] != boundary.node_point[before],
+            0 => boundary.side_ends[candidate.side][0].edge != boundary.node_point[before],
             _ => {
                 let after = boundary.node_point[boundary.node_next[before]];
                 boundary.side[after] == candidate.side

@@ -72,7 +72,7 @@ pub fn start_quick(repository: &Repository, platform: &'static Platform) -> Resu
     Ok(Some(Quick { platform, build, runs }))
 }
 
-/// Compares quick results of that build, on its emulator, with the golden table, those of FMUs with a rollback among them,
+/// Compares quick results of that build, on its emulator, with the golden table, with those of FMUs and a rollback,
 /// and calls every function of the C library.
 ///
 /// # Errors
