@@ -477,3 +477,15 @@ fn energy_from_nowhere_is_told_to_hosts() {
     assert_eq!(doubts(1e9), [32]);
     assert!(model.doubt().is_some());
 }
+
+/// The implicit integrator is a crate of its own, which hosts of the engine need not link.
+#[test]
+fn a_case_for_the_implicit_integrator_is_refused_with_its_remedy() {
+    let case = include_str!("../examples/cases/block_on_incline.toml");
+    let text = case.replace("[solver]\n", "[solver]\nintegrator = \"implicit\"\n");
+    let loaded = enmm_io::parse_case(&text, "block.toml", std::path::Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
+    let refused = loaded.cosimulation().err().map(|error| error.to_string()).unwrap_or_default();
+    for part in ["block.toml", "solver.integrator", "\"implicit\"", "use \"explicit\"", "the program enmm"] {
+        assert!(refused.contains(part), "{part}: {refused}");
+    }
+}

@@ -1,12 +1,10 @@
 //! Values that are mostly slips in a unit or a sign are told with the usual range, traces without effect with their
 //! place; a stage shorter than a step is refused. All of them once passed in silence.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use enmm::model::Simulation;
 use enmm::model::assemble::ignored_traces;
-use enmm::model::case::Solver;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 /// A block of 10 m by 6 m on its base, with nothing unusual.
@@ -42,47 +40,6 @@ fn each_slip_is_told_with_its_key_value_and_range() {
         assert_eq!(told.len(), 1, "{told:?}");
         assert!(parts.iter().all(|part| told[0].contains(part)), "{parts:?}: {told:?}");
     }
-}
-
-/// `solver.mass_scaling` once passed in silence beside the implicit integrator. Every key of `[solver]` is set here, so
-/// that a new one is put on one of the lists: those without effect, and those that both integrators use.
-#[test]
-fn keys_of_the_other_integrator_are_told() {
-    let both = "communication_step = 0.01\ndt_max = 1e-3\ncontact_stiffness = 0.7\nshear_ratio = 0.4\n\
-                penetration_limit = 0.1\nfailure_displacement = 1.0\nmemory_limit = 1000000000\n";
-    let explicit = [
-        "contact_theta = 3.0\n",
-        "contact_tolerance = 1e-3\n",
-        "sweeps_max = 90\n",
-        "mass_scaling = 2.0\n",
-        "dt_safety = 0.5\n",
-    ];
-    let implicit = [
-        "newmark = \"trapezoidal\"\n",
-        "implicit_step = 1e-3\n",
-        "iterations_max = 9\n",
-        "displacement_ratio = 0.02\n",
-    ];
-    let keys: BTreeSet<&str> =
-        both.lines().chain(explicit).chain(implicit).filter_map(|line| Some(line.split_once(" =")?.0)).collect();
-    let all = serde_json::to_value(Solver::default()).expect("an object");
-    let all = all.as_object().expect("an object").keys().map(String::as_str).filter(|key| *key != "integrator");
-    assert_eq!(keys, all.collect());
-    let solver = [both, &explicit.concat(), &implicit.concat()].concat();
-    for (integrator, others) in [("implicit", explicit.as_slice()), ("explicit", &implicit)] {
-        let told = warnings(&format!("{CASE}[solver]\nintegrator = \"{integrator}\"\n{solver}"));
-        let tell = |line: &&str| {
-            let key = line.split(' ').next().expect("a key");
-            format!(
-                "solver.{key}: has no effect with solver.integrator = \"{integrator}\"; remove it, or use the other \
-                 integrator"
-            )
-        };
-        assert_eq!(told, others.iter().map(tell).collect::<Vec<_>>());
-    }
-    // The default step of the implicit integrator is twenty explicit ones, of which that key sets the length.
-    let told = warnings(&format!("{CASE}[solver]\nintegrator = \"implicit\"\ndt_safety = 0.5\n"));
-    assert_eq!(told, [""; 0]);
 }
 
 #[test]

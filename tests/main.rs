@@ -20,7 +20,6 @@ mod fractured_slope;
 mod free_field;
 mod geometry_arrangement;
 mod host_inputs;
-mod implicit_agrees;
 mod in_situ_stress;
 mod issue_a_report_was_worked_out_twice;
 mod issue_cohesion_counted_twice_where_joints_end;

@@ -16,7 +16,7 @@ const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
 const FLOORS: [&[&str]; 9] = [
     &["enmm-case", "enmm-lanes"],
     &["enmm"],
-    &["enmm-io", "enmm-stability", "enmm-ensemble"],
+    &["enmm-implicit", "enmm-io", "enmm-stability", "enmm-ensemble"],
     &["enmm-picture", "enmm-report", "enmm-capi"],
     &["enmm-run", "enmm-fmi"],
     &["enmm-bench", "enmm-fmi-raw"],

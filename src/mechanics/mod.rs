@@ -4,8 +4,6 @@
 pub mod block_lanes;
 pub mod chunk;
 mod column;
-mod consistent;
-mod cover_matrix;
 mod elasticity;
 pub mod element_lanes;
 mod internal;
@@ -18,8 +16,6 @@ mod record;
 
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
-pub use consistent::{PAIRS, element_mass, push_mass, stiffness_block};
-pub use cover_matrix::{CoverMatrix, NotPositive, UNCOUPLED};
 pub use elasticity::{Elasticity, critical_dt};
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};

@@ -10,7 +10,7 @@ pub mod snapshot;
 pub use enmm_case as case;
 pub use enmm_case::Case;
 
-pub use assemble::{BuildStage, Built, build};
+pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use fit::Unfit;
 pub use observe::{BLOCK_QUANTITIES, BlockState};
 pub use simulation::Simulation;

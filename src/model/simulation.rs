@@ -8,7 +8,7 @@ use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
-use super::assemble::{BuildStage, Built, build, law_of};
+use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators, build, law_of};
 use super::case::{Case, Invalid, Stage, StageKind};
 
 /// Unbalanced ratio at which a static stage that names none ends.
@@ -32,7 +32,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Builds the model of a case and begins its first stage.
+    /// Builds the model of a case, which the explicit integrator advances, and begins its first stage.
     ///
     /// # Errors
     /// The first key of the case that does not fit.
@@ -45,7 +45,19 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn build(case: Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Self, Invalid> {
-        let built = build(&case, tell)?;
+        Self::with_integrators(case, &ExplicitAlone, tell)
+    }
+
+    /// As [`Simulation::build`], by one of the integrators given.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_integrators(
+        case: Case,
+        integrators: &dyn Integrators,
+        tell: &mut dyn FnMut(BuildStage),
+    ) -> Result<Self, Invalid> {
+        let built = build(&case, integrators, tell)?;
         let mut simulation = Self {
             case,
             built,

@@ -4,8 +4,8 @@
 pub mod bytes;
 mod element;
 mod events;
-mod implicit;
 mod inputs;
+mod integrator;
 mod ledger;
 mod memory;
 mod model;
@@ -13,8 +13,8 @@ mod quantity;
 mod workspace;
 
 pub use events::{Event, EventKind, Events};
-pub use implicit::{Implicit, ImplicitWorkspace, Rule};
 pub use inputs::{Drive, Inputs};
+pub use integrator::{Buffers, OtherIntegrator};
 pub use ledger::{BALANCE, ENERGIES, Ledger};
 pub use memory::Part;
 pub use model::{

@@ -7,7 +7,7 @@ use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
-use super::Implicit;
+use super::OtherIntegrator;
 
 /// What one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -190,8 +190,8 @@ pub struct Model {
     pub entrance: EntranceRule,
     /// Most sweeps of the open–close iteration.
     pub sweeps_max: u32,
-    /// What the implicit integrator needs; none for the explicit one.
-    pub implicit: Option<Implicit>,
+    /// The integrator; none for the explicit one.
+    pub integrator: Option<OtherIntegrator>,
     /// Penetration (m) at which the run fails.
     pub penetration_limit: f64,
     /// Displacement (m) beyond which a block counts as failed.

@@ -8,7 +8,7 @@ use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
 
-use super::{ImplicitWorkspace, Model, State};
+use super::{Buffers, Model, State};
 
 /// Buffers, sized at the first step and reused.
 #[doc(alias = "scratch buffers")]
@@ -74,8 +74,8 @@ pub struct Workspace {
     pub yielded: Vec<f64>,
     /// Whether each block touches another.
     pub touching: Vec<bool>,
-    /// Buffers of the implicit integrator.
-    pub implicit: ImplicitWorkspace,
+    /// Buffers of an integrator other than the explicit one.
+    pub of_integrator: Option<Box<dyn Buffers>>,
     /// Largest speed of a cover (m/s).
     pub speed_max: f64,
     /// Whether the step keeps to the calling thread; the bits are the same.

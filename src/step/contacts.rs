@@ -10,16 +10,16 @@ use super::Step;
 /// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
 const SKIN: f64 = 0.1;
 /// Distance, relative to the mesh size, within which pairs are kept.
-pub(crate) const CUTOFF: f64 = 0.25;
+pub const CUTOFF: f64 = 0.25;
 /// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
-pub(super) const REACH: f64 = 0.005;
+pub const REACH: f64 = 0.005;
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
 
 impl Step<'_> {
     /// Current positions of boundary points, and edges and nodes at them.
-    pub(super) fn locate(&mut self) {
+    pub fn locate(&mut self) {
         let clock = Instant::now();
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
@@ -34,7 +34,7 @@ impl Step<'_> {
     }
 
     /// Near pairs, when nodes have moved.
-    pub(super) fn search(&mut self) {
+    pub fn search(&mut self) {
         let clock = Instant::now();
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
@@ -57,7 +57,7 @@ impl Step<'_> {
     }
 
     /// Contacts nearer than `reach` (m); an explicit sub-step is `dt` (s) long, and 0 stands for an implicit one.
-    pub(super) fn entrance(&mut self, reach: f64, dt: f64) {
+    pub fn entrance(&mut self, reach: f64, dt: f64) {
         let clock = Instant::now();
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let size = model.covers.mesh.size;

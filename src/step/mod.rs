@@ -1,12 +1,11 @@
-//! One internal step by either integrator (`explicit`, `implicit`), checks, events and reports. Knows nothing of
-//! files.
+//! One internal step by the explicit integrator, or by another that is given to it, checks, events and reports. Knows
+//! nothing of files.
 
 mod applied;
 mod contacts;
 mod events;
 mod explicit;
 mod guard;
-mod implicit;
 mod integrator;
 mod prepare;
 mod quiet;
@@ -16,10 +15,13 @@ mod settle;
 mod times;
 
 pub use applied::{acceleration, push_forces};
-pub(crate) use contacts::CUTOFF;
+pub use contacts::{CUTOFF, REACH};
 pub use guard::{Failure, StepError};
+pub use integrator::Integrator;
 pub use prepare::{begin_stage, prepare};
-pub use report::{StepReport, block_motion, energies, momentum};
+pub use records::base_motion;
+pub use report::{StepReport, block_motion, energies, momentum, potential, speed_max, stored, strain, unbalanced};
+pub use times::{StepTimes, Window};
 
 use crate::contact::VertexEdge;
 use crate::mechanics::Damping;
@@ -27,18 +29,14 @@ use crate::state::{Model, State, Workspace};
 
 use contacts::CONTACTS;
 use explicit::Explicit;
-use integrator::Integrator;
-use times::{StepTimes, Window};
 
 /// Covers from which a step is worth other threads than the caller's own.
 pub const THREADS_FROM: usize = 4096;
 
 /// The integrator of a model: the one place that chooses.
 fn integrator_of(model: &Model) -> &dyn Integrator {
-    match &model.implicit {
-        Some(implicit) => implicit,
-        None => &Explicit,
-    }
+    let other = model.integrator.as_ref().and_then(|other| other.get::<Box<dyn Integrator>>());
+    other.map_or(&Explicit, |other| &**other)
 }
 
 /// How a stage treats velocities and gravity.
@@ -135,7 +133,7 @@ pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, 
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
-fn ramp(regime: Regime, stage_time: f64) -> f64 {
+pub fn ramp(regime: Regime, stage_time: f64) -> f64 {
     match regime {
         Regime::Static { ramp } if ramp > 0.0 => {
             let x = (stage_time / ramp).clamp(0.0, 1.0);
@@ -146,18 +144,24 @@ fn ramp(regime: Regime, stage_time: f64) -> f64 {
 }
 
 /// One step in progress.
-struct Step<'a> {
-    model: &'a Model,
-    regime: Regime,
-    state: &'a mut State,
-    workspace: &'a mut Workspace,
-    time: f64,
-    report: bool,
+pub struct Step<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// How the stage treats velocities and gravity.
+    pub regime: Regime,
+    /// The state, which the step changes.
+    pub state: &'a mut State,
+    /// Buffers.
+    pub workspace: &'a mut Workspace,
+    /// Simulated time (s).
+    pub time: f64,
+    /// Whether a report of the start is wanted.
+    pub report: bool,
     damping: Damping,
     /// Whether all speeds were found finite and below the limit.
     is_sound: bool,
     /// Whether the matrix of an implicit step was not positive definite however short the sub-step.
-    singular: bool,
+    pub singular: bool,
 }
 
 impl<'a> Step<'a> {

@@ -44,7 +44,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
 impl Step<'_> {
     /// What the supports answer to in a sub-step: springs to the position at its end (Eq. 23), dashpots to the
     /// mean of the velocities before and after it (Eqs. 46, 47).
-    pub(super) fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
+    pub fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
         let (model, state) = (self.model, &*self.state);
         let regime = self.regime;
         let workspace = &mut *self.workspace;

@@ -31,13 +31,13 @@ pub struct StepReport {
 
 /// Net over applied force, or their squares (Eq. 19). Where nothing is applied it is 1, all being out of balance, or 0
 /// when nothing is; so it is finite.
-pub(super) fn unbalanced(net: f64, applied: f64) -> f64 {
+pub fn unbalanced(net: f64, applied: f64) -> f64 {
     if applied > 0.0 { (net / applied).min(f64::MAX) } else { f64::from(net > 0.0) }
 }
 
 /// Largest speed (m/s) of rock: of the corners of its blocks. Covers may be faster, since their stars lie outside small
 /// blocks.
-pub(super) fn speed_max(model: &Model, state: &State) -> f64 {
+pub fn speed_max(model: &Model, state: &State) -> f64 {
     let boundary = &model.boundary;
     boundary.edges().map(|k| boundary.sample(k, &state.velocity).norm_squared()).fold(0.0, f64::max).sqrt()
 }
@@ -53,14 +53,14 @@ pub(super) fn kinetic(model: &Model, mass_matrix: &MassMatrix, displacement: &[V
 }
 
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
-pub(super) fn strain(model: &Model, state: &State) -> f64 {
+pub fn strain(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
     let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e);
     covers.elements().filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
 }
 
 /// Potential energy (J/m) of gravity relative to the reference configuration.
-pub(super) fn potential(model: &Model, state: &State) -> f64 {
+pub fn potential(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
     (0..covers.cover_count())
         .filter(|&i| !state.removed[covers.cover_block[i]])
@@ -69,7 +69,7 @@ pub(super) fn potential(model: &Model, state: &State) -> f64 {
 }
 
 /// Energy (J/m) stored in the springs of contacts and supports.
-pub(super) fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64 {
+pub fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64 {
     let support = |row: &crate::contact::SupportRow| {
         let support = &model.supports[row.support as usize];
         if support.is_dashpot() {

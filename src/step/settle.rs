@@ -82,7 +82,7 @@ fn history_of(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -
 
 impl Step<'_> {
     /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
-    pub(super) fn settle_contacts(&mut self, StepTimes { dt, kick, .. }: StepTimes) {
+    pub fn settle_contacts(&mut self, StepTimes { dt, kick, .. }: StepTimes) {
         let state = &mut *self.state;
         let Workspace { contacts, predicted, outcomes, frames, strength, serial, .. } = &mut *self.workspace;
         state.contacts.resize(contacts.len(), ContactHistory::default());

@@ -4,7 +4,7 @@ use super::Step;
 
 /// Times of a sub-step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StepTimes {
+pub struct StepTimes {
     /// Length of the sub-step (s), for which covers move.
     pub dt: f64,
     /// Time (s) for which its forces act: the mean of this sub-step and the one before (Eq. 10).
@@ -24,7 +24,7 @@ pub struct Window {
 
 impl Step<'_> {
     /// Times of the sub-step of `dt` (s) that begins now.
-    pub(super) fn times(&self, dt: f64) -> StepTimes {
+    pub fn times(&self, dt: f64) -> StepTimes {
         let (time, before) = (self.time, self.state.dt_last);
         let window = Window { from: time - 0.5 * before, to: time + 0.5 * dt };
         StepTimes { dt, kick: 0.5 * (before + dt), window }

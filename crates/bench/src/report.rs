@@ -84,6 +84,7 @@ const BUILD_HEAD: [&str; 11] = [
     "checkpoint ms",
 ];
 
+/// Appends the line of the machine and its limits.
 pub fn push_machine(text: &mut String, machine: &Machine) {
     let processor = machine.processor.as_deref().unwrap_or("unknown processor");
     let _ = writeln!(text, "Machine: {processor}, {} cores, {}.\n", machine.cores, machine.caches.join(", "));
@@ -97,6 +98,7 @@ pub fn push_machine(text: &mut String, machine: &Machine) {
     push_table(text, "Limits, measured in the same run", &["limit", "one thread", "all"], bandwidth.chain(peak));
 }
 
+/// Appends a table under a heading; nothing where it has no rows.
 pub fn push_table(text: &mut String, title: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {
@@ -221,6 +223,7 @@ pub fn digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// The cell of a figure that is not there.
 pub fn none() -> String {
     "–".to_owned()
 }

@@ -42,7 +42,7 @@ pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> Exit
 fn look(case: &CaseArguments, screen: &mut Screen) -> Result<(Simulation, Check), CaseError> {
     let loaded = case.load()?;
     let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
-    let build = Simulation::build(loaded.case.clone(), &mut |stage| screen.build(stage));
+    let build = enmm_implicit::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
     let found = enmm_run::check(&simulation, &loaded.warnings);

@@ -111,7 +111,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
 
 /// Reports possible causes why a slope does not come to rest.
 fn warn(loaded: &LoadedCase) {
-    let built = Simulation::new(loaded.case.clone()).map(|simulation| simulation.built().warnings.clone());
+    let built = enmm_implicit::simulation(loaded.case.clone()).map(|simulation| simulation.built().warnings.clone());
     let warnings = loaded.warnings.iter().cloned().chain(built.unwrap_or_default());
     warnings.for_each(|warning| tell_line(&format!("warning: {warning}")));
 }

@@ -149,7 +149,7 @@ pub fn search(
 ) -> Result<Found, FosError> {
     options.check().map_err(FosError::Options)?;
     let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
-    let search = ReductionOptions { low, high, tolerance, interrupt };
+    let search = ReductionOptions { low, high, tolerance, interrupt, integrators: &enmm_implicit::Both };
     let mut find = || mechanisms(&loaded.case, which, &search, hear);
     let found = match options.threads {
         None => find(),

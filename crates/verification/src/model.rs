@@ -57,7 +57,7 @@ impl Setup {
         let mut case = io::parse_case(&text, name, Path::new("."))?.case;
         self.cases.push((name.to_owned(), text));
         case.solver.integrator = self.integrator;
-        Ok(Simulation::new(case)?)
+        Ok(enmm_implicit::simulation(case)?)
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod bolts;
 mod geometry;
-mod implicit;
+mod integrators;
 mod locator;
 mod memory;
 mod ports;
@@ -20,10 +20,11 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Model, Port, State, Water};
+use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, State, Water};
 
 use locator::Locator;
 
+pub use integrators::{ExplicitAlone, Integrators};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
@@ -51,10 +52,11 @@ pub struct Built {
 /// Builds the model of a case; `tell` hears of every part of the build as it begins.
 ///
 /// # Errors
-/// The first key of the case that does not fit the model: geometry, references to positions without rock, memory.
-pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
+/// The first key of the case that does not fit the model: integrator, geometry, references to positions without rock,
+/// memory.
+pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
     case.validate()?;
-    implicit::know(case)?;
+    integrators.refusal(case).map_or(Ok(()), Err)?;
     let geometry::Plane { mesh, mut arrangement, joints } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
@@ -62,7 +64,9 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (model, bolt_warnings) = model(case, &joints, covers, &outlines, tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, covers, &outlines, tolerance, tell)?;
+    model.integrator =
+        integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     tell(BuildStage::Start);
     quiet::check_columns(&model)?;
     warnings::check_stages(case, &model)?;
@@ -120,7 +124,7 @@ fn model(
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
     let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
-        implicit: implicit::implicit(case, &covers, &rocks, &element_rock),
+        integrator: None,
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
@@ -191,12 +195,15 @@ fn stiffness_over(length: f64, case: &Case, rocks: &[Elasticity]) -> f64 {
     case.solver.contact_stiffness * rocks.iter().map(Elasticity::confined_modulus).fold(0.0, f64::max) / length
 }
 
+/// Explicit steps in the default implicit one.
+const IMPLICIT_STEPS: f64 = 20.0;
+
 /// The internal step: an integer fraction of a tenth of the communication step, within the stability limit.
 fn internal_step(case: &Case, critical: f64) -> f64 {
     let solver = &case.solver;
     let stable = match solver.integrator {
         case::Integrator::Explicit => solver.dt_safety * critical,
-        case::Integrator::Implicit => solver.implicit_step.unwrap_or(implicit::STEPS * solver.dt_safety * critical),
+        case::Integrator::Implicit => solver.implicit_step.unwrap_or(IMPLICIT_STEPS * solver.dt_safety * critical),
     };
     step_below(stable.min(solver.dt_max.unwrap_or(f64::INFINITY)), case)
 }

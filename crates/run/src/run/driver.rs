@@ -119,7 +119,8 @@ struct Driver<'a> {
 pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
     let clock = Instant::now();
     let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
-    let mut simulation = Simulation::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
+    let mut simulation =
+        enmm_implicit::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
     let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
     let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;

@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 use enmm::model::case::key::Key;
-use enmm::model::case::{Case, Invalid, JointLawKind, StageKind};
+use enmm::model::case::{Case, Invalid, JointLawKind, Solver, StageKind};
 
 use crate::left_out_stages;
 
@@ -13,6 +13,9 @@ use crate::left_out_stages;
 pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     case.validate()?;
     let mut case = case.clone();
+    // No step is taken, so the integrator and its keys do not matter.
+    let Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, .. } = Solver::default();
+    case.solver = Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, ..case.solver };
     let count = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
     if count == 0 {
         let message = "is \"dynamic\", but limit analysis looks at the slope as its static stages leave it: begin with \

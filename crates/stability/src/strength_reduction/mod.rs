@@ -15,8 +15,8 @@ use enmm::geometry::Point;
 use enmm::step::StepError;
 
 use super::limit_analysis::{self, Bound};
-use enmm::model::Simulation;
 use enmm::model::case::{Case, Invalid};
+use enmm::model::{ExplicitAlone, Integrators, Simulation};
 
 pub use judge::{Reason, Verdict};
 pub use mechanism::{MechanismOptions, mechanisms};
@@ -38,11 +38,13 @@ pub struct ReductionOptions<'a> {
     pub tolerance: f64,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
+    /// The integrators from which the case names one.
+    pub integrators: &'a dyn Integrators,
 }
 
 impl Default for ReductionOptions<'_> {
     fn default() -> Self {
-        Self { low: None, high: None, tolerance: TOLERANCE, interrupt: None }
+        Self { low: None, high: None, tolerance: TOLERANCE, interrupt: None, integrators: &ExplicitAlone }
     }
 }
 

@@ -1,7 +1,5 @@
 //! The slope at rest before its strength is reduced.
 
-use std::sync::atomic::AtomicBool;
-
 use super::slip::slide;
 use super::{FACTOR_RANGE, ReductionError, ReductionOptions};
 use crate::left_out_stages;
@@ -54,7 +52,7 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
     let mut first_caught = None;
     loop {
         let is_last = 2.0 * factor * FACTOR_RANGE[0] > 1.0;
-        match settle_with(&case, factor, options.interrupt)? {
+        match settle_with(&case, factor, options)? {
             Settled::AtRest(simulation) => {
                 if let Some((_, _, slip)) = first_caught {
                     warnings.push(caught_at_rest(slip, factor));
@@ -136,13 +134,13 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
 }
 
 /// Runs all static stages with a factor on the strength.
-fn settle_with(case: &Case, factor: f64, interrupt: Option<&AtomicBool>) -> Result<Settled, ReductionError> {
-    let mut simulation = Simulation::new(case.clone())?;
+fn settle_with(case: &Case, factor: f64, options: &ReductionOptions) -> Result<Settled, ReductionError> {
+    let mut simulation = Simulation::with_integrators(case.clone(), options.integrators, &mut |_| ())?;
     let drive = simulation.drive();
     (drive.from.strength_factor, drive.to.strength_factor) = (factor, factor);
     let mut caught: Option<f64> = None;
     while simulation.stage().kind == StageKind::Static {
-        let outcome = simulation.run_stage_with(REST_STEPS, interrupt);
+        let outcome = simulation.run_stage_with(REST_STEPS, options.interrupt);
         let (time, stage) = (simulation.time(), simulation.stage().name.clone());
         match outcome {
             Ok(None) => return Err(ReductionError::Interrupted),

@@ -11,6 +11,7 @@ use enmm::model::Simulation;
 use enmm::model::case::Integrator;
 use enmm::state::Counters;
 use enmm_bench::Machine;
+use enmm_implicit::ImplicitBuffers;
 
 use crate::{Plot, Setup, Trouble, Values};
 
@@ -179,14 +180,18 @@ impl Run {
 /// Bytes of matrix and factor, of the fields over covers and of the contacts.
 fn bytes(simulation: &Simulation) -> usize {
     let workspace = simulation.workspace();
-    let [matrix, factor] = workspace.implicit.matrix.bytes();
     let vectors = [&workspace.load_force, &workspace.predicted, &workspace.damped, &workspace.increment];
-    let implicit = [&workspace.implicit.moved, &workspace.implicit.offset, &workspace.implicit.applied];
-    let fields: usize = vectors.iter().chain(&implicit).map(|v| v.len()).sum();
-    let state = 2 * simulation.state().displacement.len();
-    let places = workspace.implicit.contact_slots.len() * 144 + workspace.implicit.element_slots.len() * 24;
+    let fields = vectors.map(|v| v.len()).iter().sum::<usize>() + 2 * simulation.state().displacement.len();
     let contacts = workspace.contacts.len() * size_of::<enmm::contact::VertexEdge>();
-    matrix + factor + (fields + state) * size_of::<Vector>() + contacts + places
+    fields * size_of::<Vector>() + contacts + enmm_implicit::buffers(workspace).map_or(0, of_implicit)
+}
+
+/// Bytes of matrix, factor and fields of the implicit integrator.
+fn of_implicit(buffers: &ImplicitBuffers) -> usize {
+    let [matrix, factor] = buffers.matrix.bytes();
+    let fields = [&buffers.moved, &buffers.offset, &buffers.applied].map(|v| v.len()).iter().sum::<usize>();
+    let places = buffers.contact_slots.len() * 144 + buffers.element_slots.len() * 24;
+    matrix + factor + fields * size_of::<Vector>() + places
 }
 
 /// Processor time (s) of all threads of this process so far; 0 where the system does not tell.

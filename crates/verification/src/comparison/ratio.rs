@@ -183,15 +183,15 @@ impl Runner {
             elements: slope.covers.element_count(),
             dt: slope.dt,
             step,
-            parts: if slope.implicit.is_some() { [assembly.max(0.0), factor, solve] } else { [0.0; 3] },
-            counts: if slope.implicit.is_some() { counts } else { [0.0; 2] },
+            parts: if slope.integrator.is_some() { [assembly.max(0.0), factor, solve] } else { [0.0; 3] },
+            counts: if slope.integrator.is_some() { counts } else { [0.0; 2] },
             error: (self.squares[0] / self.squares[1]).sqrt(),
         }
     }
 
     /// Processor time (s) of a numeric factorisation and of a solution, least of several.
     fn kernels(&self) -> [f64; 2] {
-        let buffers = &self.simulation.workspace().implicit;
+        let Some(buffers) = enmm_implicit::buffers(self.simulation.workspace()) else { return [0.0; 2] };
         let (mut matrix, mut unknowns) = (buffers.matrix.clone(), buffers.unknowns.clone());
         if matrix.is_empty() {
             return [0.0; 2];

@@ -119,7 +119,8 @@ const BRACKET: f64 = 0.01;
 fn reduce(setup: &mut Setup, elements: f64, stiffer: f64, [low, high]: [Option<f64>; 2]) -> Result<Reduction, Trouble> {
     let text = text(setup, elements, stiffer);
     let case = setup.simulation(&format!("height_over_{elements}_stiffness_{stiffer}"), text)?.case().clone();
-    let options = ReductionOptions { low, high, tolerance: BRACKET, ..Default::default() };
+    let options =
+        ReductionOptions { low, high, tolerance: BRACKET, integrators: &enmm_implicit::Both, ..Default::default() };
     Ok(factor_of_safety(&case, &options, &mut |_, _| {})?)
 }
 

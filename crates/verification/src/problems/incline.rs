@@ -12,7 +12,11 @@ use crate::{Plot, Row, Series, Setup, Tolerance, Trouble};
 pub fn reduce(setup: &mut Setup, name: &str, text: String) -> Result<Reduction, Trouble> {
     let case = setup.simulation(name, text)?.case().clone();
     let tolerance = if setup.quick { 5e-3 } else { 2e-3 };
-    let reduction = factor_of_safety(&case, &ReductionOptions { tolerance, ..Default::default() }, &mut |_, _| {})?;
+    let reduction = factor_of_safety(
+        &case,
+        &ReductionOptions { tolerance, integrators: &enmm_implicit::Both, ..Default::default() },
+        &mut |_, _| {},
+    )?;
     match reduction.factor() {
         Some(_) => Ok(reduction),
         None => Err(Trouble(format!("{name}: no factor of safety was found: {:?}", reduction.end))),

@@ -83,7 +83,7 @@ fn attempt(text: &str, base: &Path, trace: &mut Trace) -> Result<Outcome, String
     if is_flood(&loaded.case) {
         return Ok(Outcome::Skipped);
     }
-    let model = Simulation::new(loaded.case.clone());
+    let model = enmm_implicit::simulation(loaded.case.clone());
     trace.say(|| format!("# built: {:?}", model.as_ref().map(|model| model.model().covers.block_count())));
     match model {
         Ok(model) => watched(model, &loaded, trace),
@@ -104,7 +104,9 @@ fn watched(mut model: Simulation, loaded: &LoadedCase, trace: &mut Trace) -> Res
         // Most models have no bound, and say so.
         let _ = bound(loaded);
     }
-    let Ok(mut model) = Simulation::new(loaded.case.clone()) else { return Err("it builds once only".to_owned()) };
+    let Ok(mut model) = enmm_implicit::simulation(loaded.case.clone()) else {
+        return Err("it builds once only".to_owned());
+    };
     model.set_serial(true);
     for step in 0..STEPS {
         trace.say(|| format!("# step {step}"));

@@ -50,7 +50,7 @@ fn attempt(random: &mut Random, trace: &mut Trace) -> Result<Outcome, String> {
     let text = case(outline, shift, random);
     trace.say(|| text.clone());
     let loaded = parse_case(&text, "case.toml", Path::new("")).map_err(|error| format!("not read: {error}"))?;
-    let mut model = match Simulation::new(loaded.case) {
+    let mut model = match enmm_implicit::simulation(loaded.case) {
         Ok(model) => model,
         Err(error) => {
             trace.say(|| format!("# {error}"));

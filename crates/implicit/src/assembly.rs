@@ -1,22 +1,24 @@
 //! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
 
-use crate::contact::{Boundary, ContactState, Pair, VertexEdge};
-use crate::cover::CoverId;
-use crate::geometry::Vector;
-use crate::mechanics::{Deformation, NotPositive, PAIRS, UNCOUPLED, stiffness_block};
+use enmm::contact::{Boundary, ContactState, Pair, VertexEdge};
+use enmm::cover::CoverId;
+use enmm::geometry::Vector;
+use enmm::mechanics::Deformation;
 
-use super::{Inertia, Step};
+use super::consistent::{PAIRS, stiffness_block};
+use super::cover_matrix::{NotPositive, UNCOUPLED};
+use super::interval::{Inertia, Substep};
 
-impl Step<'_> {
+impl Substep<'_, '_> {
     /// The pattern, when the near pairs are new, and the slots of this sub-step's contacts in it.
     ///
     /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
     pub(super) fn implicit_places(&mut self) {
-        if self.workspace.implicit.matrix.is_empty() {
+        if self.buffers.matrix.is_empty() {
             self.set_pattern();
         }
-        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
-        let buffers = &mut workspace.implicit;
+        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let buffers = &mut *self.buffers;
         let matrix = &buffers.matrix;
         buffers.contact_slots.clear();
         buffers.contact_slots.extend(workspace.contacts.iter().map(|contact| {
@@ -29,9 +31,9 @@ impl Step<'_> {
     }
 
     fn set_pattern(&mut self) {
-        let covers = &self.model.covers;
-        let boundary = &self.model.boundary;
-        let buffers = &mut self.workspace.implicit;
+        let covers = &self.step.model.covers;
+        let boundary = &self.step.model.boundary;
+        let buffers = &mut self.buffers;
         let free = |i: CoverId| !(buffers.held[2 * i.index()] && buffers.held[2 * i.index() + 1]);
         let pairs = &mut buffers.pairs;
         pairs.clear();
@@ -43,7 +45,7 @@ impl Step<'_> {
         for ids in &covers.element_covers {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
-        for near in &self.state.neighbours.pairs {
+        for near in &self.step.state.neighbours.pairs {
             let node = boundary.covers[boundary.node_point[near.node]];
             for a in node {
                 boundary.covers_on(near.edge).for_each(|b| couple(a, b));
@@ -64,7 +66,7 @@ impl Step<'_> {
 
     /// Assembles the matrix at the positions reached and the states of the contacts, and factorises it.
     pub(super) fn implicit_factorise(&mut self, inertia: &Inertia) -> Result<(), NotPositive> {
-        self.workspace.implicit.matrix.zero();
+        self.buffers.matrix.zero();
         self.add_elements(inertia.element_mass, inertia.factor, 1.0);
         self.add_contacts();
         self.add_supports();
@@ -73,18 +75,18 @@ impl Step<'_> {
 
     /// Holds what is held and factorises.
     pub(super) fn finish_matrix(&mut self) -> Result<(), NotPositive> {
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         if buffers.any_held {
             buffers.matrix.hold(&buffers.held);
         }
-        self.state.counters.factorisations += 1;
+        self.step.state.counters.factorisations += 1;
         buffers.matrix.factorise()
     }
 
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, element_mass: &[[f64; 6]], mass: f64, stiffness: f64) {
-        let (model, state) = (self.model, &*self.state);
-        let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
+        let (model, state) = (self.step.model, &*self.step.state);
+        let (covers, buffers) = (&model.covers, &mut self.buffers);
         for (e, slots) in buffers.element_slots.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
@@ -105,8 +107,8 @@ impl Step<'_> {
 
     /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
     fn add_contacts(&mut self) {
-        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
-        let buffers = &mut workspace.implicit;
+        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let buffers = &mut *self.buffers;
         buffers.factored.clear();
         for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
             buffers.factored.push(contact.history.state);
@@ -128,9 +130,9 @@ impl Step<'_> {
     }
 
     fn add_supports(&mut self) {
-        let model = self.model;
-        let matrix = &mut self.workspace.implicit.matrix;
-        for row in &self.workspace.rows {
+        let model = self.step.model;
+        let matrix = &mut self.buffers.matrix;
+        for row in &self.step.workspace.rows {
             let support = &model.supports[row.support as usize];
             let d = support.direction;
             let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);

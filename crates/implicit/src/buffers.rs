@@ -1,35 +1,15 @@
-//! What the implicit integrator keeps: its choices and masses (fixed), and its buffers.
+//! Buffers of the implicit integrator.
 
-use crate::contact::ContactState;
-use crate::cover::CoverId;
-use crate::geometry::Vector;
-use crate::mechanics::CoverMatrix;
+use enmm::contact::ContactState;
+use enmm::cover::CoverId;
+use enmm::geometry::Vector;
+use enmm::state::Buffers;
 
-/// Newmark's rule: velocities and positions from the accelerations at both ends of a step (Eq. 67).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rule {
-    /// β = ½, γ = 1: the acceleration of the end holds throughout; damps fast motion.
-    Constant,
-    /// β = ¼, γ = ½: the mean of both; keeps energy.
-    Trapezoidal,
-}
-
-/// Choices and masses of the implicit integrator.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Implicit {
-    /// Newmark's rule.
-    pub rule: Rule,
-    /// Most open–close iterations before a sub-step is cut.
-    pub iterations_max: u32,
-    /// Largest displacement (m) in a sub-step.
-    pub displacement_max: f64,
-    /// ∫ρ w_a w_b (kg/m) of each element for the pairs of its covers (Eq. 68).
-    pub element_mass: Vec<[f64; 6]>,
-}
+use super::cover_matrix::CoverMatrix;
 
 /// Buffers of the implicit integrator.
 #[derive(Debug, Clone, Default)]
-pub struct ImplicitWorkspace {
+pub struct ImplicitBuffers {
     /// System matrix of the step.
     pub matrix: CoverMatrix,
     /// Positions in the matrix of each element's pairs of covers.
@@ -70,4 +50,18 @@ pub struct ImplicitWorkspace {
     pub cautious: bool,
     /// State of each contact that the factor holds.
     pub factored: Vec<ContactState>,
+}
+
+impl Buffers for ImplicitBuffers {
+    fn copy(&self) -> Box<dyn Buffers> {
+        Box::new(self.clone())
+    }
+
+    fn bytes(&self) -> usize {
+        let Self { moved, offset, applied, applied_before, internal, internal_before, residual, field, .. } = self;
+        let fields = [moved, offset, applied, applied_before, internal, internal_before, residual, field];
+        fields.map(|field| size_of_val(&**field)).iter().sum::<usize>()
+            + size_of_val(&*self.unknowns)
+            + size_of_val(&*self.held)
+    }
 }

@@ -2,7 +2,8 @@
 
 use crate::common::claims::{assert_ledger, motion};
 use crate::common::parts::{dynamic, rock, turn};
-use crate::common::{run_stage, simulation};
+use crate::common::run_stage;
+use crate::simulation;
 use enmm::model::Simulation;
 
 const IMPLICIT: &str = "[solver]\nintegrator = \"implicit\"\n";
@@ -82,6 +83,6 @@ fn what_it_does_not_know_is_refused() {
     );
     let loaded = enmm_io::parse_case(&text, "test.toml", std::path::Path::new("."));
     let case = loaded.unwrap_or_else(|e| panic!("{e}")).case;
-    let message = Simulation::new(case).err().map(|e| e.to_string()).unwrap_or_default();
+    let message = enmm_implicit::simulation(case).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(message.contains("implicit does not know") && message.contains("explicit"), "{message}");
 }

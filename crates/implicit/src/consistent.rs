@@ -1,9 +1,9 @@
 //! Consistent mass and corotated stiffness of one element, for the implicit integrator (Eqs. 68, 69).
 
-use crate::cover::CoverId;
-use crate::geometry::{Vector, polygon};
+use enmm::cover::CoverId;
+use enmm::geometry::{Vector, polygon};
 
-use super::Elasticity;
+use enmm::mechanics::Elasticity;
 
 /// The six pairs of an element's three covers, in the order in which element matrices are stored.
 pub const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
@@ -44,8 +44,8 @@ pub fn stiffness_block(area: f64, rock: &Elasticity, ga: Vector, gb: Vector) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
-    use crate::mechanics::Deformation;
+    use enmm::geometry::Point;
+    use enmm::mechanics::Deformation;
 
     const UP: [Vector; 3] = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
 

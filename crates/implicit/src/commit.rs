@@ -2,37 +2,39 @@
 
 use std::time::Instant;
 
-use crate::contact::ContactState;
-use crate::state::{Implicit, Ledger, Rule};
+use enmm::contact::ContactState;
+use enmm::state::Ledger;
+use enmm::step::{Regime, StepReport, potential, speed_max, stored, strain, unbalanced};
 
 use super::balance::norm;
-use super::{Inertia, Regime, Step, StepReport, kinetic_energy};
-use crate::step::report::{potential, speed_max, stored, strain, unbalanced};
+use super::choices::{Implicit, Rule};
+use super::interval::{Inertia, Substep};
+use super::motion::kinetic_energy;
 
-impl Step<'_> {
+impl Substep<'_, '_> {
     /// Ends a sub-step with the forces and positions that the iteration left.
     pub(super) fn implicit_commit(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let clock = Instant::now();
         let mut works = self.implicit_works(implicit, inertia);
-        let workspace = &mut *self.workspace;
-        for (mean, moved) in workspace.predicted.iter_mut().zip(&workspace.implicit.moved) {
+        let workspace = &mut *self.step.workspace;
+        for (mean, moved) in workspace.predicted.iter_mut().zip(&self.buffers.moved) {
             *mean = moved / inertia.dt;
         }
-        self.settle_contacts(self.times(inertia.dt));
+        self.step.settle_contacts(self.step.times(inertia.dt));
         self.move_covers(implicit, inertia);
-        if let Regime::Dynamic { damping } = self.regime {
+        if let Regime::Dynamic { damping } = self.step.regime {
             works.damping += self.implicit_damp(implicit, damping, inertia);
         }
-        self.state.ledger.add_works(&works, 1.0);
-        self.state.dt_last = 0.0;
-        self.time += inertia.dt;
-        self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
+        self.step.state.ledger.add_works(&works, 1.0);
+        self.step.state.dt_last = 0.0;
+        self.step.time += inertia.dt;
+        self.step.workspace.seconds.commit += clock.elapsed().as_secs_f64();
     }
 
     /// Positions, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
     fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
-        let (state, workspace) = (&mut *self.state, &*self.workspace);
-        let buffers = &workspace.implicit;
+        let (state, workspace) = (&mut *self.step.state, &*self.step.workspace);
+        let buffers = &*self.buffers;
         for i in 0..buffers.moved.len() {
             state.displacement[i] += buffers.moved[i];
             let mean = workspace.predicted[i];
@@ -52,14 +54,14 @@ impl Step<'_> {
     fn implicit_works(&mut self, implicit: &Implicit, inertia: &Inertia) -> Ledger {
         let mut works = self.bearing_works(inertia);
         works.external_work = self.load_work(inertia);
-        let buffers = &self.workspace.implicit;
+        let buffers = &self.buffers;
         let change = buffers.internal_before.iter().zip(&buffers.internal).zip(&buffers.moved);
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
-            self.workspace.implicit.field.clone_from(&self.workspace.implicit.moved);
+            self.buffers.field.clone_from(&self.buffers.moved);
             self.mass_times_field(implicit);
-            let buffers = &self.workspace.implicit;
+            let buffers = &self.buffers;
             let spent: f64 = buffers.residual.iter().zip(&buffers.moved).map(|(p, u)| p.dot(u)).sum();
             works.damping += inertia.factor * spent;
         }
@@ -67,10 +69,10 @@ impl Step<'_> {
     }
 
     fn bearing_works(&self, inertia: &Inertia) -> Ledger {
-        let workspace = &*self.workspace;
-        let buffers = &workspace.implicit;
+        let workspace = &*self.step.workspace;
+        let buffers = &*self.buffers;
         let mut works = Ledger::default();
-        let setting = workspace.setting(self.model, self.state);
+        let setting = workspace.setting(self.step.model, self.step.state);
         let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
         for (contact, before) in workspace.contacts.iter().zip(&buffers.forces_before) {
             let [opened, sheared] = contact.relative(setting.boundary, &buffers.moved);
@@ -83,7 +85,7 @@ impl Step<'_> {
             }
         }
         for (row, before) in workspace.rows.iter().zip(&buffers.bearing_before) {
-            let support = &self.model.supports[row.support as usize];
+            let support = &self.step.model.supports[row.support as usize];
             works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
         works
@@ -91,7 +93,7 @@ impl Step<'_> {
 
     /// Work of loads, and of gravity beyond what the potential holds.
     fn load_work(&self, inertia: &Inertia) -> f64 {
-        let (model, buffers) = (self.model, &self.workspace.implicit);
+        let (model, buffers) = (self.step.model, &self.buffers);
         let mut work = 0.0;
         for (i, moved) in buffers.moved.iter().enumerate() {
             let mut force = buffers.applied[i] * inertia.end;
@@ -105,19 +107,19 @@ impl Step<'_> {
 
     /// Energies and the unbalanced ratio at the start of this sub-step.
     pub(super) fn implicit_report(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
-        let model = self.model;
+        let model = self.step.model;
         let unbalanced = self.implicit_unbalanced();
-        let (state, workspace) = (&*self.state, &*self.workspace);
+        let (state, workspace) = (&*self.step.state, &*self.step.workspace);
         let mut ledger = state.ledger;
         ledger.kinetic = kinetic_energy(model, implicit, &workspace.mass_matrix, &state.velocity);
-        if let Regime::Static { .. } = self.regime {
+        if let Regime::Static { .. } = self.step.regime {
             ledger.damping -= ledger.kinetic;
         }
         ledger.strain = strain(model, state);
         ledger.potential = potential(model, state);
         ledger.stored = stored(model, state, workspace);
         StepReport {
-            time: self.time,
+            time: self.step.time,
             dt,
             ledger,
             unbalanced,
@@ -131,7 +133,7 @@ impl Step<'_> {
     /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
     fn implicit_unbalanced(&mut self) -> f64 {
         self.start_balance();
-        let (state, buffers) = (&*self.state, &self.workspace.implicit);
+        let (state, buffers) = (&*self.step.state, &self.buffers);
         let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
         unbalanced(norm(&buffers.residual), applied)
     }

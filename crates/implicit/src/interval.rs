@@ -1,26 +1,22 @@
-//! One step of the implicit integrator: Newmark's rule, global stiffness and open–close iteration with
-//! refactorisation, on the same covers, contacts and histories as the explicit one.
+//! One step: sub-steps that are cut until they settle.
 
-mod assembly;
-mod balance;
-mod commit;
-mod motion;
-mod open_close;
-
+use std::any::Any;
 use std::time::Instant;
 
-use crate::contact::VertexEdge;
-use crate::geometry::Vector;
-use crate::mechanics::MassMatrix;
-use crate::state::{Implicit, Model, Rule, State, Workspace};
+use enmm::contact::VertexEdge;
+use enmm::geometry::Vector;
+use enmm::mechanics::MassMatrix;
+use enmm::state::{Buffers, Model, State, Workspace};
+use enmm::step::{
+    CUTOFF, Integrator, REACH, Regime, Step, StepReport, Window, acceleration, base_motion, push_forces, ramp,
+};
 
-use self::motion::kinetic_energy;
-use super::contacts::{CUTOFF, REACH};
-use super::integrator::Integrator;
-use super::{Regime, Step, StepReport, Window, applied, ramp, records};
+use super::buffers::ImplicitBuffers;
+use super::choices::{Implicit, Rule};
+use super::motion::{self, kinetic_energy};
 
 /// Factor on a sub-step that has not settled.
-const CUT: f64 = 0.3;
+pub const CUT: f64 = 0.3;
 /// Most cuts in a row; a sub-step after that is taken as it is, and counted as unsettled.
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
@@ -29,7 +25,8 @@ const REACH_STEPS: f64 = 2.0;
 impl Integrator for Implicit {
     /// The matrix gets its pattern in the next step.
     fn prepare(&self, model: &Model, workspace: &mut Workspace) {
-        let Workspace { mass_matrix, implicit: buffers, .. } = workspace;
+        let mut buffers = taken(workspace);
+        let mass_matrix = &workspace.mass_matrix;
         let covers = model.covers.cover_count();
         for field in [
             &mut buffers.moved,
@@ -49,6 +46,7 @@ impl Integrator for Implicit {
         buffers.held.extend(mass_matrix.inverse.iter().flat_map(|inverse| [inverse.x == 0.0, inverse.y == 0.0]));
         buffers.any_held = buffers.held.contains(&true);
         buffers.matrix.clear();
+        workspace.of_integrator = Some(buffers);
     }
 
     fn stop(&self, model: &Model, state: &mut State, stage: u32) {
@@ -62,19 +60,19 @@ impl Integrator for Implicit {
     }
 
     fn cover(&self, step: &mut Step, dt: f64) -> StepReport {
-        step.implicit_interval(self, dt)
+        with_buffers(step, |mut substep| substep.implicit_interval(self, dt))
     }
 
     fn begin(&self, step: &mut Step, dt: f64) -> StepReport {
-        step.implicit_begin(self, dt)
+        with_buffers(step, |mut substep| substep.implicit_begin(self, dt))
     }
 
     fn find_contacts(&self, step: &mut Step, dt: f64) {
-        step.implicit_contacts(dt);
+        with_buffers(step, |mut substep| substep.implicit_contacts(dt));
     }
 
     fn each_contact(&self, step: &mut Step, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
-        step.implicit_contacts(dt);
+        with_buffers(step, |mut substep| substep.implicit_contacts(dt));
         step.workspace.contacts.iter().for_each(see);
     }
 
@@ -83,24 +81,46 @@ impl Integrator for Implicit {
     }
 }
 
-/// How inertia enters a sub-step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Inertia<'a> {
-    /// Consistent mass of each element.
-    element_mass: &'a [[f64; 6]],
-    /// Length (s).
-    dt: f64,
-    /// Acceleration over displacement (1/s²): 1/(β·dt²).
-    factor: f64,
-    /// Share of the forces at the end in the mean that works.
-    end: f64,
-    /// Whether the sub-step starts from rest.
-    rests: bool,
+/// A sub-step in progress: the step of the engine, and the buffers of this integrator.
+pub struct Substep<'a, 's> {
+    /// The step.
+    pub step: &'a mut Step<'s>,
+    /// The buffers.
+    pub buffers: &'a mut ImplicitBuffers,
 }
 
-impl Step<'_> {
+/// Works on a step with the buffers that its workspace keeps.
+fn with_buffers<R>(step: &mut Step, work: impl FnOnce(Substep) -> R) -> R {
+    let mut buffers = taken(step.workspace);
+    let result = work(Substep { step, buffers: &mut buffers });
+    step.workspace.of_integrator = Some(buffers);
+    result
+}
+
+/// The buffers, out of the workspace; empty ones where there are none.
+fn taken(workspace: &mut Workspace) -> Box<ImplicitBuffers> {
+    let kept = workspace.of_integrator.take().map(|buffers: Box<dyn Buffers>| buffers as Box<dyn Any>);
+    kept.and_then(|buffers| buffers.downcast().ok()).unwrap_or_default()
+}
+
+/// How inertia enters a sub-step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertia<'a> {
+    /// Consistent mass of each element.
+    pub element_mass: &'a [[f64; 6]],
+    /// Length (s).
+    pub dt: f64,
+    /// Acceleration over displacement (1/s²): 1/(β·dt²).
+    pub factor: f64,
+    /// Share of the forces at the end in the mean that works.
+    pub end: f64,
+    /// Whether the sub-step starts from rest.
+    pub rests: bool,
+}
+
+impl Substep<'_, '_> {
     fn inertia<'a>(&mut self, implicit: &'a Implicit, dt: f64) -> Inertia<'a> {
-        let (factor, end, rests) = match (self.regime, implicit.rule) {
+        let (factor, end, rests) = match (self.step.regime, implicit.rule) {
             (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
             (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
             (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
@@ -111,7 +131,7 @@ impl Step<'_> {
     /// Inertia over displacement (1/s²) of a static sub-step (Eq. 72): that of a step from rest over a time that grows
     /// while sub-steps settle easily and is cut when one does not.
     fn static_inertia(&mut self, dt: f64) -> f64 {
-        let stretch = &mut self.state.static_stretch;
+        let stretch = &mut self.step.state.static_stretch;
         if *stretch == 0.0 {
             *stretch = 1.0;
         }
@@ -119,7 +139,7 @@ impl Step<'_> {
     }
 }
 
-impl Step<'_> {
+impl Substep<'_, '_> {
     /// Covers `dt` (s) by sub-steps: one that does not settle is cut, and the rest follows.
     fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let (mut left, mut part, mut cuts) = (dt, dt, 0);
@@ -127,21 +147,21 @@ impl Step<'_> {
         loop {
             let report = self.implicit_begin(implicit, part);
             first.get_or_insert(report);
-            self.report = false;
+            self.step.report = false;
             let inertia = self.inertia(implicit, part);
             let settled = self.implicit_open_close(implicit, &inertia);
             if !settled && cuts < CUTS_MAX {
-                self.state.counters.halved += 1;
+                self.step.state.counters.halved += 1;
                 cuts += 1;
                 if !inertia.rests {
                     part *= CUT;
                 }
                 continue;
             }
-            self.state.counters.unsettled += u64::from(!settled);
+            self.step.state.counters.unsettled += u64::from(!settled);
             self.implicit_commit(implicit, &inertia);
             left -= part;
-            if left <= 1e-9 * dt || self.singular {
+            if left <= 1e-9 * dt || self.step.singular {
                 return first.unwrap_or_default();
             }
             (part, cuts) = (left, 0);
@@ -153,63 +173,65 @@ impl Step<'_> {
         self.implicit_contacts(dt);
         let clock = Instant::now();
         self.implicit_places();
-        let first = self.state.stage_step == 0 && self.state.part == 0.0 && self.time == self.state.stage_start;
-        let loaded_at_once = first && self.regime == Regime::Static { ramp: 0.0 };
-        self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
+        let first = self.step.state.stage_step == 0
+            && self.step.state.part == 0.0
+            && self.step.time == self.step.state.stage_start;
+        let loaded_at_once = first && self.step.regime == Regime::Static { ramp: 0.0 };
+        self.implicit_loads(self.step.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
         self.implicit_internal();
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         buffers.internal_before.copy_from_slice(&buffers.internal);
         if loaded_at_once {
             self.start_balance();
-            self.state.stage_force.copy_from_slice(&self.workspace.implicit.residual);
+            self.step.state.stage_force.copy_from_slice(&self.buffers.residual);
         }
-        let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
-        if trapezoidal && self.state.acceleration.is_empty() {
+        let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.step.regime, Regime::Dynamic { .. });
+        if trapezoidal && self.step.state.acceleration.is_empty() {
             self.implicit_start_acceleration(implicit);
         }
-        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
-        if self.report { self.implicit_report(implicit, dt) } else { StepReport::default() }
+        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        if self.step.report { self.implicit_report(implicit, dt) } else { StepReport::default() }
     }
 
     /// Contacts that take part in a sub-step of `dt` (s), with the forces of the last one.
     fn implicit_contacts(&mut self, dt: f64) {
-        let searches = self.state.counters.searches;
-        self.locate();
-        self.search();
-        if self.state.counters.searches != searches {
-            self.workspace.implicit.matrix.clear();
+        let searches = self.step.state.counters.searches;
+        self.step.locate();
+        self.step.search();
+        if self.step.state.counters.searches != searches {
+            self.buffers.matrix.clear();
         }
-        let workspace = &mut *self.workspace;
-        workspace.speed_max = self.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let reach = REACH * self.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
-        self.entrance(reach.min(CUTOFF * self.model.covers.mesh.size), 0.0);
-        self.load_supports(self.times(dt));
-        let buffers = &mut self.workspace.implicit;
+        let workspace = &mut *self.step.workspace;
+        workspace.speed_max = self.step.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let reach = REACH * self.step.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
+        self.step.entrance(reach.min(CUTOFF * self.step.model.covers.mesh.size), 0.0);
+        self.step.load_supports(self.step.times(dt));
+        let buffers = &mut self.buffers;
         buffers.forces_before.clear();
-        let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        let forces = self.step.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
         buffers.forces_before.extend(forces);
         buffers.bearing_before.clear();
-        buffers.bearing_before.extend(self.workspace.rows.iter().map(|row| row.force));
+        buffers.bearing_before.extend(self.step.workspace.rows.iter().map(|row| row.force));
         buffers.moved.fill(Vector::zeros());
     }
 
     /// Forces of loads and gravity at the end of the sub-step, and at its start where they are needed.
     fn implicit_loads(&mut self, before: bool, dt: f64) {
-        let Workspace { implicit: buffers, .. } = &mut *self.workspace;
+        let buffers = &mut *self.buffers;
         for (wanted, force, time) in
-            [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.applied_before, self.time)]
+            [(true, &mut buffers.applied, self.step.time + dt), (before, &mut buffers.applied_before, self.step.time)]
         {
             if !wanted {
                 continue;
             }
-            let share = ramp(self.regime, time - self.state.stage_start);
-            let whole = Window { from: self.time, to: self.time + dt };
-            let base = records::base_motion(self.model, self.regime, self.state, whole);
-            let acceleration = applied::acceleration(self.model, self.state, time) * share - base;
-            for (force, mass) in force.iter_mut().zip(&*self.model.mass_matrix.row_sum) {
-                *force = acceleration * *mass;
+            let share = ramp(self.step.regime, time - self.step.state.stage_start);
+            let whole = Window { from: self.step.time, to: self.step.time + dt };
+            let base = base_motion(self.step.model, self.step.regime, self.step.state, whole);
+            let pull = acceleration(self.step.model, self.step.state, time) * share - base;
+            for (force, mass) in force.iter_mut().zip(&*self.step.model.mass_matrix.row_sum) {
+                *force = pull * *mass;
             }
-            applied::push_forces(self.model, self.state, time, share, force);
+            push_forces(self.step.model, self.step.state, time, share, force);
         }
     }
 }

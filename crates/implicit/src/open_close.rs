@@ -1,13 +1,13 @@
-//! The open–close iteration: solve, decide for every contact whether it is open, slips or locks, factorise again where
-//! until nothing changes and the forces balance. Each solution is a step of Newton's method for the rotations as well.
+//! The open–close iteration: repeats solution, states of the contacts and refactorisation until no state changes and
+//! the forces out of balance are below the tolerance. Each solution is a step of Newton's method for the rotations as well.
 
 use std::time::Instant;
 
-use crate::contact::ContactState;
-use crate::geometry::Vector;
-use crate::state::{Implicit, Rule};
+use enmm::contact::ContactState;
+use enmm::geometry::Vector;
 
-use super::{CUT, Inertia, Step};
+use super::choices::{Implicit, Rule};
+use super::interval::{CUT, Inertia, Substep};
 
 /// Forces out of balance over the largest part at which a dynamic sub-step has settled.
 const BALANCED: f64 = 1e-5;
@@ -52,15 +52,15 @@ struct Balance {
     scale: f64,
 }
 
-impl Step<'_> {
+impl Substep<'_, '_> {
     /// Iterates to the end of a sub-step; returns whether it has settled within the limits.
     pub(super) fn implicit_open_close(&mut self, implicit: &Implicit, inertia: &Inertia) -> bool {
         self.set_offset(implicit, inertia);
-        self.workspace.implicit.factored.clear();
+        self.buffers.factored.clear();
         let (mut factors, mut solutions, mut last) = (0, 0, f64::INFINITY);
         let most = implicit.iterations_max * if inertia.rests { STATIC_ITERATIONS } else { 1 };
         let tolerance = if inertia.rests { BALANCED_STATIC } else { BALANCED };
-        self.workspace.implicit.cautious = false;
+        self.buffers.cautious = false;
         let mut balance = self.evaluate(inertia);
         self.presume_closed();
         let settled = loop {
@@ -85,7 +85,7 @@ impl Step<'_> {
         };
         let enough = if inertia.rests { ENOUGH_STATIC } else { ENOUGH };
         let taken = settled || balance.residual <= enough * balance.scale;
-        self.state.counters.unsettled += u64::from(taken && !settled);
+        self.step.state.counters.unsettled += u64::from(taken && !settled);
         let settled = taken;
         self.count_implicit(inertia.dt, solutions);
         if inertia.rests {
@@ -98,7 +98,7 @@ impl Step<'_> {
     /// The time for which inertia counts in the next static sub-step: cut when this one has not settled, longer when it
     /// was easy, without a limit that matters when it took but a few solutions.
     fn renew_stretch(&mut self, settled: bool, solutions: u32, balanced: bool) {
-        let stretch = &mut self.state.static_stretch;
+        let stretch = &mut self.step.state.static_stretch;
         if !settled {
             *stretch *= CUT;
         } else if solutions <= FEW {
@@ -114,14 +114,14 @@ impl Step<'_> {
         self.implicit_internal();
         let changed = self.update_contacts();
         let [residual, scale] = self.implicit_residual(inertia);
-        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         Balance { changed, residual, scale }
     }
 
     /// New contacts that touch count as locked in the first factor: whether they open is then decided.
     fn presume_closed(&mut self) {
-        let touching = TOUCHING * self.model.covers.mesh.size;
-        for contact in self.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
+        let touching = TOUCHING * self.step.model.covers.mesh.size;
+        for contact in self.step.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
             contact.history.state = ContactState::Lock;
         }
     }
@@ -131,9 +131,9 @@ impl Step<'_> {
     /// Springs that only press and friction under a given pressure derive from a convex energy, of which the forces
     /// out of balance are the descent: a way after which they point back by more than half was too long.
     fn search_line(&mut self, inertia: &Inertia) -> Balance {
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         buffers.pressing.clear();
-        buffers.pressing.extend(self.workspace.contacts.iter().map(|c| c.history.normal_force));
+        buffers.pressing.extend(self.step.workspace.contacts.iter().map(|c| c.history.normal_force));
         let start = self.along();
         let (mut low, mut high) = ([0.0, start], None);
         let (mut share, mut reached) = (1.0, 0.0);
@@ -150,7 +150,7 @@ impl Step<'_> {
                 high = Some([share, here]);
             }
             let Some(far) = high else { break };
-            self.workspace.implicit.cautious = true;
+            self.buffers.cautious = true;
             share = (low[0] * far[1] - far[0] * low[1]) / (far[1] - low[1]);
             share = share.clamp(low[0] + 0.05 * (far[0] - low[0]), far[0] - 0.05 * (far[0] - low[0]));
         }
@@ -165,19 +165,19 @@ impl Step<'_> {
         self.implicit_internal();
         self.implicit_probe();
         self.implicit_residual(inertia);
-        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         self.along()
     }
 
     /// Product of the forces out of balance and the solution.
     fn along(&self) -> f64 {
-        let buffers = &self.workspace.implicit;
+        let buffers = &self.buffers;
         buffers.residual.iter().zip(buffers.unknowns.chunks_exact(2)).map(|(f, d)| f.x * d[0] + f.y * d[1]).sum()
     }
 
     /// Adds a share of the solution to what has moved.
     fn go(&mut self, share: f64) {
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         for (moved, d) in buffers.moved.iter_mut().zip(buffers.unknowns.chunks_exact(2)) {
             *moved += Vector::new(d[0], d[1]) * share;
         }
@@ -185,8 +185,8 @@ impl Step<'_> {
 
     /// What inertia sees besides the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
     fn set_offset(&mut self, implicit: &Implicit, inertia: &Inertia) {
-        let state = &*self.state;
-        let buffers = &mut self.workspace.implicit;
+        let state = &*self.step.state;
+        let buffers = &mut self.buffers;
         if inertia.rests {
             buffers.offset.fill(Vector::zeros());
             return;
@@ -203,29 +203,29 @@ impl Step<'_> {
     fn refactor(&mut self, inertia: &Inertia) -> bool {
         let clock = Instant::now();
         let done = self.implicit_factorise(inertia).is_ok();
-        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-        self.singular = !done;
+        self.step.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.step.singular = !done;
         done
     }
 
     /// Solves for the forces out of balance.
     pub(super) fn solve(&mut self) {
         let clock = Instant::now();
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         for (i, force) in buffers.residual.iter().enumerate() {
             (buffers.unknowns[2 * i], buffers.unknowns[2 * i + 1]) = (force.x, force.y);
         }
         buffers.matrix.solve(&mut buffers.unknowns);
-        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.step.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
     }
 
     fn largest_move(&self) -> f64 {
-        self.workspace.implicit.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt()
+        self.buffers.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt()
     }
 
     fn count_implicit(&mut self, dt: f64, solutions: u32) {
-        let contacts = self.workspace.contacts.len() as u64;
-        let counters = &mut self.state.counters;
+        let contacts = self.step.workspace.contacts.len() as u64;
+        let counters = &mut self.step.state.counters;
         counters.substeps += 1;
         counters.sweeps += u64::from(solutions);
         counters.sweeps_max = counters.sweeps_max.max(solutions);
@@ -236,6 +236,6 @@ impl Step<'_> {
 
     /// Contacts that carry force, for the report.
     pub(super) fn count_contacts(&self, which: ContactState) -> u32 {
-        self.workspace.contacts.iter().filter(|c| c.history.state == which).count() as u32
+        self.step.workspace.contacts.iter().filter(|c| c.history.state == which).count() as u32
     }
 }

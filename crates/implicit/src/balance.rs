@@ -1,17 +1,19 @@
 //! Forces out of balance: inertia, elements, contacts and supports at the positions reached.
 
-use crate::contact::{Boundary, ContactSetting, Pair, VertexEdge};
-use crate::geometry::Vector;
-use crate::mechanics::{self, Deformation, push_mass};
-use crate::state::{ImplicitWorkspace, Workspace};
+use enmm::contact::{Boundary, ContactSetting, Pair, VertexEdge};
+use enmm::geometry::Vector;
+use enmm::mechanics::{self, Deformation};
+use enmm::state::Workspace;
 
-use super::{Inertia, Step};
+use super::buffers::ImplicitBuffers;
+use super::consistent::push_mass;
+use super::interval::{Inertia, Substep};
 
-impl Step<'_> {
+impl Substep<'_, '_> {
     /// Internal forces at the positions reached (Eq. 7).
     pub(super) fn implicit_internal(&mut self) {
-        let (model, state) = (self.model, &*self.state);
-        let (covers, buffers) = (&model.covers, &mut self.workspace.implicit);
+        let (model, state) = (self.step.model, &*self.step.state);
+        let (covers, buffers) = (&model.covers, &mut self.buffers);
         buffers.internal.fill(Vector::zeros());
         for e in covers.elements() {
             let ids = covers.element_covers[e];
@@ -48,26 +50,26 @@ impl Step<'_> {
     }
 
     /// The contacts of the sub-step, what they share, and the buffers of the integrator.
-    fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitWorkspace) {
-        let Workspace { implicit, contacts, frames, strength, .. } = &mut *self.workspace;
-        (self.model.contact_setting(&self.state.laws, frames, *strength), contacts, implicit)
+    fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitBuffers) {
+        let Workspace { contacts, frames, strength, .. } = &mut *self.step.workspace;
+        (self.step.model.contact_setting(&self.step.state.laws, frames, *strength), contacts, &*self.buffers)
     }
 
     /// Forces of all supports at the positions reached.
     fn bear(&mut self) {
-        let workspace = &mut *self.workspace;
+        let workspace = &mut *self.step.workspace;
         for row in &mut workspace.rows {
-            let support = &self.model.supports[row.support as usize];
-            let moved = support.sample(&workspace.implicit.moved);
+            let support = &self.step.model.supports[row.support as usize];
+            let moved = support.sample(&self.buffers.moved);
             row.force = support.preload - support.stiffness * (row.displacement + moved);
         }
     }
 
     /// Forces out of balance (Eq. 67) at the positions reached; returns their norm and the norm of the largest part.
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
-        let model = self.model;
+        let model = self.step.model;
         self.push_bearing();
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         let mut scale = norm(&buffers.residual).max(norm(&buffers.applied));
         for (i, acceleration) in buffers.field.iter_mut().enumerate() {
             *acceleration = buffers.moved[i] * -inertia.factor - buffers.offset[i];
@@ -84,14 +86,14 @@ impl Step<'_> {
             scale = scale.max(momentum.sum::<f64>().sqrt());
         }
         self.drop_held();
-        let buffers = &self.workspace.implicit;
+        let buffers = &self.buffers;
         [norm(&buffers.residual), scale]
     }
 
     /// Forces out of balance at the start of the sub-step, by the contact forces of the last one; into the residual.
     pub(super) fn start_balance(&mut self) {
         self.push_bearing();
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         let others = buffers.applied_before.iter().zip(&buffers.internal_before);
         buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
         self.drop_held();
@@ -99,7 +101,7 @@ impl Step<'_> {
 
     /// Takes what acts on held rows out of the residual.
     fn drop_held(&mut self) {
-        let buffers = &mut self.workspace.implicit;
+        let buffers = &mut self.buffers;
         if !buffers.any_held {
             return;
         }
@@ -112,20 +114,20 @@ impl Step<'_> {
 
     /// Forces of contacts and supports on the covers, into the residual.
     pub(super) fn push_bearing(&mut self) {
-        let workspace = &mut *self.workspace;
-        let residual = &mut workspace.implicit.residual;
+        let workspace = &mut *self.step.workspace;
+        let residual = &mut self.buffers.residual;
         residual.fill(Vector::zeros());
         for contact in &workspace.contacts {
             if contact.history.normal_force == 0.0 && contact.history.shear_force == 0.0 {
                 continue;
             }
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            let Pair { covers, weights, .. } = contact.pair(&self.model.boundary);
+            let Pair { covers, weights, .. } = contact.pair(&self.step.model.boundary);
             mechanics::spread(&covers[0], &weights[0], force, residual);
             mechanics::spread(&covers[1], &weights[1], -force, residual);
         }
         for row in &workspace.rows {
-            let support = &self.model.supports[row.support as usize];
+            let support = &self.step.model.supports[row.support as usize];
             mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
         }
     }
@@ -154,6 +156,6 @@ fn springs(contact: &VertexEdge, boundary: &Boundary, moved: &[Vector]) -> [f64;
 }
 
 /// Euclidean norm of a cover field.
-pub(super) fn norm(field: &[Vector]) -> f64 {
+pub fn norm(field: &[Vector]) -> f64 {
     field.iter().map(|f| f.norm_squared()).sum::<f64>().sqrt()
 }
