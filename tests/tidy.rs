@@ -14,7 +14,7 @@ const ENGINE_LINES_MAX: usize = 23_200;
 const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
 /// Floors of the house: a crate depends on crates of lower floors alone, tests excepted.
 const FLOORS: [&[&str]; 9] = [
-    &["enmm-case", "enmm-lanes"],
+    &["enmm-case", "enmm-lanes", "enmm-parts"],
     &["enmm"],
     &["enmm-io", "enmm-stability", "enmm-ensemble"],
     &["enmm-picture", "enmm-report", "enmm-capi"],

@@ -12,7 +12,6 @@ mod faults;
 mod figures;
 mod formulas;
 mod install;
-mod parts;
 mod platform;
 mod python;
 mod repository;
@@ -48,7 +47,6 @@ usage: cargo xtask TASK
   reference        writes docs/book/reference.md, the reference of all keys of a case
   book             builds the site of the documents by mdBook, which it installs in the target folder
   header           writes include/enmm.h
-  parts            writes the list of all crates in libraries and program, and their licences
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
@@ -93,7 +91,6 @@ fn main() -> ExitCode {
         ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
-        ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(tasks::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {

@@ -65,7 +65,6 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
             repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
         });
         steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
-        steps.take("parts", || supply::parts(repository).map(|()| Counts::default()));
         steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
         steps.take("oldest compiler", || finish(oldest?));
         steps.take("python", || python::test(repository, &[python::ALL]));
