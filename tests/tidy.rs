@@ -22,7 +22,7 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm-verification", "enmm-fmi-raw"],
     &["enmm-fmi2", "enmm-fmi3"],
     &["enmm-cli"],
-    &["enmm-bench", "enmm-fuzz", "enmm-header", "enmm-overhead", "xtask"],
+    &["enmm-bench", "enmm-fuzz", "enmm-header", "xtask"],
 ];
 /// Rooms whose results must not depend on the order of a hash.
 const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
