@@ -46,7 +46,7 @@ usage: cargo xtask TASK
   schema           writes docs/case.schema.json
   reference        writes docs/book/reference.md, the reference of all keys of a case
   book             builds the site of the documents by mdBook, which it installs in the target folder
-  header           writes include/enmm.h
+  header           writes include/enmm.h and its layouts for Python
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
