@@ -116,6 +116,12 @@ def test_numpy_types_have_the_layout_of_the_structures(package):
             assert (inner, offset) == (np.dtype(kind), getattr(structure, field).offset)
 
 
+def test_values_of_models_have_the_fields_of_the_structures_in_their_order(package):
+    for values in (package.Energies, package.Totals, package.StepInfo, package.PortState, package.Event):
+        structure = getattr(package._abi, values.__name__)
+        assert values._fields == tuple(field for field, _ in structure._fields_[1:]), values.__name__
+
+
 def test_every_structure_function_and_constant_of_the_header_is_there(package):
     text = re.sub(r"/\*.*?\*/", "", header(), flags=re.DOTALL)
     bodies = dict(re.findall(r"typedef struct (\w+) \{(.*?)\}", text, flags=re.DOTALL))

@@ -21,8 +21,9 @@ NAMES = {
 }
 
 
-# Licences of all that is in the binaries, and the list of it.
-PARTS = Path(__file__).resolve().parents[1] / "fmi" / "parts"
+# Licences of all crates in the binaries, and the list of these crates.
+LICENSES = "LICENSES"
+LIST = "sbom.cdx.json"
 
 
 class WheelHook(BuildHookInterface):
@@ -33,7 +34,7 @@ class WheelHook(BuildHookInterface):
         platform = os.environ.get("ENMM_PLATFORM") or sysconfig.get_platform()
         library, program, of_fmus = NAMES[platform.split("-")[0]]
         folder = Path(given)
-        missing = [name for name in (library, program, *of_fmus) if not (folder / name).is_file()]
+        missing = [name for name in (library, program, *of_fmus, LICENSES, LIST) if not (folder / name).is_file()]
         if missing:
             raise FileNotFoundError(f"{folder} lacks {', '.join(missing)}: run `cargo xtask wheel`")
         build_data["pure_python"] = False
@@ -43,8 +44,8 @@ class WheelHook(BuildHookInterface):
         build_data["shared_scripts"][str(folder / program)] = program
         metadata = f"enmm-{self.metadata.version}.dist-info"
         build_data["force_include"] |= {
-            str(PARTS / "LICENSES"): f"{metadata}/licenses/LICENSES",
-            str(PARTS / "sbom.cdx.json"): f"{metadata}/sboms/sbom.cdx.json",
+            str(folder / LICENSES): f"{metadata}/licenses/{LICENSES}",
+            str(folder / LIST): f"{metadata}/sboms/{LIST}",
         }
         build_data["shared_data"] |= {str(folder / name): f"lib/{name}" for name in of_fmus}
 

@@ -3,5 +3,4 @@
 mod bits;
 mod hosts;
 mod install;
-mod overhead;
 mod support;

@@ -126,9 +126,9 @@ fn archive(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
     Ok(archive.finish()?.into_inner())
 }
 
-/// The licences of enmm and of all crates in its libraries, and the list of these, by `cargo xtask parts`.
-const LICENSES: &str = include_str!("../parts/LICENSES");
-const PARTS: &str = include_str!("../parts/sbom.cdx.json");
+/// The licences of enmm and of all crates in its libraries, and the list of these, by the build script.
+const LICENSES: &str = include_str!(concat!(env!("OUT_DIR"), "/LICENSES"));
+const PARTS: &str = include_str!(concat!(env!("OUT_DIR"), "/sbom.cdx.json"));
 
 fn license(facts: &Facts) -> String {
     format!(

@@ -270,11 +270,11 @@ fn the_files_are_those_of_the_standard() {
             assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{name}");
         }
         let licenses = String::from_utf8(part(&files, "documentation/licenses/license.txt").to_vec()).unwrap();
-        for told in ["MIT License", "Apache License", "Bitstream Vera Fonts Copyright", "\nrayon ", "\nfaer "] {
-            assert!(licenses.contains(told), "{told}");
+        for words in ["MIT License", "Apache License", "Bitstream Vera Fonts Copyright", "mingw-w64", "\nrayon "] {
+            assert!(licenses.contains(words), "{words}");
         }
         let parts: serde_json::Value = serde_json::from_slice(part(&files, "documentation/sbom.cdx.json")).unwrap();
-        assert_eq!(parts["bomFormat"], "CycloneDX");
+        every_crate_is_listed_with_checksum_and_license(&parts, &licenses);
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("case.json"), part(&files, "resources/case.json")).unwrap();
         let loaded = resource::load(folder.path()).unwrap();
@@ -443,4 +443,21 @@ fn a_case_says_whose_it_is() {
     }
     let error = loaded(&notes.replace("CC BY 4.0", " ")).unwrap_err().to_string();
     assert!(error.contains("noted.toml:") && error.contains("fmu.license: is empty"), "{error}");
+}
+
+fn every_crate_is_listed_with_checksum_and_license(list: &serde_json::Value, licenses: &str) {
+    assert_eq!((&list["bomFormat"], &list["specVersion"]), (&"CycloneDX".into(), &"1.6".into()));
+    let crates = list["components"].as_array().unwrap();
+    assert!(crates.len() > 50);
+    let lock = include_str!("../../../Cargo.lock");
+    for part in crates {
+        let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+        let [name, version] = ["name", "version"].map(|key| text(&part[key]));
+        let checksum = text(&part["hashes"][0]["content"]);
+        assert!(checksum.len() == 64 && lock.contains(&checksum), "{name} {version}");
+        let owner = format!("\n{name} {version} ({})\n", text(&part["licenses"][0]["expression"]));
+        assert!(licenses.contains(&owner), "{name} {version} has no licence");
+    }
+    assert!(crates.iter().any(|part| part["name"] == "rayon"));
+    assert!(!crates.iter().any(|part| part["name"] == "serde_derive"), "macros are in no library");
 }

@@ -14,8 +14,8 @@ use crate::types::{
     Boolean, Byte, CO_SIMULATION, CallbackFunctions, Component, FmuState, Importer, LIVE, Real, Status, Text, call,
     guarded,
 };
-use enmm_fmi_raw::raw::{self, MISSING};
-use enmm_fmi_raw::states;
+use enmm_fmi::raw::states;
+use enmm_fmi::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetTypesPlatform() -> Text {

@@ -5,7 +5,7 @@ use std::ffi::c_int;
 use enmm_fmi::phase::{Call, Phase};
 
 use crate::types::{Boolean, Component, Integer, Real, Status, Text, call, with_handle};
-use enmm_fmi_raw::raw;
+use enmm_fmi::raw;
 
 /// `fmi2DoStepStatus`, `fmi2LastSuccessfulTime`, `fmi2Terminated`.
 const DO_STEP_STATUS: c_int = 0;

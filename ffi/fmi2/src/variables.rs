@@ -4,7 +4,7 @@ use enmm_fmi::phase::Call;
 use enmm_fmi::table::Type;
 
 use crate::types::{Boolean, Component, Integer, Real, Status, Text, ValueReference, call};
-use enmm_fmi_raw::raw::{self, MISSING};
+use enmm_fmi::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetReal(

@@ -13,7 +13,7 @@ use crate::types::{
     Environment, Importer, InstancePointer, IntermediateUpdate, LIVE, LogMessage, Status, Text, ValueReference, call,
     guarded,
 };
-use enmm_fmi_raw::raw::{self, MISSING};
+use enmm_fmi::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi3GetVersion() -> Text {

@@ -6,7 +6,7 @@ use enmm_fmi::phase::Call;
 use enmm_fmi::table::Type;
 
 use crate::types::{Importer, InstancePointer, ValueReference, call, with_handle};
-use enmm_fmi_raw::raw::{self, MISSING};
+use enmm_fmi::raw::{self, MISSING};
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(

@@ -1,6 +1,6 @@
 //! Saved states.
 
-use enmm_fmi_raw::states;
+use enmm_fmi::raw::states;
 
 use crate::types::{FmuState, InstancePointer, Status, call};
 

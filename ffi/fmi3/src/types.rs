@@ -9,8 +9,8 @@ use enmm_fmi::instance::Instance;
 use enmm_fmi::log::Message;
 pub use enmm_fmi::log::Status;
 
-use enmm_fmi_raw::raw;
-pub use enmm_fmi_raw::states::FmuState;
+use enmm_fmi::raw;
+pub use enmm_fmi::raw::states::FmuState;
 
 pub type InstancePointer = *mut c_void;
 pub type Environment = *mut c_void;

@@ -1,4 +1,6 @@
-//! The C header of the C ABI, made of its sources. `cargo xtask header` writes it to [`HEADER`].
+//! The C header of the C ABI and its layouts for Python, made of its sources. `cargo xtask header` writes both.
+
+mod python;
 
 use std::path::{Path, PathBuf};
 
@@ -39,6 +41,16 @@ const INTRODUCTION: &str = "\
 /// Root of the repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Header and layouts for Python that belong to the sources, with their paths.
+///
+/// # Errors
+/// When the sources cannot be read, or have a type that Python has no name for.
+pub fn files() -> Result<[(&'static str, String); 2], String> {
+    let header = generate()?;
+    let module = python::module(&header)?;
+    Ok([(HEADER, header), (python::MODULE, module)])
 }
 
 /// The header that belongs to the sources.

@@ -1,13 +1,14 @@
-//! The header that is committed is the one of the sources.
+//! The header and the layouts for Python that are committed are those of the sources.
 
-use enmm_header::{HEADER, generate, root};
+use enmm_header::{files, generate, root};
 
 #[test]
-fn the_header_is_that_of_the_sources() {
-    let committed = std::fs::read_to_string(root().join(HEADER)).expect(HEADER);
-    let own = generate().expect("sources that can be read");
-    let line = 1 + own.lines().zip(committed.lines()).take_while(|(a, b)| a == b).count();
-    assert!(own == committed, "{HEADER} differs from line {line} on: run `cargo xtask header` and commit");
+fn the_header_and_the_layouts_for_python_are_those_of_the_sources() {
+    for (path, own) in files().expect("sources that can be read") {
+        let committed = std::fs::read_to_string(root().join(path)).expect(path);
+        let line = 1 + own.lines().zip(committed.lines()).take_while(|(a, b)| a == b).count();
+        assert!(own == committed, "{path} differs from line {line} on: run `cargo xtask header` and commit");
+    }
 }
 
 #[test]

@@ -25,7 +25,15 @@ Calls release the interpreter lock. A State may be used by many threads.
 import importlib
 from typing import Any
 
-from ._abi import ABI_VERSION
+from ._abi import (
+    ABI_VERSION,
+    BlockFlag,
+    ContactState,
+    EventKind,
+    Interpolation,
+    LogLevel,
+    PortKind,
+)
 from ._case import Case
 from ._errors import (
     BufferTooSmallError,
@@ -51,19 +59,7 @@ from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import (
-    BlockFlag,
-    ContactState,
-    Energies,
-    Event,
-    EventKind,
-    Interpolation,
-    LogLevel,
-    PortKind,
-    PortState,
-    StepInfo,
-    Totals,
-)
+from ._types import Energies, Event, PortState, StepInfo, Totals
 
 __version__ = "0.1.0"
 

@@ -13,11 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
+from ._abi import LogLevel
 from ._errors import BufferTooSmallError, invalid
 from ._library import Library
-from ._types import LogLevel
 
 LogFunction = Callable[[LogLevel, str], object]
+
+
+def dtype_of(structure: type[ctypes.Structure]) -> np.dtype[np.void]:
+    """The numpy type with the same fields at the same offsets."""
+    names = [field[0] for field in structure._fields_]
+    formats = [np.dtype(field[1]) for field in structure._fields_]
+    offsets = [getattr(structure, name).offset for name in names]
+    layout = {"names": names, "formats": formats, "offsets": offsets, "itemsize": ctypes.sizeof(structure)}
+    return np.dtype(layout)  # type: ignore[call-overload, no-any-return, unused-ignore]
 
 
 class Rows:
@@ -25,7 +34,7 @@ class Rows:
 
     def __init__(self, structure: type[ctypes.Structure]) -> None:
         self._structure = structure
-        self._dtype = _abi.dtype_of(structure)
+        self._dtype = dtype_of(structure)
         self._make(1)
 
     def _make(self, capacity: int) -> None:

@@ -12,16 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
+from ._abi import EventKind, Interpolation
 from ._closing import Closing
-from ._core import Core, LogFunction, Rows, ids_of, index, number, pointer, text, values_of
+from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
 from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
-from ._types import Energies, Event, EventKind, Interpolation, StepInfo, Totals
+from ._types import Energies, Event, StepInfo, Totals
 
-BLOCK_DTYPE = _abi.dtype_of(_abi.BlockState)
+BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
-CONTACT_DTYPE = _abi.dtype_of(_abi.Contact)
+CONTACT_DTYPE = dtype_of(_abi.Contact)
 """Fields of `Model.contacts`, those of `enmm_contact`."""
 
 

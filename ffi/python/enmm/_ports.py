@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping
 from ctypes import c_int32, c_size_t, c_uint32
 
 from . import _abi
+from ._abi import PortKind
 from ._core import Core, number, text
 from ._errors import invalid
-from ._types import PortKind, PortState
+from ._types import PortState
 
 
 class Port:

@@ -1,73 +1,8 @@
 """Values that models give and take. SI units per metre of thickness; x to the right, y upwards."""
 
-from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
-
-class BlockFlag(IntFlag):
-    """Bits of `flags` of a block."""
-
-    FIXED = 1
-    """No part of it can move."""
-    DETACHED = 2
-    """It can move, and no contact on it carries force now."""
-    FAILED = 4
-    """It has moved beyond the failure displacement of the case; this stays."""
-    REMOVED = 8
-    """It has been excavated; its other values are those of when it was there."""
-
-
-class ContactState(IntEnum):
-    """`state` of a contact."""
-
-    OPEN = 0
-    """It carries no force."""
-    SLIP = 1
-    """Its shear force is at the limit."""
-    LOCK = 2
-    """Its shear force is below the limit."""
-
-
-class EventKind(IntEnum):
-    """Kind of an event. Each happens once to a block or joint, and only in dynamic stages."""
-
-    DETACHED = 0
-    """A block that touched others lost its last contact."""
-    SLIPPED = 1
-    """A joint slipped."""
-    FAILED = 2
-    """A block moved beyond the failure displacement."""
-
-
-class PortKind(IntEnum):
-    """Kind of a port."""
-
-    BLOCK = 0
-    """A block: takes force and moment."""
-    BOUNDARY = 1
-    """A part of the outer boundary: takes traction and pressure."""
-    JOINT = 2
-    """Faces of joints: takes fluid pressure."""
-
-
-class Interpolation(IntEnum):
-    """How inputs go through a communication step."""
-
-    HOLD = 0
-    """A value that was set acts from the start of the next step on."""
-    LINEAR = 1
-    """A value that was set is reached at the end of the next step, linearly from the one before."""
-
-
-class LogLevel(IntEnum):
-    """Weight of a message."""
-
-    ERROR = 0
-    """A step failed."""
-    WARNING = 1
-    """Something is unusual: warnings of the case, contact forces that did not settle."""
-    INFO = 2
-    """Events, and the end of the search for the initial equilibrium."""
+from ._abi import EventKind
 
 
 class StepInfo(NamedTuple):

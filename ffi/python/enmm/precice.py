@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._abi import Interpolation
 from ._case import Case
 from ._errors import Status, StepError, invalid
 from ._model import Model, State
 from ._program import CaseLike
-from ._types import Interpolation
 
 Array = npt.NDArray[np.float64]
 READ = ("force", "traction", "pressure", "velocity")

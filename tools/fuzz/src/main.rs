@@ -5,19 +5,10 @@
 //! Inputs are made of seed, part and number alone. A child process takes them one by one, so that one which kills it or
 //! never ends costs only itself; what was found is written to a folder with the command that repeats it.
 
-// The C ABI's own files: its library has no face to Rust.
-#[path = "../../../ffi/capi/src/abi/mod.rs"]
-#[allow(clippy::missing_safety_doc)]
-pub mod abi;
 mod driver;
 mod parts;
 mod random;
-#[path = "../../../ffi/capi/src/safe/mod.rs"]
-pub mod safe;
 mod trace;
-#[path = "../../../ffi/capi/src/types.rs"]
-#[allow(non_camel_case_types)]
-pub mod types;
 mod worker;
 
 use std::io::Write;

@@ -7,7 +7,6 @@ use crate::bits;
 use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
-use crate::parts;
 use crate::platform::{AARCH64_QUICK, Cross, Platform, WINDOWS_QUICK};
 use crate::repository::{self, Beside, Repository};
 use crate::venv::{self, Packages, succeeds};
@@ -126,7 +125,7 @@ fn build(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<
         std::fs::copy(from, to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
     };
     cross.import_library.map_or(Ok(()), |name| copy(&platform.built(repository).join(name)))?;
-    [HEADER, parts::LICENSES].iter().try_for_each(|path| copy(&repository.root.join(path)))?;
+    copy(&repository.root.join(HEADER))?;
     for (name, bytes) in repository::files_of(&shipped)? {
         println!("{:>6.1} MB  {}", bytes.len() as f64 / 1e6, shipped.join(name).display());
     }

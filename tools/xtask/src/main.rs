@@ -12,7 +12,6 @@ mod faults;
 mod figures;
 mod formulas;
 mod install;
-mod parts;
 mod platform;
 mod python;
 mod repository;
@@ -51,8 +50,7 @@ usage: cargo xtask TASK
   schema           writes docs/case.schema.json
   reference        writes docs/book/reference.md, the reference of all keys of a case
   book             builds the site of the documents by mdBook, which it installs in the target folder
-  header           writes include/enmm.h
-  parts            writes the list of all crates in libraries and program, and their licences
+  header           writes include/enmm.h and its layouts for Python
   install --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
@@ -103,7 +101,6 @@ fn main() -> ExitCode {
         ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
-        ["parts"] => parts::write(&repository).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(test::ensembles(&repository)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {

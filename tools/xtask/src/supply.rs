@@ -1,23 +1,10 @@
-//! Checks of dependencies: parts that are listed, licences and advisories, and the oldest compiler that is promised.
+//! Checks of dependencies: licences and advisories, and the oldest compiler that is promised.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::parts;
 use crate::repository::{self, Beside, Repository};
 use crate::venv::{self, succeeds};
-
-/// Compares the lists of parts with the dependencies, where the sources of all platforms are here or can be fetched.
-///
-/// # Errors
-/// When a list differs.
-pub fn parts(repository: &Repository) -> Result<(), String> {
-    if !succeeds(&mut repository.cargo(&["fetch", "--locked"])) {
-        println!("SKIPPED parts: sources of crates for other platforms are missing and cannot be fetched");
-        return Ok(());
-    }
-    parts::compare(repository)
-}
 
 /// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
 ///

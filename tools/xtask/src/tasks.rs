@@ -36,7 +36,7 @@ pub fn verification(repository: &Repository, program: &str) -> Result<(), String
 /// # Errors
 /// When the program does not build or run.
 pub fn overhead(repository: &Repository) -> Result<(), String> {
-    repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
+    repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--bin", "enmm-overhead"]))
 }
 
 /// Writes the schema of the case file as the command line tells it.

@@ -1,6 +1,6 @@
 //! One wheel for a platform: package, library, program and the libraries that `enmm fmu` packs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::platform::Platform;
@@ -59,6 +59,7 @@ pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, Str
     for name in platform.binaries() {
         platform.strip(repository, &platform.built(repository).join(&name), &binaries.join(&name))?;
     }
+    write_parts(repository, &binaries)?;
     let mut pip = venv::command(repository, venv::Packages::Usual)?;
     pip.args(["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]);
     pip.envs(platform.cross.as_ref().map(|cross| ("ENMM_PLATFORM", cross.wheel)));
@@ -73,4 +74,13 @@ pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, Str
     }
     println!("wrote {} ({:.1} MB)", wheel.display(), size as f64 / 1e6);
     Ok(wheel)
+}
+
+/// Writes the licences of all crates in the binaries, and the list of these crates, beside them.
+fn write_parts(repository: &Repository, folder: &Path) -> Result<(), String> {
+    let parts = enmm_parts::of_repository(&repository.root)?;
+    for (name, text) in [(enmm_parts::LIST, parts.list), (enmm_parts::LICENSES, parts.licenses)] {
+        std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))?;
+    }
+    Ok(())
 }

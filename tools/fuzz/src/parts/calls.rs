@@ -4,12 +4,12 @@
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut};
 
-use crate::abi::{inputs, library, model as life, observe, state};
-use crate::parts::buffer::Buffer;
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;
 use crate::trace::Trace;
-use crate::types::{
+use enmm_fuzz::abi::{inputs, library, model as life, observe, state};
+use enmm_fuzz::buffer::Buffer;
+use enmm_fuzz::types::{
     enmm_block_state, enmm_contact, enmm_energies, enmm_event, enmm_model, enmm_port_state, enmm_state, enmm_status,
     enmm_step_info, enmm_totals,
 };

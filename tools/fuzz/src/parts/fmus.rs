@@ -7,11 +7,12 @@ use std::ptr::null_mut;
 use enmm_fmi::log::Status;
 use enmm_fmi::table::{Causality, Type, Version};
 
-use crate::parts::buffer::Buffer;
-use crate::parts::fmu::{Fmu, Instance};
+use crate::parts::calls::CASE;
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;
 use crate::trace::Trace;
+use enmm_fuzz::buffer::Buffer;
+use enmm_fuzz::fmu::{Fmu, Instance};
 
 /// Calls of an input.
 const CALLS: u64 = 80;
@@ -19,7 +20,7 @@ const STATES_MAX: usize = 4;
 
 /// Makes an FMU of each version.
 pub fn make() -> Result<Act, String> {
-    let fmus = [Fmu::new(Version::Two)?, Fmu::new(Version::Three)?];
+    let fmus = [Fmu::new(CASE, Version::Two)?, Fmu::new(CASE, Version::Three)?];
     Ok(Box::new(move |random, trace| {
         let fmu = &fmus[random.below(2)];
         trace.say(|| format!("FMI {:?}", fmu.version));

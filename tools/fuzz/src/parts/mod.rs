@@ -1,9 +1,7 @@
 //! The parts: each makes an input of random numbers and tries it.
 
-mod buffer;
 mod calls;
 mod cases;
-mod fmu;
 mod fmus;
 mod networks;
 mod states;

@@ -7,14 +7,14 @@ use std::ptr::null_mut;
 use enmm_fmi::log::Status;
 use enmm_fmi::table::{Type, Version};
 
-use crate::abi::{model as life, observe, state};
-use crate::parts::buffer::Buffer;
-use crate::parts::calls::Host;
-use crate::parts::fmu::{Fmu, Instance};
+use crate::parts::calls::{CASE, Host};
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;
 use crate::trace::Trace;
-use crate::types::{enmm_block_state, enmm_energies, enmm_model, enmm_port_state, enmm_status};
+use enmm_fuzz::abi::{model as life, observe, state};
+use enmm_fuzz::buffer::Buffer;
+use enmm_fuzz::fmu::{Fmu, Instance};
+use enmm_fuzz::types::{enmm_block_state, enmm_energies, enmm_model, enmm_port_state, enmm_status};
 
 /// Internal steps before the good state.
 const MOVED: f64 = 100.5;
@@ -48,7 +48,7 @@ pub fn make() -> Result<Act, String> {
 impl Patient {
     fn of_c() -> Result<Self, String> {
         let (mut host, mut model, mut dt) = (Box::new(Host::default()), null_mut(), 0.0);
-        let text = std::ffi::CString::new(crate::parts::calls::CASE).map_err(|error| error.to_string())?;
+        let text = std::ffi::CString::new(CASE).map_err(|error| error.to_string())?;
         // SAFETY: a text, and room for a handle, a number and another handle.
         let (statuses, saved) = unsafe {
             let mut saved = null_mut();
@@ -66,7 +66,7 @@ impl Patient {
     }
 
     fn of_fmu(version: Version) -> Result<Self, String> {
-        let fmu = Box::new(Fmu::new(version)?);
+        let fmu = Box::new(Fmu::new(CASE, version)?);
         let (instance, dt, mut saved) = (fmu.instance()?, fmu.dt, null_mut());
         let begun =
             [instance.set_up(0.0, None), instance.enter(0.0), instance.exit(), instance.step(0.0, MOVED * dt).0];

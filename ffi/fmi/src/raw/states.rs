@@ -1,12 +1,12 @@
-//! Saved states behind pointers. A state is a number in the clothes of a pointer and is never followed.
+//! Saved states behind pointers. A state is a number in the form of a pointer and is never followed.
 //!
 //! The safety contract of all functions: a pointer that is neither NULL nor misaligned may be read and written, for as
 //! many values as the size beside it tells.
 
 use std::ffi::c_void;
 
-use enmm_fmi::instance::Instance;
-use enmm_fmi::log::Status;
+use crate::instance::Instance;
+use crate::log::Status;
 
 use crate::raw::{self, MISSING};
 

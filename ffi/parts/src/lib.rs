@@ -1,12 +1,12 @@
-//! What our libraries and program consist of: a list of their Rust crates (CycloneDX) and the licences of these, which
-//! travel in every FMU and wheel.
+//! The Rust crates in our libraries and our program: a list of them (CycloneDX) and their licences, which travel in
+//! every FMU and wheel. Builds make both; the same crates give the same bytes.
+#![forbid(unsafe_code)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::process::Command;
 
 use serde_json::{Value, json};
-
-use crate::repository::{self, Repository};
 
 /// Packages whose libraries and programs leave the repository.
 const SHIPPED: [&str; 4] = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
@@ -18,16 +18,24 @@ const TARGETS: [&str; 5] = [
     "x86_64-pc-windows-msvc",
     "aarch64-apple-darwin",
 ];
-/// The list of crates.
-pub const LIST: &str = "ffi/fmi/parts/sbom.cdx.json";
-/// Licences of enmm and of these.
-pub const LICENSES: &str = "ffi/fmi/parts/LICENSES";
+/// Name of the file that lists the crates.
+pub const LIST: &str = "sbom.cdx.json";
+/// Name of the file with the licences of enmm and of these.
+pub const LICENSES: &str = "LICENSES";
 
-/// Licences of what the linker of mingw-w64 adds.
-const WINDOWS: &str = "ffi/fmi/parts/windows";
+/// Licences of the runtime libraries that the linker of mingw-w64 adds.
+const WINDOWS: &str = include_str!("windows.txt");
 
-/// Licences of what a crate contains beside its own code: crate, file.
+/// Licences of fonts and the like inside a crate: crate, file.
 const CONTENTS: [(&str, &str); 1] = [("dejavu", "assets/dejavu-fonts-ttf-2.37/LICENSE")];
+
+/// Texts of both files.
+pub struct Parts {
+    /// That of [`LIST`].
+    pub list: String,
+    /// That of [`LICENSES`].
+    pub licenses: String,
+}
 
 /// A crate from a registry.
 struct Part {
@@ -39,51 +47,61 @@ struct Part {
     folder: String,
 }
 
-/// Writes both files.
+/// Lists the crates that `Cargo.lock` of the repository names, for all platforms.
 ///
 /// # Errors
-/// When cargo cannot name the crates, or the sources of one are missing.
-pub fn write(repository: &Repository) -> Result<(), String> {
-    for (path, text) in files(repository)? {
-        std::fs::write(repository.root.join(path), text).map_err(|error| format!("{path}: {error}"))?;
-        println!("wrote {path}");
-    }
-    Ok(())
-}
-
-/// Compares both files with what the dependencies are today.
-///
-/// # Errors
-/// As [`write()`], and when a file differs.
-pub fn compare(repository: &Repository) -> Result<(), String> {
-    for (path, text) in files(repository)? {
-        if read(&repository.root.join(path))? != text {
-            return Err(format!("{path} does not list the dependencies of today: run `cargo xtask parts` and commit"));
-        }
-    }
-    Ok(())
-}
-
-fn files(repository: &Repository) -> Result<[(&'static str, String); 2], String> {
-    let mut ask = repository.cargo(&["metadata", "--locked", "--format-version", "1"]);
-    TARGETS.iter().for_each(|target| {
-        ask.args(["--filter-platform", target]);
-    });
-    let answer = repository::capture(&mut ask)?;
-    let metadata: Value = serde_json::from_slice(&answer).map_err(|error| format!("cargo metadata: {error}"))?;
+/// When cargo cannot name the crates, or the sources or the licence of one are missing.
+pub fn of_repository(root: &Path) -> Result<Parts, String> {
+    let metadata = metadata(root)?;
     let parts = parts(&metadata);
-    let checksums = checksums(&read(&repository.root.join("Cargo.lock"))?);
-    let list = list(&parts, &checksums)?;
-    let mit = read(&repository.root.join("LICENSE-MIT"))?;
-    let apache = read(&repository.root.join("LICENSE-APACHE"))?;
+    let checksums = checksums(&read(&root.join("Cargo.lock"))?);
+    let mit = read(&root.join("LICENSE-MIT"))?;
+    let apache = read(&root.join("LICENSE-APACHE"))?;
     let rule = "-".repeat(80);
     let head = format!(
         "enmm may be used under either of the first two licences below. Its libraries and its program contain Rust\n\
          crates under the licences behind these two; each begins with the crates that it is for. The Rust standard\n\
          library is there as well, under MIT or Apache-2.0.\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}"
     );
-    let windows = read(&repository.root.join(WINDOWS))?;
-    Ok([(LIST, list), (LICENSES, head + &licenses(&parts, &mit)? + &windows)])
+    Ok(Parts { list: list(&parts, &checksums)?, licenses: head + &licenses(&parts, &mit)? + WINDOWS })
+}
+
+/// The texts of a build outside the repository, from packages: no lock file says which crates it contains.
+///
+/// # Errors
+/// Never; it has the signature of [`of_repository`].
+pub fn unlisted() -> Result<Parts, String> {
+    let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, so\n\
+                    the licences of the Rust crates in its libraries and its program are not listed here.\n";
+    Ok(Parts { list: list(&[], &BTreeMap::new())?, licenses: licenses.to_owned() })
+}
+
+/// The crates as cargo resolves them. Sources of other platforms and of tests may be missing on this machine although
+/// it can build: cargo then downloads them.
+fn metadata(root: &Path) -> Result<Value, String> {
+    let ask = |offline: &[&str]| {
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.args(["metadata", "--locked", "--format-version", "1"]).args(offline).current_dir(root);
+        TARGETS.iter().for_each(|target| {
+            cargo.args(["--filter-platform", target]);
+        });
+        // Flags of this build, such as sanitizers, need not exist for the other platforms.
+        cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env_remove("RUSTFLAGS");
+        cargo.output().map_err(|error| format!("cargo metadata: {error}"))
+    };
+    let mut answer = ask(&["--offline"])?;
+    if !answer.status.success() {
+        answer = ask(&[])?;
+    }
+    if !answer.status.success() {
+        let reason = String::from_utf8_lossy(&answer.stderr);
+        return Err(format!(
+            "cannot list the crates for the licences of FMUs and wheels: run `cargo fetch --locked` where there is a \
+             network, and build again (cargo metadata: {})",
+            reason.trim()
+        ));
+    }
+    serde_json::from_slice(&answer.stdout).map_err(|error| format!("cargo metadata: {error}"))
 }
 
 fn read(path: &Path) -> Result<String, String> {
@@ -185,11 +203,11 @@ fn licenses(parts: &[Part], own: &str) -> Result<String, String> {
     let mut groups: Vec<_> = owners.into_iter().map(|(text, owners)| (owners, text)).collect();
     groups.sort();
     let rule = "-".repeat(80);
-    let mut told = String::new();
+    let mut all = String::new();
     for (owners, text) in groups {
-        told += &format!("\n{rule}\n{}\n{rule}\n\n{text}\n", owners.join("\n"));
+        all += &format!("\n{rule}\n{}\n{rule}\n\n{text}\n", owners.join("\n"));
     }
-    Ok(told)
+    Ok(all)
 }
 
 /// Texts that lie beside the sources of a part; of several to choose from the one of MIT.
@@ -232,31 +250,8 @@ fn standard(part: &Part, own: &str) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    /// Nothing but files of the repository, so this holds without network and sources of crates.
     #[test]
-    fn every_part_is_the_crate_in_the_lock_file() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let list: Value = serde_json::from_str(&read(&root.join(LIST)).unwrap()).unwrap();
-        let checksums = checksums(&read(&root.join("Cargo.lock")).unwrap());
-        let licenses = read(&root.join(LICENSES)).unwrap();
-        assert!(items(&list, "components").count() > 50);
-        for part in items(&list, "components") {
-            let (name, version) = (text(part, "name"), text(part, "version"));
-            let locked = checksums.get(&(name.to_owned(), version.to_owned()));
-            let told = text(&part["hashes"][0], "content");
-            let remedy = "run `cargo xtask parts` and commit";
-            assert_eq!(locked.map(String::as_str), Some(told), "{name} {version}: {remedy}");
-            let owner = format!("\n{name} {version} ({})\n", text(&part["licenses"][0], "expression"));
-            assert!(licenses.contains(&owner), "{name} {version} has no licence: {remedy}");
-        }
-        let manifest = read(&root.join("Cargo.toml")).unwrap();
-        for named in ["rayon", "faer", "nalgebra", "serde"] {
-            assert!(manifest.contains(named) && licenses.contains(&format!("\n{named} ")), "{named}");
-        }
-    }
-
-    #[test]
-    fn what_only_builds_tests_and_macros_need_is_no_part() {
+    fn crates_of_builds_tests_and_macros_are_left_out() {
         let package = |name: &str, kind: &str, source: Option<&str>| {
             json!({"id": name, "name": name, "version": "1.0.0", "license": "MIT/Apache-2.0", "source": source,
                    "manifest_path": "/x/Cargo.toml", "targets": [{"kind": [kind]}]})
@@ -280,8 +275,8 @@ mod tests {
         ];
         nodes.extend(["below", "built", "tested", "macro"].map(|name| node(name, Vec::new())));
         let found = parts(&json!({"packages": packages, "resolve": {"nodes": nodes}}));
-        let told: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.license.as_str())).collect();
-        assert_eq!(told, [("below", "MIT OR Apache-2.0"), ("linked", "MIT OR Apache-2.0")]);
+        let named: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.license.as_str())).collect();
+        assert_eq!(named, [("below", "MIT OR Apache-2.0"), ("linked", "MIT OR Apache-2.0")]);
     }
 
     #[test]

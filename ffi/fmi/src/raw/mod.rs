@@ -1,4 +1,7 @@
-//! What the C side gives: pointers that may be missing.
+//! Pointers of the importer, which may be missing: all `unsafe` of this crate.
+#![deny(unsafe_op_in_unsafe_fn)]
+
+pub mod states;
 
 use std::ffi::{CStr, CString, c_char};
 use std::mem::MaybeUninit;

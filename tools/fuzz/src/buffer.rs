@@ -43,7 +43,10 @@ impl Buffer {
         self.words().into_iter().take(count).map(f64::from_bits).collect()
     }
 
-    /// An error when a watched word has changed; when the call has failed also when any word has.
+    /// Checks the watched words.
+    ///
+    /// # Errors
+    /// When a watched word has changed; when the call has failed also when any word has.
     pub fn check(&self, name: &str, failed: bool) -> Result<(), String> {
         let ends = self.words[..MARGIN].iter().chain(&self.words[MARGIN + self.before.len()..]);
         if ends.into_iter().any(|word| word.get() != MARK) {

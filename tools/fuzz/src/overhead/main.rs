@@ -1,21 +1,12 @@
-//! Tells what one internal step costs through the façade, the C ABI and both FMUs above the engine's own step, what
-//! getters, setters and saved states cost, how often each allocates, and what threads do to a small model.
+//! Measures the cost of one internal step through the façade, the C ABI and both FMUs above the engine's own step, that
+//! of getters, setters and saved states, how often each allocates, and the effect of threads on a small model.
 //!
 //! All of it is linked into one program, whose hosts take turns. Times are the least of many turns: processor time of
 //! the calling thread, and of threads wall time.
 
-// The C ABI's own files: its library has no face to Rust.
-#[path = "../../../ffi/capi/src/abi/mod.rs"]
-#[allow(clippy::missing_safety_doc)]
-pub mod abi;
 mod count;
 mod host;
 mod model;
-#[path = "../../../ffi/capi/src/safe/mod.rs"]
-pub mod safe;
-#[path = "../../../ffi/capi/src/types.rs"]
-#[allow(non_camel_case_types)]
-pub mod types;
 
 use std::io::Write;
 use std::sync::LazyLock;
@@ -25,7 +16,7 @@ use engine::cosimulation::Cosimulation;
 use enmm_fmi::table::Version;
 
 use count::{Counting, count};
-use host::{C, Engine, Facade, Fmu, Host};
+use host::{C, Engine, Facade, Host, Imported};
 use model::Model;
 
 #[global_allocator]
@@ -51,7 +42,7 @@ fn main() {
     }
 }
 
-/// A line for whoever asked; one who has gone away is not told.
+/// A line for whoever asked; a closed pipe is no error.
 fn say(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
@@ -77,7 +68,6 @@ const SET_AND_STEP: Act = |host, call| {
 const SAVE: Act = |host, _| host.save();
 
 fn exports(model: &Model) {
-    let folder = std::env::temp_dir().join(format!("enmm-overhead-{}", std::process::id()));
     let facade = started(model);
     let state = {
         let state = facade.simulation().state();
@@ -87,8 +77,8 @@ fn exports(model: &Model) {
         ("engine", Box::new(Engine(facade.simulation().clone()))),
         ("façade", Box::new(Facade::new(facade))),
         ("C ABI", Box::new(C::new(model))),
-        ("FMI 3", Box::new(Fmu::new(model, Version::Three, &folder))),
-        ("FMI 2", Box::new(Fmu::new(model, Version::Two, &folder))),
+        ("FMI 3", Box::new(Imported::new(model, Version::Three))),
+        ("FMI 2", Box::new(Imported::new(model, Version::Two))),
     ];
     for (_, host) in &mut hosts {
         (0..WARM).for_each(|_| host.step());
@@ -115,7 +105,6 @@ fn exports(model: &Model) {
             made[3][1] as f64 / state,
         ));
     }
-    let _ = std::fs::remove_dir_all(folder);
 }
 
 /// Processor time of this thread (s).

@@ -11,8 +11,7 @@ use enmm_fmi2 as fmi2;
 use enmm_fmi3 as fmi3;
 use enmm_io::{LoadedCase, parse_case};
 
-use crate::parts::buffer::Buffer;
-use crate::parts::calls::CASE;
+use crate::buffer::Buffer;
 
 /// Case, folder and variables of an FMU; the folder goes away with it.
 pub struct Fmu {
@@ -33,12 +32,15 @@ impl Drop for Fmu {
 }
 
 impl Fmu {
-    /// The block on a slab.
-    pub fn new(version: Version) -> Result<Self, String> {
-        let loaded: LoadedCase = parse_case(CASE, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
+    /// The model of a case.
+    ///
+    /// # Errors
+    /// When the case has no model, or its folder cannot be written.
+    pub fn new(case: &str, version: Version) -> Result<Self, String> {
+        let loaded: LoadedCase = parse_case(case, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
         let table = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, version);
-        let folder = std::env::temp_dir().join(format!("enmm-fuzz-{}-{version:?}", std::process::id()));
+        let folder = std::env::temp_dir().join(format!("enmm-host-{}-{version:?}", std::process::id()));
         let resources = folder.join("resources");
         let text = resource::encode(&loaded, "case").map_err(|error| error.to_string())?;
         let written =
@@ -48,6 +50,9 @@ impl Fmu {
     }
 
     /// A new instance.
+    ///
+    /// # Errors
+    /// When there is none.
     pub fn instance(&self) -> Result<Instance, String> {
         let token = CString::new(self.table.token.as_str()).map_err(|error| error.to_string())?;
         let pointer = match self.version {
@@ -93,6 +98,7 @@ pub struct Instance {
 }
 
 impl Instance {
+    /// Sets the experiment up, which FMI 3 does on entering the initialization mode.
     pub fn set_up(self, start: f64, stop: Option<f64>) -> Status {
         let (is, stop) = (i32::from(stop.is_some()), stop.unwrap_or_default());
         match self.version {
@@ -101,6 +107,7 @@ impl Instance {
         }
     }
 
+    /// Enters the initialization mode.
     pub fn enter(self, start: f64) -> Status {
         match self.version {
             Version::Two => fmi2::fmi2EnterInitializationMode(self.pointer),
@@ -108,6 +115,7 @@ impl Instance {
         }
     }
 
+    /// Leaves the initialization mode.
     pub fn exit(self) -> Status {
         match self.version {
             Version::Two => fmi2::fmi2ExitInitializationMode(self.pointer),
@@ -115,6 +123,7 @@ impl Instance {
         }
     }
 
+    /// Terminates.
     pub fn terminate(self) -> Status {
         match self.version {
             Version::Two => fmi2::fmi2Terminate(self.pointer),
@@ -122,6 +131,7 @@ impl Instance {
         }
     }
 
+    /// Resets.
     pub fn reset(self) -> Status {
         match self.version {
             Version::Two => fmi2::fmi2Reset(self.pointer),
@@ -129,6 +139,7 @@ impl Instance {
         }
     }
 
+    /// Frees the instance.
     pub fn free(self) {
         match self.version {
             Version::Two => fmi2::fmi2FreeInstance(self.pointer),
@@ -173,8 +184,10 @@ impl Instance {
     /// Sets values of a type.
     pub fn set(self, kind: Type, references: &[u32], values: &[f64]) -> Status {
         let (p, r, n) = (self.pointer, references.as_ptr(), references.len());
-        let whole: Vec<i32> = values.iter().map(|&value| value as i32).collect();
-        let truth: Vec<bool> = values.iter().map(|&value| value != 0.0).collect();
+        // Real values are passed on without an allocation, since `enmm-overhead` counts those of this call.
+        let is_whole = matches!((self.version, kind), (_, Type::Integer) | (Version::Two, Type::Boolean));
+        let whole: Vec<i32> = values.iter().filter(|_| is_whole).map(|&value| value as i32).collect();
+        let truth: Vec<bool> = values.iter().filter(|_| kind == Type::Boolean).map(|&value| value != 0.0).collect();
         // SAFETY: so many references and values are there; FMI 2 is given as many values as references.
         unsafe {
             match (self.version, kind) {
@@ -211,6 +224,7 @@ impl Instance {
         }
     }
 
+    /// Restores a state.
     pub fn restore(self, state: *mut c_void) -> Status {
         match self.version {
             Version::Two => fmi2::fmi2SetFMUstate(self.pointer, state),
@@ -218,6 +232,7 @@ impl Instance {
         }
     }
 
+    /// Frees a state.
     pub fn free_state(self, state: &mut *mut c_void) -> Status {
         // SAFETY: room for a state.
         unsafe {
@@ -228,7 +243,10 @@ impl Instance {
         }
     }
 
-    /// The bytes of a state, or why there are none.
+    /// The bytes of a state.
+    ///
+    /// # Errors
+    /// The status of the call that failed.
     pub fn bytes(self, state: *mut c_void) -> Result<Vec<u8>, Status> {
         let mut size = 0;
         // SAFETY: room for a size, then for so many bytes.
@@ -248,6 +266,7 @@ impl Instance {
         }
     }
 
+    /// A state of bytes.
     pub fn unpack(self, bytes: &[u8]) -> (Status, *mut c_void) {
         let (mut state, p, n) = (null_mut(), self.pointer, bytes.len());
         // SAFETY: so many bytes, and room for a state.

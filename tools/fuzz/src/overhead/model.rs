@@ -5,7 +5,7 @@ use std::path::Path;
 use enmm_io::{LoadedCase, parse_case};
 
 /// A block on an incline, which slides.
-const INCLINE: &str = include_str!("../../../examples/cases/block_on_incline.toml");
+const INCLINE: &str = include_str!("../../../../examples/cases/block_on_incline.toml");
 
 /// Fifty blocks in five courses, which rest.
 const WALL: &str = r#"
