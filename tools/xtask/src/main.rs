@@ -9,7 +9,6 @@ mod cross;
 mod debian;
 mod emulator;
 mod faults;
-mod figures;
 mod formulas;
 mod install;
 mod parts;
@@ -30,8 +29,6 @@ usage: cargo xtask TASK
   test [--quick]   format, lints, build, tests, documentation, schema, Python;
                    --quick leaves out the last three
   python           the Python tests alone
-  figures [--long] writes the figures that documents quote; --long those of the long
-                   campaigns, too
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   fuzz [--minutes N] [--seed S] [--part NAME]
                    throws wrong cases, joint networks, calls and states at every entrance; without
@@ -78,8 +75,6 @@ fn main() -> ExitCode {
         ["test"] => Ok(tasks::test(&repository, tasks::Extent::Full)),
         ["test", "--quick"] => Ok(tasks::test(&repository, tasks::Extent::Quick)),
         ["python"] => Ok(tasks::python(&repository)),
-        ["figures"] => tasks::write_figures(&repository, false).map(|()| ExitCode::SUCCESS),
-        ["figures", "--long"] => tasks::write_figures(&repository, true).map(|()| ExitCode::SUCCESS),
         ["long"] => Ok(tasks::long(&repository)),
         ["fuzz", ref words @ ..] => tasks::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),
         ["faults", ref words @ ..] => faults::run(&repository, words).map(|()| ExitCode::SUCCESS),

@@ -9,7 +9,6 @@ use crate::book;
 use crate::counts::{self, Counts};
 use crate::cross;
 use crate::faults;
-use crate::figures;
 use crate::python;
 use crate::repository::{self, Beside, Repository};
 use crate::supply;
@@ -57,7 +56,7 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
         if extent == Extent::Full {
             scope.spawn(|| venv::prepare(repository));
         }
-        steps.take("tests", || figures::forget(repository).and_then(|()| cargo_test(repository, &["--no-fail-fast"])));
+        steps.take("tests", || cargo_test(repository, &["--no-fail-fast"]));
     });
     if let Some((oldest, windows)) = beside {
         steps.take("documentation", || {
@@ -70,31 +69,11 @@ pub fn test(repository: &Repository, extent: Extent) -> ExitCode {
         steps.take("oldest compiler", || finish(oldest?));
         steps.take("python", || python::test(repository, &[python::ALL]));
         steps.take("windows", || cross::quick(repository, windows?));
-        steps.take("figures", || figures::compare(repository));
         steps.take("bits", || bits::quick(repository));
         steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
         steps.take("faults", || faults::rounds_of(repository, 1));
     }
     steps.close()
-}
-
-/// Writes the figures that documents quote: has them told by their tests, `long` campaigns included or not.
-///
-/// # Errors
-/// When a test fails, or a document cannot be written.
-pub fn write_figures(repository: &Repository, long: bool) -> Result<(), String> {
-    figures::forget(repository)?;
-    let [rust, python] = figures::tellers(&repository.root)?;
-    let stems = rust.iter().filter_map(|file| file.strip_prefix("tests/")?.strip_suffix(".rs"));
-    let mut test = repository.cargo(&["test", "--release"]);
-    test.args(stems.flat_map(|stem| ["--test", stem])).envs(long.then_some(("ENMM_LONG", "1")));
-    repository::run(&mut test)?;
-    repository::run(&mut repository.cargo(&["build", "--release", "--workspace", "--examples"]))?;
-    let counts = python::test(repository, &python.iter().map(String::as_str).collect::<Vec<_>>())?;
-    if counts.failed > 0 {
-        return Err(format!("{} Python tests failed: nothing is written", counts.failed));
-    }
-    figures::write(repository)
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
