@@ -8,6 +8,9 @@ use std::path::Path;
 /// Rooms of `src/` in rank order; each imports only from those before it.
 const ROOMS: [&str; 8] = ["geometry", "cover", "mechanics", "contact", "state", "step", "model", "cosimulation"];
 const COLUMNS_MAX: usize = 120;
+const README_LINES_MAX: usize = 200;
+/// Most comments of the whole repository that begin with the word `What`.
+const RIDDLES_MAX: usize = 433;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
 const ENGINE_LINES_MAX: usize = 23_200;
 /// Folders of programs that may print.
@@ -104,6 +107,26 @@ fn the_engine_is_small_and_opens_no_files() {
 #[test]
 fn lines_fit_the_width() {
     hold(each(&[".rs", ".toml", ".md"], &[""], width_problems));
+}
+
+#[test]
+fn the_readme_is_short() {
+    hold(each(&["README.md"], &["README.md"], readme_problems));
+}
+
+#[test]
+fn comments_name_things() {
+    let comments = repository().iter().filter(|file| file.is(".rs")).map(|file| riddles(&file.text)).sum::<usize>();
+    assert!(comments <= RIDDLES_MAX, "{comments} comments begin with `What`: say the noun");
+}
+
+#[test]
+fn constants_in_tables_of_documents_are_those_of_the_code() {
+    let files = repository();
+    let rows: Vec<Constant> = files.iter().filter(|file| file.is(".md")).flat_map(constants).collect();
+    assert!(rows.len() > 45, "only {} constants", rows.len());
+    hold(rows.iter().filter_map(|row| constant_problem(row, &files)).collect());
+    hold(each(&[".md"], &[""], hidden_problems));
 }
 
 #[test]
@@ -258,16 +281,82 @@ fn file_access_problems(file: &File) -> Vec<String> {
     named.map(|(line, _)| format!("{}:{line}: opens a file, which is for `crates/io/`", file.path)).collect()
 }
 
-/// Tables and lines with an address are excepted in Markdown, because neither can be broken. Marks of figures, which
-/// stand in no reader's way, take no room.
+/// Tables and lines with an address are excepted in Markdown, because neither can be broken.
 fn width_problems(file: &File) -> Vec<String> {
     let excepted = |line: &str| file.is(".md") && (line.trim_start().starts_with('|') || line.contains("://"));
-    let wide = |line: &str| without_marks(line).chars().count() > COLUMNS_MAX && !excepted(line);
+    let wide = |line: &str| line.chars().count() > COLUMNS_MAX && !excepted(line);
     numbered(&file.text).filter(|(_, line)| wide(line)).map(|(k, _)| format!("{}:{k}: too wide", file.path)).collect()
 }
 
-fn without_marks(line: &str) -> String {
-    line.split("<!--=").map(|part| part.split_once("-->").map_or(part, |(_, rest)| rest)).collect()
+/// Lines of a README beyond its length, and those that are too wide, even with an address.
+fn readme_problems(file: &File) -> Vec<String> {
+    let bad = |(k, line): &(usize, &str)| *k > README_LINES_MAX || line.chars().count() > COLUMNS_MAX;
+    numbered(&file.text).filter(bad).map(|(k, _)| format!("{}:{k}: too long or too wide", file.path)).collect()
+}
+
+/// Number of comments that begin with the word `What` in place of a noun.
+fn riddles(text: &str) -> usize {
+    let starts = |line: &&str| {
+        let line = line.trim_start();
+        line.starts_with("//") && line.trim_start_matches(['/', '!']).starts_with(" What ")
+    };
+    text.lines().filter(starts).count()
+}
+
+/// Row of a table with the columns constant, value and file.
+struct Constant {
+    at: String,
+    name: String,
+    value: String,
+    file: String,
+}
+
+/// Rows of the tables of constants in a document.
+fn constants(document: &File) -> Vec<Constant> {
+    let mut found = Vec::new();
+    let mut inside = false;
+    for (k, line) in numbered(&document.text) {
+        inside = line.starts_with("| constant | value | file |") || (inside && line.starts_with('|'));
+        let cells: Vec<String> = line.split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect();
+        if let [_, name, value, file, ..] = &cells[..]
+            && inside
+            && line.starts_with("| `")
+        {
+            let at = format!("{}:{k}", document.path);
+            found.push(Constant { at, name: name.clone(), value: value.clone(), file: file.clone() });
+        }
+    }
+    found
+}
+
+/// A constant of a document that its file does not have with this value.
+fn constant_problem(row: &Constant, files: &[File]) -> Option<String> {
+    let Constant { at, name, value, file } = row;
+    let text = files.iter().find(|found| found.path == *file).map_or("", |found| &found.text);
+    let quoted = numbers(value);
+    let is_same = |line: &str| value_of(line.trim(), name).is_some_and(|value| numbers(value) == quoted);
+    let fits = !quoted.is_empty() && text.lines().any(is_same);
+    (!fits).then(|| format!("{at}: `{name}` is not {value} in {file}"))
+}
+
+/// Value in `const NAME: … = VALUE;` or `NAME: VALUE,`.
+fn value_of<'a>(line: &'a str, name: &str) -> Option<&'a str> {
+    match line.split_once("const ") {
+        Some((_, rest)) => rest.strip_prefix(name)?.strip_prefix(": ")?.split_once(" = ")?.1.strip_suffix(';'),
+        None => line.strip_prefix(name)?.strip_prefix(": ")?.strip_suffix(','),
+    }
+}
+
+/// The number at the start of each part between commas; units and factors behind it do not count.
+fn numbers(value: &str) -> Vec<f64> {
+    let number = |part: &str| part.split(' ').next()?.trim_end_matches('°').replace('_', "").parse().ok();
+    value.trim_matches(['[', ']']).split(", ").filter_map(number).collect()
+}
+
+/// Invisible marks of figures.
+fn hidden_problems(file: &File) -> Vec<String> {
+    let marked = numbered(&file.text).filter(|(_, line)| line.contains("<!--="));
+    marked.map(|(k, _)| format!("{}:{k}: an invisible mark: use a table of constants", file.path)).collect()
 }
 
 fn length_problems(file: &File) -> Vec<String> {
@@ -799,8 +888,39 @@ fn width_rule_is_seen_failing() {
     assert_eq!(count(width_problems, "src/a.rs", &wide), 1);
     assert_eq!(count(width_problems, "src/a.rs", &"é".repeat(120)), 0);
     assert_eq!(count(width_problems, "a.md", &format!("{wide}\n| {wide} |\n<https://{wide}>")), 1);
-    assert_eq!(count(width_problems, "a.md", &format!("{}0.5<!--=a-->, 7<!--=b c.rs-->", "é".repeat(113))), 0);
     assert_eq!(count(width_problems, "a.toml", &format!("| {wide} |")), 1);
+}
+
+#[test]
+fn readme_rule_is_seen_failing() {
+    assert_eq!(count(readme_problems, "README.md", &"a\n".repeat(201)), 1);
+    assert_eq!(count(readme_problems, "README.md", &format!("https://{}", "a".repeat(113))), 1);
+}
+
+#[test]
+fn riddles_are_counted() {
+    assert_eq!(riddles("//! What a\n    /// What b\n// What c\n/// Whatever\n/// Says what"), 3);
+}
+
+#[test]
+fn constants_rule_is_seen_failing() {
+    let code = "pub(super) const A: f64 = 2.5e-3;\nconst W: [f64; 2] = [2.0, 8_000.0];\n    theta: 4.0,\n\
+        \x20   a_max: 5.0,\nconst M: f64 = 70.0 * std::f64::consts::PI / 180.0;";
+    let wrong = |name: &str, value: &str| {
+        let table = format!(
+            "| constant | value | file |\n|---|---|---|\n| `{name}` | {value} | `src/a.rs` |\n\n| `B` | 1 | c |"
+        );
+        let rows = constants(&file("a.md", &table));
+        assert_eq!(rows.len(), 1);
+        constant_problem(&rows[0], &[file("src/a.rs", code)]).is_some()
+    };
+    for (name, value) in [("A", "0.0025 $h$"), ("W", "2, 8000"), ("theta", "4"), ("M", "70°")] {
+        assert!(!wrong(name, value), "{name}");
+    }
+    for (name, value) in [("A", "0.0026"), ("W", "2"), ("a", "5"), ("theta", "four")] {
+        assert!(wrong(name, value), "{name}");
+    }
+    assert_eq!(count(hidden_problems, "a.md", concat!("1.25<!--", "=fos-->")), 1);
 }
 
 #[test]

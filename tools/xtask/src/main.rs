@@ -9,7 +9,6 @@ mod cross;
 mod debian;
 mod emulator;
 mod faults;
-mod figures;
 mod formulas;
 mod install;
 mod platform;

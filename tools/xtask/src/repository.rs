@@ -67,11 +67,6 @@ impl Repository {
         self.program("enmm")
     }
 
-    /// Folder in which tests tell the figures that documents quote.
-    pub fn figures(&self) -> PathBuf {
-        self.target.join("figures")
-    }
-
     /// A command of cargo in the root.
     pub fn cargo(&self, args: &[&str]) -> Command {
         let mut command = self.command(&self.cargo);
@@ -104,7 +99,7 @@ impl Repository {
     /// A command in the root.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
-        command.current_dir(&self.root).stdin(Stdio::null()).env("ENMM_FIGURES", self.figures());
+        command.current_dir(&self.root).stdin(Stdio::null());
         command
     }
 }
