@@ -1,6 +1,7 @@
 //! Claim: where joints cross, blocks are held by nothing but strength: they slide over level tops as the closed form
 //! says, and a step catches them.
 
+use crate::common::extent::by_extent;
 use crate::common::parts::rock;
 use crate::common::{run_stage, simulation, varied_rules};
 use enmm::contact::EntranceRule;
@@ -176,10 +177,11 @@ fn a_joint_more_never_bears_more() {
 
 /// Half or twice any constant of contact: blocks slide over crossings and level tops, and steps hold them.
 #[test]
-fn no_constant_decides_what_holds() {
+fn full_no_constant_decides_what_holds() {
     let base = "[[0, -1], [6, -1], [6, 0]";
     for (name, rule) in varied_rules() {
-        let mut planes: Vec<Plane> = [60.0, 90.0, 135.0].map(|angle| Plane::crossing(angle, 20.0, SIZE)).into();
+        let angles = by_extent([&[135.0][..], &[60.0, 90.0, 135.0], &[60.0, 90.0, 135.0]]);
+        let mut planes: Vec<Plane> = angles.iter().map(|&angle| Plane::crossing(angle, 20.0, SIZE)).collect();
         planes.push(Plane::block(base, [0.5, 1.5], &[1.4, 1.61, 1.82, 2.03, 2.24]));
         planes.push(stepped(0.002, 0.0));
         for plane in planes {

@@ -2,6 +2,7 @@
 //! audit of their polygons alone, and no rock is faster than its fall explains.
 
 use crate::common::claims::motion;
+use crate::common::extent::by_extent;
 use crate::common::overlap::Audit;
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation, varied_rules};
@@ -181,12 +182,6 @@ fn fails_cleanly(seed: u64) {
 }
 
 #[test]
-fn small_slopes_fail_cleanly() {
-    (0..3).for_each(fails_cleanly);
-}
-
-#[test]
 fn long_small_slopes_fail_cleanly() {
-    let last = if crate::common::extent::is_long() { 16 } else { 4 };
-    (3..last).for_each(fails_cleanly);
+    (0..by_extent([1, 4, 16])).for_each(fails_cleanly);
 }

@@ -1,6 +1,7 @@
 //! An undamped elastic block keeps its energy: leapfrog drifts by less than 1e-6 in 2e4 steps. A million steps lose
 //! neither energy nor memory nor bits.
 
+use crate::common::extent::by_extent;
 use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
 use enmm::geometry::Vector;
@@ -165,7 +166,7 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
 /// from the stress of turning rock, which is not linear, and falls with the step.
 #[test]
 fn long_a_million_steps_lose_neither_energy_nor_memory_nor_bits() {
-    let steps = if crate::common::extent::is_long() { 1_000_000 } else { 10_000 };
+    let steps = by_extent([1_000, 10_000, 1_000_000]);
     for (name, make) in [("bounces", bouncing as fn() -> Simulation), ("rests", resting)] {
         let clock = std::time::Instant::now();
         let endured = endure(make, steps);

@@ -7,7 +7,7 @@ use enmm::mechanics::Deformation;
 
 use super::consistent::{PAIRS, stiffness_block};
 use super::cover_matrix::{NotPositive, UNCOUPLED};
-use super::interval::{Inertia, Substep};
+use super::substep::{Inertia, Substep};
 
 impl Substep<'_, '_> {
     /// The pattern, when the near pairs are new, and the slots of this sub-step's contacts in it.

@@ -7,7 +7,7 @@ use enmm::state::Workspace;
 
 use super::buffers::ImplicitBuffers;
 use super::consistent::push_mass;
-use super::interval::{Inertia, Substep};
+use super::substep::{Inertia, Substep};
 
 impl Substep<'_, '_> {
     /// Internal forces at the positions reached (Eq. 7).

@@ -8,8 +8,8 @@ use enmm::step::{Regime, StepReport, potential, speed_max, stored, strain, unbal
 
 use super::balance::norm;
 use super::choices::{Implicit, Rule};
-use super::interval::{Inertia, Substep};
 use super::motion::kinetic_energy;
+use super::substep::{Inertia, Substep};
 
 impl Substep<'_, '_> {
     /// Ends a sub-step with the forces and positions that the iteration left.

@@ -14,9 +14,8 @@ use enmm::step::{
 use super::buffers::ImplicitBuffers;
 use super::choices::{Implicit, Rule};
 use super::motion::{self, kinetic_energy};
+use super::substep::{CUT, Inertia, Substep};
 
-/// Factor on a sub-step that has not settled.
-pub const CUT: f64 = 0.3;
 /// Most cuts in a row; a sub-step after that is taken as it is, and counted as unsettled.
 const CUTS_MAX: u32 = 5;
 /// Distance of a contact in reach over the way of the fastest cover in a sub-step.
@@ -81,14 +80,6 @@ impl Integrator for Implicit {
     }
 }
 
-/// A sub-step in progress: the step of the engine, and the buffers of this integrator.
-pub struct Substep<'a, 's> {
-    /// The step.
-    pub step: &'a mut Step<'s>,
-    /// The buffers.
-    pub buffers: &'a mut ImplicitBuffers,
-}
-
 /// Works on a step with the buffers that its workspace keeps.
 fn with_buffers<R>(step: &mut Step, work: impl FnOnce(Substep) -> R) -> R {
     let mut buffers = taken(step.workspace);
@@ -101,21 +92,6 @@ fn with_buffers<R>(step: &mut Step, work: impl FnOnce(Substep) -> R) -> R {
 fn taken(workspace: &mut Workspace) -> Box<ImplicitBuffers> {
     let kept = workspace.of_integrator.take().map(|buffers: Box<dyn Buffers>| buffers as Box<dyn Any>);
     kept.and_then(|buffers| buffers.downcast().ok()).unwrap_or_default()
-}
-
-/// How inertia enters a sub-step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inertia<'a> {
-    /// Consistent mass of each element.
-    pub element_mass: &'a [[f64; 6]],
-    /// Length (s).
-    pub dt: f64,
-    /// Acceleration over displacement (1/s²): 1/(β·dt²).
-    pub factor: f64,
-    /// Share of the forces at the end in the mean that works.
-    pub end: f64,
-    /// Whether the sub-step starts from rest.
-    pub rests: bool,
 }
 
 impl Substep<'_, '_> {

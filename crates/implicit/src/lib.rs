@@ -1,8 +1,8 @@
-//! The implicit integrator: Newmark's rule, a global stiffness matrix and open–close iteration with refactorisation, on
-//! the same covers, contacts and histories as the explicit one of the engine.
+//! The implicit integrator: Newmark's rule, a global stiffness matrix and open–close iteration with refactorisation,
+//! on the same covers, contacts and histories as the explicit one of the engine.
 //!
-//! A crate of its own, so that hosts of the engine that only step explicitly do not compile its linear algebra. It works
-//! on the rooms of the engine that are hidden from its documentation.
+//! A crate of its own, so that hosts of the engine that only step explicitly do not compile its linear algebra. It
+//! works on the rooms of the engine that are hidden from its documentation.
 #![forbid(unsafe_code)]
 
 mod assembly;
@@ -15,6 +15,7 @@ mod cover_matrix;
 mod interval;
 mod motion;
 mod open_close;
+mod substep;
 
 use std::any::Any;
 

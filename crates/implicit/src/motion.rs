@@ -7,7 +7,7 @@ use enmm::state::{Model, State};
 
 use super::choices::Implicit;
 use super::consistent::push_mass;
-use super::interval::{Inertia, Substep};
+use super::substep::{Inertia, Substep};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
 pub fn kinetic_energy(model: &Model, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {

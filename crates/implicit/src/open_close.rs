@@ -1,5 +1,5 @@
-//! The open–close iteration: repeats solution, states of the contacts and refactorisation until no state changes and
-//! the forces out of balance are below the tolerance. Each solution is a step of Newton's method for the rotations as well.
+//! The open–close iteration: repeats solution, contact states and refactorisation until no state changes and the
+//! forces out of balance are below the tolerance. Each solution is a step of Newton's method for the rotations as well.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use enmm::contact::ContactState;
 use enmm::geometry::Vector;
 
 use super::choices::{Implicit, Rule};
-use super::interval::{CUT, Inertia, Substep};
+use super::substep::{CUT, Inertia, Substep};
 
 /// Forces out of balance over the largest part at which a dynamic sub-step has settled.
 const BALANCED: f64 = 1e-5;

@@ -2,6 +2,7 @@
 //! method that shares no code with the dynamics but the cutting of blocks; where it is clearly lower, dilation explains
 //! that: with joints that dilate by their friction angle both agree.
 
+use crate::common::extent::by_extent;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -264,12 +265,8 @@ fn a_grain_that_creeps_makes_no_verdict_alternate() {
     assert!((0.95..1.02).contains(&(factor / bound)), "{factor} of {bound}");
 }
 
+/// A slope of each of six kinds in turn; the quick form has the first two.
 #[test]
-fn one_slope_of_each_kind_is_no_safer_than_limit_analysis_allows() {
-    compare_all(0..6);
-}
-
-#[test]
-fn long_many_slopes_are_no_safer_than_limit_analysis_allows() {
-    compare_all(6..if crate::common::extent::is_long() { 66 } else { 7 });
+fn long_slopes_are_no_safer_than_limit_analysis_allows() {
+    compare_all(0..by_extent([2, 7, 66]));
 }

@@ -60,7 +60,7 @@ fn the_plane_slide_of_the_examples_bears_what_its_formula_gives() {
 /// Joints that dilate by their friction need 42.75° there, so that 50° gives tan 50°/tan 42.75°; ±0.05° are 0.2 %.
 #[test]
 fn long_the_fractured_slope_needs_42_75_degrees() {
-    if crate::common::extent::is_long() {
+    if crate::common::extent::extent() >= crate::common::extent::Extent::Full {
         let found = of_example("fractured_slope.toml");
         let expected = 50f64.to_radians().tan() / 42.75f64.to_radians().tan();
         assert!((found.associated.factor.value() / expected - 1.0).abs() < 2e-3, "{found:?}");

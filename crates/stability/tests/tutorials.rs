@@ -100,7 +100,7 @@ fn long_the_road_cut_without_bolts_has_the_factor_of_hoek_and_bray() {
     let [(wet, exact), _] = without_bolts(&all);
     let limit = limit(&wet);
     assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
-    if crate::common::extent::is_long() {
+    if crate::common::extent::extent() >= crate::common::extent::Extent::Full {
         wedge_as_its_comment_says(&all, "water, no bolts", &wet, exact);
     }
 }

@@ -1,5 +1,6 @@
 //! Claim: problems pass with other values of their parameters, too: other shapes, planes, rocks and time steps.
 
+use crate::extent::by_extent;
 use enmm::model::case::Integrator;
 use enmm_verification::{Setup, Values, problems};
 
@@ -209,8 +210,8 @@ fn d5_drop_of_less_on_a_softer_spring() {
 /// Sixty seconds; the wall of 20 × 20 bricks with `ENMM_LONG=1`, one of 5 × 5 otherwise.
 #[test]
 fn long_e2_a_wall_rests_for_a_minute() {
-    let side = if crate::extent::is_long() { 20.0 } else { 5.0 };
-    let failing = solve("E2", false, &[("columns", side), ("courses", side), ("seconds", 60.0)]);
+    let (side, seconds) = by_extent([(5.0, 6.0), (5.0, 60.0), (20.0, 60.0)]);
+    let failing = solve("E2", false, &[("columns", side), ("courses", side), ("seconds", seconds)]);
     assert!(failing.is_empty(), "{failing:#?}");
 }
 
