@@ -27,7 +27,7 @@ fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
     format!("[[initial_velocity]]\nblock = {point:?}\nvelocity = {velocity:?}\n")
 }
 
-/// What the audit of a run found.
+/// Result of the audit of a run.
 #[derive(Debug, Default)]
 struct Worst {
     /// Deepest overlap (m).

@@ -40,7 +40,7 @@ fn built() -> Simulation {
     Simulation::new(loaded.case).unwrap_or_else(|invalid| panic!("{}: {}", invalid.key, invalid.message))
 }
 
-/// What is told now is what a copy without anything kept tells.
+/// The report now is that of a copy without cached values.
 fn is_of_now(simulation: &Simulation, after: &str) {
     let mut copy = simulation.clone();
     copy.restore(simulation.state().clone());

@@ -111,7 +111,7 @@ fn residual(simulation: &mut Simulation) -> [f64; 2] {
     [report.ledger.residual() - 0.25 * impulse, report.ledger.largest()]
 }
 
-/// What many steps have left.
+/// Measures of a run of many steps.
 #[derive(Debug, Default)]
 struct Endured {
     /// Largest residual over the largest energy so far, in the first tenth of the steps and in all of them.

@@ -28,7 +28,7 @@ fn step(simulation: &mut Simulation, seconds: f64) -> StepReport {
     (0..steps).fold(StepReport::default(), |_, k| simulation.advance(k + 1 == steps).unwrap_or_else(|e| panic!("{e}")))
 }
 
-/// What the springs bore stays as constant forces: a model at rest stays at rest when motion begins, and again when a
+/// The reactions of the springs stay as constant forces: a model at rest stays at rest when motion begins, and when a
 /// static stage gives the springs back. The forces out of balance at 1e-7 of the weight move it by 1e-7 of the
 /// settlement (3e-4 m), over and over as nothing holds it to its place: 1e-4 of it is allowed.
 #[test]

@@ -87,7 +87,7 @@ pub struct VertexEdge {
 // Large slopes have a million of them and more.
 const _: () = assert!(size_of::<VertexEdge>() <= 192);
 
-/// What the contacts of a step share.
+/// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
 pub struct ContactSetting<'a> {
     /// Boundary of the blocks, and its edges and nodes at their current positions.

@@ -1,4 +1,4 @@
-//! What a host can set. Every value is checked, holds until it is set again, and is part of saved states.
+//! Inputs of a host. Every value is checked, holds until it is set again, and is part of saved states.
 //!
 //! A value that is set acts from the start of the next communication step on, or is reached at its end by
 //! [`Interpolation::Linear`](super::Interpolation) (Eq. 32). In the ramp of a first static stage all inputs grow with

@@ -31,7 +31,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// What has happened so far.
+    /// Outcome so far.
     pub fn info(&self) -> &StepInfo {
         &self.info
     }
@@ -42,7 +42,7 @@ impl Interval {
     }
 }
 
-/// What happened in a communication step.
+/// Outcome of a communication step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepInfo {
     /// Time that the model has reached (s).

@@ -11,15 +11,15 @@ use super::Simulation;
 use super::case::StageKind;
 use super::case::limits::FACTOR_MAX;
 
-/// What is wrong with a state.
+/// Value of a state that the model cannot have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what} is {value}, must be {limit}")]
 pub struct Unfit {
     /// Where.
     pub what: String,
-    /// What is there.
+    /// Value found.
     pub value: String,
-    /// What may be there.
+    /// Values that are allowed.
     pub limit: String,
 }
 
@@ -256,7 +256,7 @@ impl Simulation {
         vectors("neighbours.found_at", found_at, LENGTH)
     }
 
-    /// What stages change: supports, fixities, blocks that are gone, laws and bolts.
+    /// Checks what stages change: supports, fixities, blocks that are gone, laws and bolts.
     fn check_stages(&self, state: &State) -> Fit {
         let own = self.state();
         length("support_force", state.support_force.len(), own.support_force.len())?;

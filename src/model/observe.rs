@@ -1,4 +1,4 @@
-//! What a model shows at one instant: the snapshot that outputs draw, and the state of every block.
+//! Observation of a model at one instant: the snapshot that outputs draw, and the state of every block.
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 

@@ -106,7 +106,7 @@ impl Simulation {
         self.workspace.serial = serial;
     }
 
-    /// What a host has set, to be changed.
+    /// Inputs of the host, to be changed.
     pub fn drive(&mut self) -> &mut Drive {
         self.report.take();
         &mut self.built.state.drive

@@ -1,4 +1,4 @@
-//! What the implicit integrator keeps: its choices and masses (fixed), and its buffers.
+//! Data of the implicit integrator: its options and masses (fixed), and its buffers.
 
 use crate::contact::ContactState;
 use crate::cover::CoverId;

@@ -1,4 +1,4 @@
-//! What a step asks of its integrator.
+//! Interface between a step and its integrator.
 
 use crate::contact::VertexEdge;
 use crate::geometry::Vector;
@@ -7,7 +7,7 @@ use crate::state::{Model, State, Workspace};
 
 use super::{Step, StepReport};
 
-/// What the explicit and the implicit integrator do each in its own way.
+/// Parts of a step that the explicit and the implicit integrator do each in its own way.
 pub(super) trait Integrator: Sync {
     /// Sizes buffers that the other has no use for, under the fixities that hold.
     fn prepare(&self, _model: &Model, _workspace: &mut Workspace) {}

@@ -1,4 +1,4 @@
-//! What a stage needs before its first step: masses with its fixities, buffers, reference of the static damping.
+//! Preparation of a stage before its first step: masses with its fixities, buffers, reference of the static damping.
 
 use crate::contact::{Support, SupportRow};
 use crate::cover::CoverId;

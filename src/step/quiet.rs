@@ -42,7 +42,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// What the supports answer to in a sub-step: springs to the position at its end (Eq. 23), dashpots to the
+    /// Sets the supports for a sub-step: springs act by the position at its end (Eq. 23), dashpots by the
     /// mean of the velocities before and after it (Eqs. 46, 47).
     pub(super) fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
         let (model, state) = (self.model, &*self.state);

@@ -11,7 +11,7 @@ use enmm_io::files::write_atomic;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
-/// What to time.
+/// Models to time, and options.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Models by name, separated by commas: continuum_N, fractured_resting, fractured_failing, slope_NxM (N blocks of M
@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Predict what a step of the models takes on up to 64 threads. Default models: slopes of 2 000 and 10 000 blocks.
     #[arg(long, conflicts_with = "peers")]
     predict_threads: bool,
-    /// What tells these results from others, such as commit and date.
+    /// Label of these results, such as commit and date.
     #[arg(long, default_value = "Measured", value_name = "TEXT")]
     label: String,
 }

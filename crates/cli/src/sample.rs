@@ -229,7 +229,7 @@ fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptio
     ExitCode::SUCCESS
 }
 
-/// What was found, as lines of a name and a text.
+/// Results, as lines of a name and a text.
 fn table(found: &EnsembleResult, options: &EnsembleOptions) -> String {
     let mut lines = Vec::new();
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<23} {text}"));

@@ -27,7 +27,7 @@ pub enum RunStatus {
     Failed,
 }
 
-/// What a run was, did and cost.
+/// Setting, results and cost of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// Title of the case.
@@ -72,7 +72,7 @@ pub struct Summary {
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
     pub threads: usize,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Why the results of a run that has ended are worthless; it is among the warnings too.
     #[serde(skip)]
@@ -176,7 +176,7 @@ pub struct StageRecord {
     pub penetration_max: f64,
 }
 
-/// What a bar segment does.
+/// State of a bar segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BarState {
@@ -205,7 +205,7 @@ pub struct BoltRecord {
     pub force: f64,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
-    /// What it does.
+    /// Its state.
     pub state: BarState,
 }
 
@@ -306,7 +306,7 @@ impl WallSeconds {
     }
 }
 
-/// What only the driver of a run knows of it.
+/// Record that only the driver of a run has.
 pub(super) struct RunRecord<'a> {
     pub case_file: &'a str,
     pub case_hash: &'a str,

@@ -26,13 +26,13 @@ fn simulation(text: &str) -> Simulation {
     Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What `enmm fos` finds.
+/// Factor of safety by `enmm fos`.
 fn factor(text: &str) -> f64 {
     let found = factor_of_safety(&case(text), &ReductionOptions::default(), &mut |_, _| {});
     found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
 }
 
-/// What `enmm bound` finds for joints that dilate by their friction angle.
+/// Factor by `enmm bound` for joints that dilate by their friction angle.
 fn limit(text: &str) -> f64 {
     bound(&case(text)).unwrap_or_else(|e| panic!("{e}")).associated.factor.value()
 }

@@ -5,7 +5,7 @@ use enmm::model::case::key::{list, nearest};
 
 use crate::{Job, Problem, Trouble, Values};
 
-/// What a user asks for.
+/// Problems and parameters that a user requests.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
     /// IDs or beginnings of IDs, such as `C6` or `B`; none means all.

@@ -30,7 +30,7 @@ fn solve(quick: bool, only: &[&str]) -> Record {
     Record::of(&solve_all(jobs, 2, |_, _| ()))
 }
 
-/// What differs between rows that are computed now and rows of the report.
+/// Differences between rows that are computed now and rows of the report.
 fn differences(id: &str, now: &[RowRecord], reported: &[RowRecord]) -> Vec<String> {
     let names = |rows: &[RowRecord]| rows.iter().map(|row| row.quantity.clone()).collect::<Vec<_>>();
     if names(now) != names(reported) {

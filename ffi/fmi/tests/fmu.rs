@@ -345,7 +345,7 @@ fn the_library_is_found_beside_the_program_and_the_newer_one_wins() {
     }
 }
 
-/// What the descriptions promise by `dependencies=""`.
+/// Promise of the descriptions by `dependencies=""`.
 #[test]
 fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
     let loaded = case(CASES[0]);

@@ -382,7 +382,7 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// What is found of the near sides of a run.
+/// Results for the near sides of a run.
 #[derive(Clone, Copy)]
 struct Found<'a> {
     near_pairs: &'a [NearPair],

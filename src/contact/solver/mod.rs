@@ -49,7 +49,7 @@ pub struct SolverOptions {
     pub serial: bool,
 }
 
-/// What the iteration did.
+/// Report of the iteration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SolverReport {
     /// Sweeps done, those over what still moved included.
@@ -80,7 +80,7 @@ pub struct Approach<'a> {
     pub forward: f64,
     /// Damping ratio of a dynamic stage.
     pub damping: Option<f64>,
-    /// What the contacts share.
+    /// Data that the contacts share.
     pub setting: ContactSetting<'a>,
     /// Centroids of the blocks.
     pub motion: &'a [BlockMotion],
@@ -95,7 +95,7 @@ impl Approach<'_> {
     }
 }
 
-/// What a step is solved with.
+/// Inputs of the solver in a step.
 #[derive(Clone, Copy)]
 struct SolverInputs<'a> {
     mass_matrix: &'a MassMatrix,
@@ -103,7 +103,7 @@ struct SolverInputs<'a> {
     approach: &'a Approach<'a>,
 }
 
-/// What is solved in a step besides contacts.
+/// Constraints that are solved in a step besides contacts.
 pub struct OtherConstraints<'a> {
     /// Supports of this step.
     pub rows: &'a mut [SupportRow],
@@ -127,7 +127,7 @@ pub struct OpenClose {
     block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
     cuts: Vec<(BlockId, CoverId)>,
-    /// What a [`SolverView`] has of the covers.
+    /// Inverse masses of the covers, as a [`SolverView`] holds them.
     masses: Vec<Vector>,
 }
 

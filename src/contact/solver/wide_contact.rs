@@ -72,7 +72,7 @@ impl Start {
     }
 }
 
-/// What a row is made from.
+/// Contacts and order from which a wide contact is made.
 pub struct ContactView<'a> {
     /// Contacts of the step, and the one of each turn.
     pub contacts: &'a [VertexEdge],
@@ -368,7 +368,7 @@ fn along<T: Arithmetic>([x, y]: [T; 2], vector: [T; 2]) -> [T; 2] {
 }
 
 impl SoftSpring<F64x8> {
-    /// What springs ask for at velocities (m/s) by all impulses so far.
+    /// Force of the springs at velocities (m/s) by all impulses so far.
     #[inline(always)]
     fn ask<L: Values>(&self, lanes: L, velocity: L::F, force: L::F) -> L::F {
         lanes.load(&self.rest) - lanes.load(&self.rate) * velocity + lanes.load(&self.kept) * force

@@ -1,4 +1,4 @@
-//! What the implicit integrator needs of a case, and what it does not know.
+//! Options of the implicit integrator from a case, and refusal of features that it does not support.
 
 use crate::cover::Covers;
 use crate::geometry::polygon;

@@ -36,7 +36,7 @@ pub struct Built {
     pub state: State,
     /// Element and reference point of each monitor.
     pub monitors: Vec<(ElementId, Point)>,
-    /// What the noder did.
+    /// Report of the noder.
     pub noding: NodingReport,
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
     pub boundary_pieces: usize,
@@ -44,7 +44,7 @@ pub struct Built {
     pub traces: Vec<(Vec<Point>, LawId)>,
     /// First of these traces of each joint set, and one past the last.
     pub set_start: Vec<usize>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -168,7 +168,7 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     Ok((fixities, supports, of_case, quiets))
 }
 
-/// What acts on faces of the rock.
+/// Loads, ports and water on faces of the rock.
 type OnFaces = (Vec<Load>, Vec<Port>, Option<Water>);
 
 fn on_faces(case: &Case, positions: &Locator, boundary: &Boundary) -> Result<OnFaces, Invalid> {

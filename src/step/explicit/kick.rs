@@ -17,7 +17,7 @@ use super::chunk_runs::{Cut, Run, Work};
 /// Covers from which on a step does not find them in the caches, and the next chunk is asked for in advance.
 const ASKED: usize = 1 << 17;
 
-/// What every block of a step shares.
+/// Data that every block of a step shares.
 pub(super) struct Kick<'a> {
     pub model: &'a Model,
     pub state: &'a State,
@@ -74,7 +74,7 @@ impl Kick<'_> {
         }
     }
 
-    /// What the chunk after this one will read.
+    /// Data that the chunk after this one will read.
     fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
         let (start, count) = (chunk.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
@@ -297,7 +297,7 @@ impl Kick<'_> {
     }
 }
 
-/// What a kick fills.
+/// Arrays that a kick fills.
 pub(super) struct KickOut<'a> {
     pub predicted: &'a mut [Vector],
     pub motion: &'a mut [BlockMotion],

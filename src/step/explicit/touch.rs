@@ -1,4 +1,4 @@
-//! What contacts, supports and bolts answer: who takes part in an explicit sub-step, and the open–close iteration.
+//! Contacts, supports and bolts of an explicit sub-step: their selection, and the open–close iteration.
 
 use std::time::Instant;
 

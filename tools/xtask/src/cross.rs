@@ -50,7 +50,7 @@ const COLD: [&str; 19] = [
     "zip",
 ];
 
-/// What an FMU may have for each platform (bytes).
+/// Most bytes of an FMU for each platform.
 const FMU_SIZE_MAX: u64 = 8_000_000;
 
 /// Builds for a platform; with `--test` in `words` it then tests what it has built. `--quick` is the share of

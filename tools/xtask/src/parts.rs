@@ -1,4 +1,4 @@
-//! What our libraries and program consist of: a list of their Rust crates (CycloneDX) and the licences of these, which
+//! Parts of our libraries and program: a list of their Rust crates (CycloneDX) and the licences of these, which
 //! travel in every FMU and wheel.
 
 use std::collections::{BTreeMap, BTreeSet};

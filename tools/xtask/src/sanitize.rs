@@ -28,7 +28,7 @@ const HOST_FLAGS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-re
 /// A flood is a find, as without the sanitizer, which takes too much address space for a limit of that.
 const ASAN_OPTIONS: &str = "detect_leaks=1:hard_rss_limit_mb=4096:allocator_may_return_null=1";
 
-/// What came of a tool.
+/// Verdict of a tool.
 enum Verdict {
     Clean(String),
     Missing(&'static str),
@@ -47,7 +47,7 @@ const TOOLS: [Tool; 4] = [
 /// Runs all tools that are there; fails when one finds something.
 ///
 /// # Errors
-/// What was found.
+/// When a tool finds something.
 pub fn run(repository: &Repository) -> Result<(), String> {
     let mut bad = Vec::new();
     for (name, act) in TOOLS {

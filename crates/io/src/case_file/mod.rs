@@ -22,7 +22,7 @@ pub struct LoadedCase {
     pub source: CaseSource,
     /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
     pub hash: String,
-    /// What the user should know though it is no error.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Values that took the place of those of the case file, as `key=value`.
     pub settings: Vec<String>,

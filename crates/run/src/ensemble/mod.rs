@@ -120,7 +120,7 @@ pub enum EnsembleError {
     Output(io::Error),
 }
 
-/// What a worker answers.
+/// Result of a worker.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
     /// The sample is done.

@@ -1,4 +1,4 @@
-//! What a run leaves at its start and end beside histories and frames: pictures, and the directory itself.
+//! Files of a run at its start and end beside histories and frames: pictures, and the directory itself.
 
 use std::fs;
 use std::io;
@@ -33,7 +33,7 @@ const STAGE_PICTURES: [(PictureKind, &[&str]); 7] = [
     (PictureKind::MeanStressContours, &["mean_stress_contours"]),
 ];
 
-/// What tells that a run has written into a directory.
+/// Files by which a directory is known as that of a run.
 const TRACES: [&str; 2] = ["history.csv", "summary.json"];
 
 /// Makes the directory, removes what a killed run left half written, and tells whether a run has been here before.

@@ -199,7 +199,7 @@ fn state_code(state: ContactState) -> u8 {
     }
 }
 
-/// What a frame shows beside the elements.
+/// Structures that a frame shows beside the elements.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Structures {
     /// Joints.
@@ -379,7 +379,7 @@ fn listed_frames(text: &str) -> io::Result<Vec<Frame>> {
 /// An unstructured grid whose cells have their own points, stored in the order of the cells.
 struct Grid<'a> {
     time: f64,
-    /// What numbers stand for.
+    /// Meanings of numbers.
     names: Vec<Array<'a>>,
     points: Array<'a>,
     cell_type: u8,

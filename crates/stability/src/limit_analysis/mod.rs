@@ -86,7 +86,7 @@ pub struct Collapse {
     pub mechanism: Vec<MovingBlock>,
 }
 
-/// What limit analysis says of a model.
+/// Result of limit analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bound {
     /// Corners that face each other at crossings may pass through each other: exact for joints that dilate by their
@@ -108,7 +108,7 @@ pub struct Bound {
     pub corners: usize,
     /// Linear programs that were solved.
     pub programs: usize,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -126,7 +126,7 @@ pub enum BoundError {
     Unsolved {
         /// Blocks that can move.
         blocks: usize,
-        /// What the solver says.
+        /// Status of the solver.
         status: String,
     },
 }

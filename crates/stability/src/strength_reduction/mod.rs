@@ -53,7 +53,7 @@ pub struct Trial {
     pub factor: f64,
     /// Whether the slope bears it.
     pub verdict: Verdict,
-    /// What told so.
+    /// Reason of the verdict.
     pub reason: Reason,
     /// Simulated time (s).
     pub time: f64,
@@ -134,7 +134,7 @@ pub enum End {
     Failed(StepError),
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Reduction {
     /// All trials, ascending in F.
@@ -153,7 +153,7 @@ pub struct Reduction {
     pub free_area: f64,
     /// Limit analysis of the same model, or why there is none.
     pub bound: Result<Bound, String>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,

@@ -33,7 +33,7 @@ pub enum Stop {
     Failed(StepError),
 }
 
-/// What all trials begin with.
+/// Common start of all trials.
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,

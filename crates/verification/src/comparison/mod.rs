@@ -28,7 +28,7 @@ fn origin() -> String {
 pub struct Entry {
     /// Model.
     pub model: &'static str,
-    /// What varies.
+    /// Variant.
     pub variant: String,
     /// Method.
     pub integrator: Integrator,
@@ -62,7 +62,7 @@ pub const FAILING: f64 = 1.0;
 pub struct Failure {
     /// Cost of the failure, without that of coming to rest.
     pub entry: Entry,
-    /// What it has done after [`FAILING`] seconds.
+    /// Motion after [`FAILING`] seconds.
     pub totals: Totals,
 }
 

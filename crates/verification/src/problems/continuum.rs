@@ -1,4 +1,4 @@
-//! What the continuum problems share: quarter models of holes and discs, tractions of a known field on their far
+//! Helpers for continuum problems: quarter models of holes and discs, tractions of a known field on their far
 //! edges, and stresses at points.
 
 use enmm::geometry::{Point, Vector};

@@ -31,7 +31,7 @@ pub struct Columns {
     pub size: f64,
 }
 
-/// What a column does at the limit.
+/// Mode of a column at the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
     /// It stands by itself.

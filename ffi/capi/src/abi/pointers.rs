@@ -1,4 +1,4 @@
-//! What pointers of hosts may do here: each function says what the pointer must be and checks what can be checked.
+//! Pointers of hosts: each function says what the pointer must be and checks what can be checked.
 
 use std::ffi::CStr;
 

@@ -104,7 +104,7 @@ pub fn write_resources(loaded: &LoadedCase, folder: &Path) {
     std::fs::write(resources.join("case.json"), enmm_fmi::resource::encode(loaded, "case").unwrap()).unwrap();
 }
 
-/// What an importer may choose.
+/// Choices of an importer.
 #[derive(Default, Clone)]
 pub struct Options {
     pub token: Option<String>,
@@ -122,7 +122,7 @@ pub type Line = (Status, String, String);
 #[derive(Default)]
 pub struct Log {
     pub lines: Mutex<Vec<Line>>,
-    /// What the logger does at the next message.
+    /// Action of the logger at the next message.
     pub meddle: Mutex<Option<Meddle>>,
     pub updates: Mutex<Updates>,
 }

@@ -45,7 +45,7 @@ const ROOM: f64 = 2.0;
 /// Step of the search for such a spacing.
 const WIDER: f64 = 1.1;
 
-/// What a case asks for, and the box of its rock (m).
+/// Sizes that a case demands, and the box of its rock (m).
 pub(super) struct Demand<'a> {
     pub case: &'a Case,
     pub low: Point,
@@ -292,7 +292,7 @@ impl Demand<'_> {
         }
     }
 
-    /// What an arrangement that fails has to tell.
+    /// Message for an arrangement that fails.
     pub fn explain(&self, error: &GeometryError) -> Invalid {
         if matches!(error, GeometryError::TooManyPieces { .. }) {
             return self.refuse(&error.to_string());

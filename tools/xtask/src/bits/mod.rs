@@ -203,7 +203,7 @@ fn newlines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
 
-/// What stands around a place in a text, within its line.
+/// Text around a place, within its line.
 fn excerpt(text: &str, at: usize) -> String {
     const AROUND: usize = 24;
     let start =

@@ -113,7 +113,7 @@ impl Place {
     }
 }
 
-/// What a run complained of.
+/// Complaint of a run.
 pub fn complaint(answer: &Output) -> String {
     String::from_utf8_lossy(&answer.stderr).trim().to_owned()
 }
