@@ -53,7 +53,7 @@ fn audit(simulation: &mut Simulation, every: u64) -> Worst {
         }
     }
     println!("{worst:?}, {:?}", simulation.state().counters);
-    // A ledge lower than that bears nothing.
+    // A ledge lower than that carries nothing.
     assert!(worst.unheld < EntranceRule::default().ledge * SIZE, "{worst:?}");
     worst
 }

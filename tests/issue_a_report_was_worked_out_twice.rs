@@ -1,4 +1,4 @@
-//! A report on a state costs a step. It is worked out once for every state, and anew whenever the state, its inputs or
+//! A report on a state costs a step. It is worked out once for every state, and again whenever the state, its inputs or
 //! its stage have changed: nothing that is kept is ever old.
 
 use std::path::Path;

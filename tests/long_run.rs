@@ -151,7 +151,7 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
     for k in steps / 2 + 1..steps {
         advance(&mut other, k % 100 == 99);
     }
-    // A restored model searches anew at once: the one thing that it counts and an uninterrupted one does not.
+    // A restored model searches again at once: the one thing that it counts and an uninterrupted one does not.
     let bits = |simulation: &Simulation| {
         let mut state: State = simulation.state().clone();
         state.counters.searches = 0;

@@ -1,4 +1,5 @@
-//! Claim: a quiet boundary holds in static stages, bears on in dynamic ones, lets plane waves leave and brings them in.
+//! Claim: a quiet boundary holds in static stages, keeps its reaction in dynamic ones, lets plane waves leave and
+//! brings them in.
 
 use crate::common::claims::stresses;
 use crate::common::parts::dynamic;
@@ -49,8 +50,8 @@ fn what_was_borne_is_borne_on() {
     }
 }
 
-/// In-situ stress is borne from the start, as by fixities: a continuum under uniform stress that its boundaries balance
-/// does not move, up to the rounding of the stress itself.
+/// In-situ stress is carried from the start, as by fixities: a continuum under uniform stress that its boundaries
+/// balance does not move, up to the rounding of the stress itself.
 #[test]
 fn in_situ_stress_is_borne_from_the_start() {
     let edges = ["[[0, 0], [4, 0]]", "[[4, 0], [4, 4]]", "[[4, 4], [0, 4]]"];

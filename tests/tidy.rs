@@ -56,7 +56,7 @@ const SUMMARY: &str = "docs/SUMMARY.md";
 const GLOSSARY: &str = "docs/glossary.md";
 /// Rooms whose public types the glossary explains.
 const EXPLAINED: [&str; 3] = ["contact", "step", "mechanics"];
-/// Heads of the sections that tell a tale by names of the code.
+/// Heads of the sections that describe a life by names of the code.
 const TALES: &str = "## The life of a ";
 
 /// A file of the repository; `text` is empty for kinds that are not text.

@@ -138,7 +138,7 @@ impl Cosimulation {
         }
     }
 
-    /// Sets inputs; `change` tells whether one is new.
+    /// Sets inputs; `change` returns whether one is new.
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
         let changed = change(&mut drive.to);
@@ -146,7 +146,7 @@ impl Cosimulation {
     }
 }
 
-/// Replaces a value and tells whether it is another.
+/// Replaces a value and returns whether it is another.
 fn replace<T: Copy + PartialEq>(old: &mut T, new: T) -> bool {
     let changed = *old != new;
     *old = new;

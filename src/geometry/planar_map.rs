@@ -56,7 +56,7 @@ impl Label {
         Self { outline: -self.outline, trace: self.trace, mesh: self.mesh, mesh_reversed }
     }
 
-    /// Tells whether nothing is left: two outlines that cancel, no trace, no mesh.
+    /// Whether nothing is left: two outlines that cancel, no trace, no mesh.
     pub(super) const fn is_empty(self) -> bool {
         self.outline == 0 && self.trace.is_none() && self.mesh.is_none()
     }
@@ -224,7 +224,7 @@ impl Arrangement {
         self.cycle(half_edge).map(|h| self.points[self.origin(h)]).collect()
     }
 
-    /// Tells whether rock lies on both sides of an edge.
+    /// Whether rock lies on both sides of an edge.
     pub fn in_rock(&self, edge: usize) -> bool {
         HalfEdgeId::both(edge).iter().all(|&h| self.faces[self.face[h]].winding != 0)
     }

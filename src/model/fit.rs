@@ -1,5 +1,5 @@
 //! Whether a state that comes from outside can be one of this model: lengths, indices and numbers. What passes makes no
-//! index go astray and no square of a number overflow; the first thing that does not is told by name.
+//! index go astray and no square of a number overflow; the error names the first value that does not fit.
 
 use std::fmt::Display;
 

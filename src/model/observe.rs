@@ -193,7 +193,7 @@ impl Simulation {
         states
     }
 
-    /// The state of one block without what its contacts tell.
+    /// The state of one block without the quantities of its contacts.
     pub fn motion_of(&self, block: BlockId) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;

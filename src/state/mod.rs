@@ -58,7 +58,7 @@ pub struct State {
     pub neighbours: NeighbourList,
     /// Force of each support (N/m).
     pub support_force: Vec<f64>,
-    /// Displacement along each support's direction at which it bears only its preload (m).
+    /// Displacement along each support's direction at which it carries only its preload (m).
     pub support_rest: Vec<f64>,
     /// Whether each fixity holds.
     pub fix_active: Vec<bool>,

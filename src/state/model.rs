@@ -90,7 +90,7 @@ pub struct BaseMotion {
     pub motion: TimedRecord,
 }
 
-/// A boundary that holds in static stages, and in dynamic ones bears what it bore and lets waves leave.
+/// Viscous boundary: fixed in static stages; in dynamic stages it keeps the static reaction and absorbs waves.
 #[doc(alias = "absorbing boundary")]
 #[doc(alias = "viscous boundary")]
 #[derive(Debug, Clone, PartialEq)]

@@ -32,7 +32,7 @@ pub struct Workspace {
     pub damping_of: Option<Damping>,
     /// Whether all covers of each chunk can move along both axes.
     pub movable: Vec<bool>,
-    /// Whether contacts, supports or bolts may ask for the predicted velocity of each cover: only these have it whole.
+    /// Whether contacts, supports or bolts may read the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
     /// Sums over chunks.
     pub sums: Vec<ChunkSums>,

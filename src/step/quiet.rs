@@ -7,7 +7,7 @@ use crate::state::{Model, State};
 
 use super::{Regime, Step, StepTimes, records};
 
-/// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
+/// Supports of quiet boundaries whose springs are frozen: each keeps its last force.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
     let first = model.fixed_supports as usize;
     let is_frozen = |support: &Support| {

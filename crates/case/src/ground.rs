@@ -56,7 +56,7 @@ pub struct BaseMotion {
 }
 
 /// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
-/// holds like a fixity; in dynamic stages the forces that it bore then stay on.
+/// holds like a fixity; in dynamic stages its static reactions stay as constant forces.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Quiet {

@@ -140,7 +140,7 @@ fn row(t: &Trial, progress: Progress) -> String {
     )
 }
 
-/// Prints what was found, without the warning that was `told` before the first trial.
+/// Prints what was found, without the warning that was printed before the first trial.
 fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&String>) -> ExitCode {
     if arguments.json {
         match std::fs::read_to_string(directory.join("fos.json")) {

@@ -149,7 +149,7 @@ pub enum BoltState {
     /// It is installed later, or its rock is gone.
     #[default]
     Absent,
-    /// It bears, or it is slack.
+    /// It is whole: in tension, or slack.
     Whole,
     /// It has yielded.
     Yielded,

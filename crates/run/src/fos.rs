@@ -104,7 +104,7 @@ pub enum FosError {
     /// The slope does not come to rest, or fails numerically, before the trials.
     #[error("{0}")]
     NoRest(ReductionError),
-    /// The caller asked to stop before the first trial.
+    /// The caller stopped it before the first trial.
     #[error("interrupted before the first trial")]
     Interrupted,
     /// The threads cannot be started.

@@ -21,7 +21,7 @@ use enmm_picture::structures::BoltKind;
 pub enum RunStatus {
     /// All stages are over.
     Finished,
-    /// The caller asked it to stop; a checkpoint was written.
+    /// The caller stopped it; a checkpoint was written.
     Interrupted,
     /// A numerical failure; the checkpoint holds the last good state.
     Failed,
@@ -182,7 +182,7 @@ pub struct StageRecord {
 pub enum BarState {
     /// It is not installed, or a block that held it is gone, whatever the bar did before.
     Absent,
-    /// It bears no force.
+    /// It carries no force.
     Slack,
     /// It is in tension and has never yielded.
     Elastic,

@@ -139,7 +139,7 @@ fn the_columns_of_the_drawing_topple() {
     assert!(crest.x < -1.0 && crest.x.abs() > crest.y.abs() && behind.norm() < 0.01, "{crest:?} {behind:?}");
 }
 
-/// Fresh columns without dilation bear less than limit analysis allows, which lets joints dilate.
+/// Fresh columns without dilation are weaker than limit analysis allows, which lets joints dilate.
 #[test]
 fn the_fresh_columns_bear_less_than_limit_analysis_allows() {
     let text = text("toppling");

@@ -61,7 +61,7 @@ fn message(payload: &(dyn Any + Send)) -> &str {
 }
 
 /// Solves problems, `threads` at a time, and returns them in the order of the jobs. Results do not depend on
-/// `threads`. `done` is told of each with its place, in the order in which they end.
+/// `threads`. `done` is called with each with its place, in the order in which they end.
 pub fn solve_all(jobs: Vec<Job>, threads: usize, done: impl Fn(usize, &Solved) + Sync) -> Vec<Solved> {
     let solved: Vec<Mutex<Option<Solved>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
@@ -108,7 +108,7 @@ fn file_stem(name: &str) -> String {
     if stem.trim_matches('.').is_empty() { "case".to_owned() } else { stem }
 }
 
-/// The text of a case that asks for the integrator that the problem was solved with.
+/// The text of a case that names the integrator that the problem was solved with.
 fn with_integrator(text: &str, integrator: Integrator) -> String {
     let name = match integrator {
         Integrator::Explicit => return text.to_owned(),

@@ -1,4 +1,4 @@
-//! From what a user asks for to jobs: problems by ID or prefix, values of parameters, every mistake with its remedy.
+//! From the request of a user to jobs: problems by ID or prefix, values of parameters, every mistake with its remedy.
 
 use enmm::model::case::Integrator;
 use enmm::model::case::key::{list, nearest};

@@ -1,5 +1,5 @@
-//! Claim: problems are chosen and set as asked or refused with a remedy, solved in order, and one that fails or panics
-//! shows as failed and takes no other with it.
+//! Claim: problems are chosen and set as requested or refused with a remedy, solved in order, and one that fails or
+//! panics shows as failed and takes no other with it.
 
 use enmm::model::case::Integrator;
 use enmm_verification::{

@@ -1,4 +1,4 @@
-//! Tells what a communication step of one internal step costs above the engine's own step; asserts no time.
+//! Prints the cost of a communication step of one internal step above the engine's own step; asserts no time.
 
 use std::process::Command;
 use std::time::Instant;

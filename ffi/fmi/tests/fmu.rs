@@ -1,4 +1,4 @@
-//! A packed FMU holds what the standard asks for, says the same as the table, and is the same for the same case.
+//! A packed FMU holds what the standard requires, says the same as the table, and is the same for the same case.
 
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};

@@ -164,7 +164,7 @@ impl OpenClose {
         self.supports.prepare(supports, rows, &mass_matrix.inverse);
     }
 
-    /// Makes the next step order the near pairs anew.
+    /// Makes the next step renew the order of the near pairs.
     pub fn forget_order(&mut self) {
         self.order.clear();
     }
@@ -251,8 +251,8 @@ impl OpenClose {
         .run(&SubdomainPass { from, first_turn: &self.sequence.first_turn, kind })
     }
 
-    /// Sweeps over all contacts until they settle; between two such sweeps only those are solved that have something to
-    /// answer, until none has.
+    /// Sweeps over all contacts until they settle. Between full sweeps only pairs whose blocks moved are solved, until
+    /// none has.
     fn sweeps(&mut self, inputs: SolverInputs, contacts: &[VertexEdge], others: &mut OtherConstraints) -> SolverReport {
         let SolverInputs { options, .. } = inputs;
         let mut report = SolverReport::default();

@@ -143,7 +143,7 @@ impl SolverOrder {
         self.leaf_block.is_empty()
     }
 
-    /// Makes the next step order anew.
+    /// Makes the next step renew the order.
     pub fn clear(&mut self) {
         self.leaf_block.clear();
     }
@@ -293,7 +293,7 @@ impl SolverOrder {
 }
 
 impl Groups {
-    /// Numbers anew the covers of held blocks that are pushed, since most covers are not.
+    /// Renumbers the few covers of fixed blocks that contacts touch.
     fn number_covers(&mut self, blocks: usize, pushed: &mut [u32]) {
         let Self { held, pushing, .. } = self;
         held.clear();

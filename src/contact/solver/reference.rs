@@ -166,7 +166,7 @@ fn solve_contact(
     change[0].abs().max(change[1].abs())
 }
 
-/// Forces (N/m) that the springs ask for at the end of the step, before any limit (Eqs. 14, 15), where all impulses so
+/// Forces (N/m) of the springs at the end of the step, before any limit (Eqs. 14, 15), where all impulses so
 /// far have given the points the relative velocity u (m/s).
 ///
 /// Of each spring [`SoftSpring`] holds what no sweep changes: `rest` = −k(g + θΔt·u*), or T_hist − kθΔt·u* along the

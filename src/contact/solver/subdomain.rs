@@ -60,7 +60,7 @@ pub struct Subdomain<'a> {
     pub accumulators: Accumulators<'a>,
 }
 
-/// Work on the block pairs of a part from `from` on, which belong to no half: compiled for every kind of lanes.
+/// Kernel over the separator, the pairs from `from` on, which connect the two halves; compiled for every kind of lanes.
 struct SubdomainKernel<'p, 'a, 'v> {
     subdomain: &'p mut Subdomain<'a>,
     from: usize,

@@ -34,7 +34,7 @@ fn unknown(case: &Case) -> Option<String> {
         .or_else(|| closing.map(|(name, _)| format!("Barton–Bandis joints (joint_law.{name}.kind)")))
 }
 
-/// Choices and consistent masses, when the case asks for the implicit integrator.
+/// Choices and consistent masses, when the case selects the implicit integrator.
 pub fn implicit(case: &Case, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Option<Implicit> {
     let solver = &case.solver;
     if solver.integrator == Integrator::Explicit {

@@ -27,7 +27,7 @@ use locator::Locator;
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
-/// A model as built: what is fixed, the state at its start, and what the build has to tell.
+/// A model as built: what is fixed, the state at its start, and the report of the build.
 #[derive(Debug, Clone)]
 pub struct Built {
     /// Fixed part.
@@ -48,7 +48,7 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// Builds the model of a case; `tell` hears of every part of the build as it begins.
+/// Builds the model of a case; `tell` is called with every part of the build as it begins.
 ///
 /// # Errors
 /// The first key of the case that does not fit the model: geometry, references to positions without rock, memory.
@@ -86,7 +86,7 @@ pub fn build(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Inv
     })
 }
 
-/// The boundary loops of a case's blocks, cut anew: a model keeps them only as contact sees them.
+/// The boundary loops of a case's blocks, cut again: a model keeps them only as contact sees them.
 ///
 /// # Errors
 /// As [`build`].
@@ -99,7 +99,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 /// size, since they do not resolve stiffer joints.
 const STIFFNESS_LENGTH: f64 = 1.0;
 
-/// The fixed part of the model, and what its bolts have to tell.
+/// The fixed part of the model, and the warnings about its bolts.
 fn model(
     case: &Case,
     joints: &geometry::Joints,

@@ -197,7 +197,7 @@ impl Ground<'_> {
     }
 }
 
-/// Quiet boundaries that bear no weight when motion begins: they hold in static stages only.
+/// Quiet boundaries that carry no weight when motion begins: they hold in static stages only.
 pub(super) fn warning(case: &Case) -> Option<String> {
     let has_some = !case.quiets.is_empty() || !case.free_fields.is_empty();
     let begins_dynamic = case.stages.first().is_some_and(|stage| stage.kind == case::StageKind::Dynamic);

@@ -55,7 +55,7 @@ impl<'a> Comparison<'a> {
     /// Runs both programs in turn and prints the median of each part and of the ratios of the rounds.
     ///
     /// # Errors
-    /// When a program does not run, or tells something else than `enmm bench --json` does.
+    /// When a program does not run, or prints something else than `enmm bench --json` does.
     pub fn run(&self, repository: &Repository) -> Result<(), String> {
         println!("| model | part | old ms | new ms | old / new | range |\n|---|---|---|---|---|---|");
         for model in self.models.split(',') {

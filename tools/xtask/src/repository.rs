@@ -17,10 +17,10 @@ pub struct Repository {
 }
 
 impl Repository {
-    /// Asks cargo for the paths.
+    /// Reads the paths from cargo.
     ///
     /// # Errors
-    /// When `cargo metadata` fails or tells no target directory.
+    /// When `cargo metadata` fails or names no target directory.
     pub fn find() -> Result<Self, String> {
         let manifest = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
         let root = Path::new(&manifest).ancestors().nth(2).ok_or("xtask has no parent directory")?.to_owned();

@@ -1,6 +1,6 @@
 //! Memory under the eyes of other tools: valgrind and the sanitizers of the C compiler over the hosts in C, the address
 //! sanitizer of the nightly compiler over the share of fuzzing, its thread sanitizer over the claim of equal bits. What
-//! is not there is told with what would bring it, and is no failure.
+//! is missing is reported with the command that installs it, and is no failure.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

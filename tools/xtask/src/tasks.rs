@@ -132,7 +132,7 @@ pub fn verification(repository: &Repository, program: &str) -> Result<(), String
     repository::run(repository.cargo(&run).env("ENMM_LABEL", label(repository)?))
 }
 
-/// Tells what a step costs through every export.
+/// Prints the cost of a step through every export.
 ///
 /// # Errors
 /// When the program does not build or run.
@@ -140,7 +140,7 @@ pub fn overhead(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--package", "enmm-overhead"]))
 }
 
-/// Writes the schema of the case file as the command line tells it.
+/// Writes the schema of the case file as the command line prints it.
 ///
 /// # Errors
 /// When the program does not build or run, or the file cannot be written.
@@ -217,7 +217,7 @@ fn write_couplings(repository: &Repository, pictures: &Path) -> Result<(), Strin
     Ok(())
 }
 
-/// Runs `cargo test` with `args` at the end; campaigns named `long_*` do their work only when asked for by that name.
+/// Runs `cargo test` with `args` at the end; campaigns named `long_*` do their work only when called by that name.
 fn cargo_test(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
     let mut test: Command = repository.cargo(&["test", "--release", "--workspace"]);
     test.args(args);
@@ -266,7 +266,7 @@ struct Steps {
 }
 
 impl Steps {
-    /// Runs one step under a header and tells whether it is good.
+    /// Runs one step under a header and returns whether it passed.
     fn take(&mut self, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> bool {
         println!("\n== {name}");
         let start = Instant::now();

@@ -35,7 +35,7 @@ impl LoadedCase {
     /// The first value that cannot be used.
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
-        // Old names were told of where the case was read.
+        // Old names were reported where the case was read.
         Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: Vec::new(), ..loaded })
     }
 

@@ -315,7 +315,7 @@ impl PvdWriter {
     }
 
     /// Continues the collection of an interrupted run: frames later than `keep_until_time` (s) leave the list, and
-    /// their files are written over. A missing collection is started anew.
+    /// their files are written over. A missing collection is started again.
     ///
     /// # Errors
     /// `InvalidData` if `run.pvd` is not a collection that this type wrote; else what the file system refuses.

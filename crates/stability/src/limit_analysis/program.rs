@@ -20,7 +20,7 @@ pub struct Program {
     pub bars: Vec<Bar>,
 }
 
-/// Accuracy that is asked for, relative to the weight of a block.
+/// Accuracy of the solution, relative to the weight of a block.
 const ACCURACY: f64 = 1e-10;
 /// Accuracy that will do where the solver gets no farther, by its own account and by ours.
 const REDUCED: f64 = 1e-8;

@@ -1,6 +1,6 @@
-//! Whether a slope bears a reduced strength, from its motion alone.
+//! Whether a slope is stable at a reduced strength, from its motion alone.
 
-/// Whether the slope bears the strength of a trial.
+/// Whether the slope is stable at the strength of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// Motion has died, and elasticity explains how far it went.

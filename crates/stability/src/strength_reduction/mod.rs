@@ -51,7 +51,7 @@ impl Default for ReductionOptions<'_> {
 pub struct Trial {
     /// F.
     pub factor: f64,
-    /// Whether the slope bears it.
+    /// Whether the slope is stable at it.
     pub verdict: Verdict,
     /// Reason of the verdict.
     pub reason: Reason,
@@ -96,7 +96,7 @@ impl Trial {
 pub struct Progress {
     /// Trials so far.
     pub trials: usize,
-    /// How many there will be, as far as can be told.
+    /// How many there will be, as far as it is known.
     pub expected: usize,
 }
 
@@ -128,7 +128,7 @@ pub enum End {
     StableThroughout,
     /// Not stable even at the least F.
     UnstableThroughout,
-    /// The caller asked it to stop.
+    /// The caller stopped it.
     Interrupted,
     /// A trial failed numerically.
     Failed(StepError),
@@ -171,7 +171,7 @@ impl Reduction {
         self.trials.iter().find(|trial| Some(trial.factor) == self.high)
     }
 
-    /// The greatest F that was tried, when the slope bears it: the factor of safety is at least that.
+    /// The greatest F that was tried, when the slope is stable at it: the factor of safety is at least that.
     pub fn at_least(&self) -> Option<f64> {
         self.low.filter(|_| self.end == End::StableThroughout)
     }
@@ -212,8 +212,8 @@ impl From<Invalid> for ReductionError {
     }
 }
 
-/// Finds the factor of safety of a case; `hear` is told each trial as it ends. Limit analysis of the same model stands
-/// beside it.
+/// Finds the factor of safety of a case; `hear` is called with each trial as it ends. Limit analysis of the same model
+/// stands beside it.
 ///
 /// Trials are made in pairs, which two threads can share; what is tried does not depend on how many there are.
 ///

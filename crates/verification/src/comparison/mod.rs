@@ -16,7 +16,7 @@ use crate::{Plot, Setup, Trouble, Values};
 
 pub use crate::slope::{Totals, slope_text};
 
-/// When, by what and on what the times of a document were taken: `cargo xtask` tells commit and date.
+/// When, by what and on what the times of a document were taken: `cargo xtask` passes commit and date.
 fn origin() -> String {
     let label = std::env::var("ENMM_LABEL").unwrap_or_else(|_| "Commit and date not told".to_owned());
     let Machine { processor, cores, .. } = Machine::here(false);
@@ -189,7 +189,7 @@ fn bytes(simulation: &Simulation) -> usize {
     matrix + factor + (fields + state) * size_of::<Vector>() + contacts + places
 }
 
-/// Processor time (s) of all threads of this process so far; 0 where the system does not tell.
+/// Processor time (s) of all threads of this process so far; 0 where the system does not report it.
 fn cpu_seconds() -> f64 {
     // The system brings its count up to date when a thread gives way.
     std::thread::yield_now();

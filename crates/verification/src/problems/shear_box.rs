@@ -1,4 +1,4 @@
-//! A body that is moved against joints in small steps: its supports are carried along, and tell the force.
+//! A body that is moved against joints in small steps: its supports move along, and measure the force.
 
 use enmm::geometry::Vector;
 use enmm::model::Simulation;

@@ -134,7 +134,7 @@ pub struct Updates {
     pub instance: usize,
     pub references: Vec<u32>,
     pub seen: Vec<(f64, Vec<f64>, bool)>,
-    /// Time from which on an early return is asked for, and the time that is asked for.
+    /// Time from which on an early return is requested, and the time that is requested.
     pub ask: Option<(f64, f64)>,
     /// Statuses of calls that are illegal within an update.
     pub illegal: Vec<Status>,

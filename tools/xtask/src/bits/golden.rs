@@ -10,7 +10,7 @@ use super::{Results, platform};
 /// Where the table is.
 pub const PLACE: &str = "tests/golden/bits.csv";
 const HEADER: &str = "item,result,sha1";
-/// Item of the row that tells the platform.
+/// Item of the row that names the platform.
 const PLATFORM: &str = "platform";
 
 /// The table.

@@ -155,7 +155,7 @@ fn beside_golden<'a>(golden: &Golden, maker: &Maker, items: impl Iterator<Item =
     Ok(counts)
 }
 
-/// Writes the golden table anew.
+/// Renews the golden table.
 fn renew(repository: &Repository) -> Result<(), String> {
     let (folder, program) = (fresh_folder(repository)?, repository.enmm());
     let here = Emulator::default();
