@@ -286,7 +286,7 @@ typedef struct enmm_model enmm_model;
 typedef struct enmm_state enmm_state;
 
 /**
- * What a communication step did.
+ * Outcome of a communication step.
  */
 typedef struct enmm_step_info {
   /**
@@ -621,7 +621,7 @@ typedef struct enmm_event {
    */
   size_t struct_size;
   /**
-   * What happened.
+   * Kind of the event.
    */
   enmm_event_kind kind;
   /**

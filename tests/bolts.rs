@@ -174,7 +174,7 @@ fn bolts_that_cannot_be_are_errors() {
     }
 }
 
-/// A grouted bolt through an opening crosses its two joints and tells how much of it is in air.
+/// A grouted bolt through an opening crosses its two joints and reports how much of it is in air.
 #[test]
 fn a_bolt_through_an_opening_warns() {
     let text = roof(&bolt(1.0, 2e11, "anchorage = \"grouted\""), SETTLE)

@@ -81,7 +81,7 @@ fn a_restored_run_is_the_same_to_the_bit_for_any_threads() {
     let plain = run(1, false);
     let bits = |state: &State| {
         let mut state = state.clone();
-        // A restored model searches anew at once: the one thing that it counts and an uninterrupted one does not.
+        // A restored model searches again at once: the one thing that it counts and an uninterrupted one does not.
         state.counters.searches = 0;
         encode(&state, "").expect("bytes")
     };

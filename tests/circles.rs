@@ -6,7 +6,7 @@ use std::path::Path;
 /// A module by the names on its path from the root of its crate.
 type Module = Vec<String>;
 
-/// What a file imports, as it stands in the code: `super::mesh::Triangle`.
+/// Import of a file as it stands in the code: `super::mesh::Triangle`.
 type Import = String;
 
 #[test]

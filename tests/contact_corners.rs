@@ -72,7 +72,8 @@ fn a_corner_falls_on_a_corner() {
     }
 }
 
-/// A wedge lands on its tip and slides over an edge: the edge bears, though it is soon above the wedge's upper face.
+/// A wedge lands on its tip and slides over an edge: the edge carries it, though it is soon above the wedge's upper
+/// face.
 #[test]
 fn an_edge_bears_the_tip_of_a_wedge() {
     let base = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [5.0, 0.0], [5.0, -0.5], [0.0, -0.5]]";

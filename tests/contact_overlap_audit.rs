@@ -24,7 +24,7 @@ fn slope() -> String {
 }
 
 /// Impacts press blocks together and corners that meet tip on tip sink in by a few hundredths of the mesh size before
-/// they part: 0.05 is asked of the whole run, which a node that passes a side unseen exceeds at once.
+/// they part: the limit of the whole run is 0.05, which a node that passes a side unseen exceeds at once.
 #[test]
 fn a_failing_slope_overlaps_by_little() {
     let mut simulation = simulation(&slope());

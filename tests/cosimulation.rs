@@ -1,4 +1,4 @@
-//! Co-simulation: steps cover exactly what is asked, on a grid that no host can shift, all or nothing; saved states,
+//! Co-simulation: steps cover exactly their interval, on a grid that no host can shift, all or nothing; saved states,
 //! events, inputs and parameters.
 
 use std::path::Path;

@@ -165,7 +165,7 @@ fn a_step_catches_and_a_ledge_does_not() {
     }
 }
 
-/// The base of one block, cut by one more joint than another's, never bears more.
+/// The base of one block, cut by one more joint than another's, is never stronger.
 #[test]
 fn a_joint_more_never_bears_more() {
     let (whole, _) = Plane::block("[[0, -1], [6, -1], [6, 0]", [0.5, 1.5], &[]).slide();

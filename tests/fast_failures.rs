@@ -28,7 +28,7 @@ fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
     format!("[[initial_velocity]]\nblock = {point:?}\nvelocity = {velocity:?}\n")
 }
 
-/// What the audit of a run found.
+/// Result of the audit of a run.
 #[derive(Debug, Default)]
 struct Worst {
     /// Deepest overlap (m).
@@ -54,7 +54,7 @@ fn audit(simulation: &mut Simulation, every: u64) -> Worst {
         }
     }
     println!("{worst:?}, {:?}", simulation.state().counters);
-    // A ledge lower than that bears nothing.
+    // A ledge lower than that carries nothing.
     assert!(worst.unheld < EntranceRule::default().ledge * SIZE, "{worst:?}");
     worst
 }

@@ -67,7 +67,7 @@ fn rests_and_then_fails(change: f64) {
     // Between two nodes, a mesh size apart, faces bend into each other.
     let ledge = EntranceRule::default().ledge * size;
     assert!(worst[1] < 2.5 * ledge, "overlap that no spring holds: {worst:?} m");
-    // A ledge lower than that bears nothing, and one of twice its height in full: a tip that passes the mouth of a
+    // A ledge lower than that carries nothing, and one of twice its height in full: a tip that passes the mouth of a
     // crack was between the two for two steps, which audits meet when they are frequent.
     let at_nodes = by_extent([ledge, ledge, 2.0 * ledge]);
     assert!(worst[2] < at_nodes, "overlap that no spring holds, at the nodes: {worst:?} m");
@@ -75,8 +75,8 @@ fn rests_and_then_fails(change: f64) {
     assert!((counters.unsettled as f64) < 1e-3 * counters.substeps as f64, "{counters:?}");
 }
 
-/// With dilation as large as friction, limit analysis is exact for rigid blocks: it asks for 42.75° (`enmm bound`). The
-/// slope rests at 45° and is still moving after 12 s at 41°.
+/// With dilation as large as friction, limit analysis is exact for rigid blocks: its limit is 42.75° (`enmm bound`).
+/// The slope rests at 45° and is still moving after 12 s at 41°.
 #[test]
 fn long_the_slope_that_dilates_rests_where_limit_analysis_says() {
     let seconds = by_extent([0.05, 0.05, 12.0]);

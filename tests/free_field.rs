@@ -68,8 +68,9 @@ fn spread(mut simulation: Simulation, axis: usize, speed: f64, until: f64) -> [f
 }
 
 /// S and P waves of 1 m/s come in at a quiet base, are doubled at the free surface and leave again. Mesh of 30 elements
-/// in the wave: dispersion takes (2π/n)²/12 = 0.4 % of it, twice at the top, where both pulses overlap; 2 % is asked,
-/// on a lattice that lies along the sides and on one that does not. Other sides spoil the wave by tens of per cent.
+/// in the wave: dispersion takes (2π/n)²/12 = 0.4 % of it, twice at the top, where both pulses overlap; 2 % is the
+/// limit, on a lattice that lies along the sides and on one that does not. Other sides spoil the wave by tens of per
+/// cent.
 #[test]
 fn a_plane_wave_stays_plane_between_columns_and_nowhere_else() {
     for (wave, axis, speed) in [([1.0, 0.0], 0, 1000.0), ([0.0, 1.0], 1, 3f64.sqrt() * 1000.0)] {

@@ -1,4 +1,4 @@
-//! What hosts set moves the rock as mechanics says: base acceleration (Newmark, C4), water, tractions, pressures,
+//! Inputs of hosts move the rock as mechanics says: base acceleration (Newmark, C4), water, tractions, pressures,
 //! strength factor, gravity, block forces, with closed ledgers.
 
 use std::path::Path;

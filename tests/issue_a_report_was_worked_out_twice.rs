@@ -1,4 +1,4 @@
-//! A report on a state costs a step. It is worked out once for every state, and anew whenever the state, its inputs or
+//! A report on a state costs a step. It is worked out once for every state, and again whenever the state, its inputs or
 //! its stage have changed: nothing that is kept is ever old.
 
 use std::path::Path;
@@ -40,7 +40,7 @@ fn built() -> Simulation {
     Simulation::new(loaded.case).unwrap_or_else(|invalid| panic!("{}: {}", invalid.key, invalid.message))
 }
 
-/// What is told now is what a copy without anything kept tells.
+/// The report now is that of a copy without cached values.
 fn is_of_now(simulation: &Simulation, after: &str) {
     let mut copy = simulation.clone();
     copy.restore(simulation.state().clone());

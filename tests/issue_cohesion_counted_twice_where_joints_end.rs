@@ -7,7 +7,7 @@ use serde_json::json;
 /// Cohesion (Pa) of the joint that is looked at.
 const COHESION: f64 = 1e5;
 
-/// Shear force (N/m) that cohesion and tension bear on a level joint 6 m long, on which slanted joints end from above.
+/// Shear force (N/m) of cohesion and tension on a level joint 6 m long, on which slanted joints end from above.
 fn strength(ends: &[[f64; 2]], mesh: f64) -> [f64; 2] {
     let joints: Vec<_> = ends
         .iter()

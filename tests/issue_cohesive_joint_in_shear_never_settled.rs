@@ -1,4 +1,4 @@
-//! A joint that bears shear by cohesion and no normal force was swept to the limit, and its steps halved: forces were
+//! A joint that carries shear by cohesion and no normal force was swept to the limit, and its steps halved: forces were
 //! measured against the normal force alone.
 
 use crate::common::parts::{dynamic, rock};

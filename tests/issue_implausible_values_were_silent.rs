@@ -1,4 +1,4 @@
-//! Values that are mostly slips in a unit or a sign are told with the usual range, traces without effect with their
+//! Values that are mostly slips in a unit or a sign are reported with the usual range, traces without effect with their
 //! place; a stage shorter than a step is refused. All of them once passed in silence.
 
 use std::path::Path;

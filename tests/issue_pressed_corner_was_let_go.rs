@@ -3,7 +3,7 @@
 //! block than below its top, and counted as seen by mistake. On `fractured_slope` with Young's modulus changed by 1e-11
 //! of itself, two blocks then went 1.2 m into each other without a force.
 //!
-//! Claim: a corner bears until the corners have parted, or the other corner takes over.
+//! Claim: a corner carries force until the corners have parted, or the other corner takes over.
 
 use crate::common::{run_stage, simulation};
 use enmm::contact::{EdgeId, VertexEdge};

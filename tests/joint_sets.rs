@@ -1,4 +1,4 @@
-//! Joint sets have the spacing, dip and persistence that they are asked for.
+//! Joint sets have the spacing, dip and persistence of their keys.
 
 use enmm::geometry::joint_set::*;
 use enmm::geometry::polygon::contains;

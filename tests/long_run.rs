@@ -112,7 +112,7 @@ fn residual(simulation: &mut Simulation) -> [f64; 2] {
     [report.ledger.residual() - 0.25 * impulse, report.ledger.largest()]
 }
 
-/// What many steps have left.
+/// Measures of a run of many steps.
 #[derive(Debug, Default)]
 struct Endured {
     /// Largest residual over the largest energy so far, in the first tenth of the steps and in all of them.
@@ -152,7 +152,7 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
     for k in steps / 2 + 1..steps {
         advance(&mut other, k % 100 == 99);
     }
-    // A restored model searches anew at once: the one thing that it counts and an uninterrupted one does not.
+    // A restored model searches again at once: the one thing that it counts and an uninterrupted one does not.
     let bits = |simulation: &Simulation| {
         let mut state: State = simulation.state().clone();
         state.counters.searches = 0;

@@ -42,7 +42,7 @@ fn a_resting_block_bears_its_weight_by_stress_and_contact() {
     let (block, base) = if blocks[0].fixed { (blocks[1], blocks[0]) } else { (blocks[0], blocks[1]) };
     assert!(base.fixed && !block.fixed && !block.detached && !block.removed);
     assert!((block.mass - 2600.0).abs() < 1e-9 * 2600.0 && (block.area - 1.0).abs() < 1e-12);
-    // Mean vertical stress of a body under its own weight that bears at its foot: −½·ρ·g·height. The stress is that of
+    // Mean vertical stress of a body under its own weight that rests on its foot: −½·ρ·g·height. The stress is that of
     // the reference shape, which differs by the strain: 1e-5; equilibrium holds to 1e-6.
     assert!((block.mean_stress[1] + 0.5 * weight).abs() < 1e-4 * weight, "{block:?}");
     assert!(block.contact_count >= 2 && block.contact_count == base.contact_count);

@@ -1,4 +1,5 @@
-//! Claim: a quiet boundary holds in static stages, bears on in dynamic ones, lets plane waves leave and brings them in.
+//! Claim: a quiet boundary holds in static stages, keeps its reaction in dynamic ones, lets plane waves leave and
+//! brings them in.
 
 use crate::common::claims::stresses;
 use crate::common::parts::dynamic;
@@ -28,7 +29,7 @@ fn step(simulation: &mut Simulation, seconds: f64) -> StepReport {
     (0..steps).fold(StepReport::default(), |_, k| simulation.advance(k + 1 == steps).unwrap_or_else(|e| panic!("{e}")))
 }
 
-/// What the springs bore stays as constant forces: a model at rest stays at rest when motion begins, and again when a
+/// The reactions of the springs stay as constant forces: a model at rest stays at rest when motion begins, and when a
 /// static stage gives the springs back. The forces out of balance at 1e-7 of the weight move it by 1e-7 of the
 /// settlement (3e-4 m), over and over as nothing holds it to its place: 1e-4 of it is allowed.
 #[test]
@@ -49,8 +50,8 @@ fn what_was_borne_is_borne_on() {
     }
 }
 
-/// In-situ stress is borne from the start, as by fixities: a continuum under uniform stress that its boundaries balance
-/// does not move, up to the rounding of the stress itself.
+/// In-situ stress is carried from the start, as by fixities: a continuum under uniform stress that its boundaries
+/// balance does not move, up to the rounding of the stress itself.
 #[test]
 fn in_situ_stress_is_borne_from_the_start() {
     let edges = ["[[0, 0], [4, 0]]", "[[4, 0], [4, 4]]", "[[4, 4], [0, 4]]"];

@@ -10,7 +10,7 @@ const ROOMS: [&str; 8] = ["geometry", "cover", "mechanics", "contact", "state", 
 const COLUMNS_MAX: usize = 120;
 const README_LINES_MAX: usize = 200;
 /// Most comments of the whole repository that begin with the word `What`.
-const RIDDLES_MAX: usize = 433;
+const RIDDLES_MAX: usize = 100;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
 const ENGINE_LINES_MAX: usize = 23_200;
 /// Folders of programs that may print.
@@ -53,7 +53,7 @@ const TOOLS: [&str; 2] = ["tools/", "ffi/header/"];
 const THEORY: &str = "docs/theory.md";
 /// Documents that send the reader to files of the repository.
 const GUIDES: [&str; 2] = ["ARCHITECTURE.md", "CONTRIBUTING.md"];
-/// What stands in guides for a path of the reader's choice.
+/// Paths of the reader's choice in guides.
 const PLACEHOLDERS: [&str; 3] =
     ["tests/issue_what_it_did.rs", "tests/NAME.rs", "crates/verification/src/problems/xx.rs"];
 /// Table of contents of the site.
@@ -61,7 +61,7 @@ const SUMMARY: &str = "docs/SUMMARY.md";
 const GLOSSARY: &str = "docs/glossary.md";
 /// Rooms whose public types the glossary explains.
 const EXPLAINED: [&str; 3] = ["contact", "step", "mechanics"];
-/// Heads of the sections that tell a tale by names of the code.
+/// Heads of the sections that describe a life by names of the code.
 const TALES: &str = "## The life of a ";
 
 /// A file of the repository; `text` is empty for kinds that are not text.
@@ -827,7 +827,7 @@ fn links(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// What stands between backticks, with its line.
+/// Texts between backticks, with their lines.
 fn quoted(text: &str) -> Vec<(usize, &str)> {
     let of_line = |(number, line)| str::split(line, '`').skip(1).step_by(2).map(move |word| (number, word));
     numbered(text).flat_map(of_line).collect()

@@ -96,7 +96,7 @@ fn biaxial_compression_has_strength_and_dilation() {
 }
 
 /// In plane stress the strength is that of uniaxial compression, 2c·√Kp, though two stresses are zero; pulled, the
-/// rock gives way at its tensile strength; the elements have yielded, which outputs tell.
+/// rock gives way at its tensile strength; the elements have yielded, which outputs show.
 #[test]
 fn plane_stress_and_tension_cut_off() {
     let mut simulation = held("friction_deg = 35\nplane = \"stress\"");

@@ -86,7 +86,7 @@ fn crushed_rock_keeps_linear_and_angular_momentum() {
     assert!(simulation.yielded_elements() > 20, "{}", simulation.yielded_elements());
 }
 
-/// A column between smooth supports bears its weight ρgH < 2c·√Kp. With the strength times F the foot yields as soon
+/// A column between smooth supports carries its weight ρgH < 2c·√Kp. With the strength times F the foot yields as soon
 /// as
 /// F·2c·√Kp(F) < ρgH, Kp(F) being that of tan φ·F: the column stands at F just above that, and not just below.
 #[test]
@@ -120,7 +120,7 @@ fn the_strength_factor_reduces_rock() {
     assert!(!rests && yielded > 0, "{rests} {yielded}");
 }
 
-/// In-situ stress beyond the strength is told with its place; stress within it is not.
+/// In-situ stress beyond the strength is reported with its place; stress within it is not.
 #[test]
 fn overstressed_rock_is_told_at_the_start() {
     let case = |sxx: f64, szz: &str| {
@@ -141,8 +141,8 @@ fn overstressed_rock_is_told_at_the_start() {
     assert_eq!(simulation(&case(-4e6, "")).built().warnings, warnings);
 }
 
-/// Triangles lock where rock flows (problem C13): a slope that yields on less than 20 elements over its height is told,
-/// with the mesh size that would do. Rock that cannot yield, and rock without weight, has no such factor.
+/// Triangles lock where rock flows (problem C13): a slope that yields on less than 20 elements over its height is
+/// reported, with the mesh size that would do. Rock that cannot yield, and rock without weight, has no such factor.
 #[test]
 fn coarse_meshes_of_rock_that_yields_are_told() {
     let warnings = |size: f64, strength: &str, gravity: f64| {

@@ -80,7 +80,7 @@ impl Frames {
         NodeFrame { position, to: [previous, next], distance: [distance.x, distance.y] }
     }
 
-    /// Asks the memory for an edge and the point at its start.
+    /// Prefetches an edge and the point at its start.
     #[inline(always)]
     pub(super) fn fetch(&self, edge: EdgeId) {
         prefetch(&self.edges[edge.index()..=edge.index()]);

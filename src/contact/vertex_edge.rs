@@ -73,7 +73,7 @@ pub struct VertexEdge {
     pub stiffness: [f64; 2],
     /// Gap of the springs along the normal (m); negative in penetration.
     pub gap: f64,
-    /// Tributary length (m), and the part of it that bears cohesion and tension.
+    /// Tributary length (m), and the part of it on which cohesion and tension act.
     pub length: f64,
     pub bonded: f64,
     /// Law of the joint.
@@ -87,7 +87,7 @@ pub struct VertexEdge {
 // Large slopes have a million of them and more.
 const _: () = assert!(size_of::<VertexEdge>() <= 192);
 
-/// What the contacts of a step share.
+/// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
 pub struct ContactSetting<'a> {
     /// Boundary of the blocks, and its edges and nodes at their current positions.

@@ -1,4 +1,4 @@
-//! What a host is told when something cannot be done. The model is then as it was before the call.
+//! Errors that a host receives. The model is then as it was before the call.
 
 use crate::model::case::Invalid;
 use crate::state::bytes::BytesError;
@@ -13,13 +13,13 @@ pub enum CosimulationError {
     /// A value is not finite or out of range, or names something that does not exist.
     #[error("{name}: is {value}, must be {limit}; {remedy}")]
     Value {
-        /// What was set.
+        /// Name of the value that was set.
         name: String,
         /// The value.
         value: String,
-        /// What it must be.
+        /// Values that are allowed.
         limit: String,
-        /// What to do.
+        /// Remedy.
         remedy: &'static str,
     },
     /// A communication step does not begin where the model stands.

@@ -1,4 +1,4 @@
-//! What a host can set. Every value is checked, holds until it is set again, and is part of saved states.
+//! Inputs of a host. Every value is checked, holds until it is set again, and is part of saved states.
 //!
 //! A value that is set acts from the start of the next communication step on, or is reached at its end by
 //! [`Interpolation::Linear`](super::Interpolation) (Eq. 32). In the ramp of a first static stage all inputs grow with
@@ -138,7 +138,7 @@ impl Cosimulation {
         }
     }
 
-    /// Sets inputs; `change` tells whether one is new.
+    /// Sets inputs; `change` returns whether one is new.
     fn set(&mut self, change: impl FnOnce(&mut Inputs) -> bool) {
         let drive = self.simulation.drive();
         let changed = change(&mut drive.to);
@@ -146,7 +146,7 @@ impl Cosimulation {
     }
 }
 
-/// Replaces a value and tells whether it is another.
+/// Replaces a value and returns whether it is another.
 fn replace<T: Copy + PartialEq>(old: &mut T, new: T) -> bool {
     let changed = *old != new;
     *old = new;

@@ -2,7 +2,7 @@
 //!
 //! The grid is time 0 plus whole internal steps. A communication step that ends between two grid points takes a part of
 //! an internal step to get there and keeps the state from which that part was taken; the next step goes on from that
-//! state as if nothing had been asked in between, unless an input has changed, which then acts from this very time.
+//! state as if nothing had been read in between, unless an input has changed, which then acts from this very time.
 
 use crate::state::{Counters, Event};
 
@@ -31,7 +31,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// What has happened so far.
+    /// Outcome so far.
     pub fn info(&self) -> &StepInfo {
         &self.info
     }
@@ -42,7 +42,7 @@ impl Interval {
     }
 }
 
-/// What happened in a communication step.
+/// Outcome of a communication step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepInfo {
     /// Time that the model has reached (s).
@@ -75,7 +75,7 @@ impl Cosimulation {
     }
 
     /// Begins a communication step that [`Cosimulation::advance`] then covers. Until it has ended, by its last advance
-    /// or by [`Cosimulation::leave`], nothing else may be asked of the model but what it looks like.
+    /// or by [`Cosimulation::leave`], the model may be observed only.
     ///
     /// # Errors
     /// Times that do not fit, or a failure of [`Cosimulation::start`].
@@ -190,7 +190,7 @@ impl Cosimulation {
         }
     }
 
-    /// Rolls back and tells times as hosts count them.
+    /// Rolls back and converts times to those that hosts count.
     fn fail(&mut self, error: CosimulationError) -> CosimulationError {
         let start = self.progress.start;
         self.roll_back();

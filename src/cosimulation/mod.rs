@@ -69,7 +69,7 @@ pub struct Cosimulation {
     /// State from which the part of an internal step was taken, when the model stands between two grid points.
     grid: Option<Box<State>>,
     progress: Progress,
-    /// What a failed step falls back to.
+    /// State to which a failed step returns.
     backup: Saved,
     /// Number of the interval in progress; one with another number is over.
     serial: u64,
@@ -100,7 +100,7 @@ impl Cosimulation {
         &self.hash
     }
 
-    /// What the user should know of the model as built; the warnings of reading its case come with the case.
+    /// Warnings about the model as built; the warnings of reading its case come with the case.
     pub fn warnings(&self) -> &[String] {
         &self.simulation.built().warnings
     }
@@ -271,7 +271,7 @@ impl Cosimulation {
         Ok(advanced?)
     }
 
-    /// What `look` sees of the model on the threads of steps or, by its second argument, on the caller's alone, as in a
+    /// Result of `look` at the model on the threads of steps or, by its second argument, on the caller's alone, as in a
     /// forked process before its first step.
     fn look<T: Send>(&self, look: impl FnOnce(&Simulation, bool) -> T + Send) -> T {
         match self.pool.as_ref().and_then(|pool| pool.here()) {

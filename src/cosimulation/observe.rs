@@ -1,4 +1,4 @@
-//! What a host can read: ports and totals. All of it follows from the state alone.
+//! Outputs for a host: ports and totals. All of them follow from the state alone.
 
 use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
 use crate::cover::BlockId;

@@ -13,7 +13,7 @@ pub struct Parameter {
     pub name: String,
     /// SI unit; empty for a number.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub description: String,
     /// Value in the case; angles in radians.
     pub start: f64,

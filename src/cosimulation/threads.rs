@@ -34,7 +34,7 @@ impl Pool {
 }
 
 impl Drop for Pool {
-    /// Threads of another process cannot be told to end; what they left in this one stays as it is.
+    /// Threads of another process cannot be ended from here; what they left in this one stays as it is.
     fn drop(&mut self) {
         if self.here().is_none() {
             std::mem::forget(self.threads.take());

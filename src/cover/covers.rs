@@ -1,4 +1,4 @@
-//! What a cut makes: physical covers, manifold elements and blocks.
+//! Result of the cut: physical covers, manifold elements and blocks.
 
 use crate::geometry::{Point, Vector, polygon, segment};
 

@@ -8,7 +8,7 @@ use super::noder::{Noder, WorkEdge};
 use super::planar_map::{Arrangement, Edge, Label, NodingReport, Segment, TraceId, TraceLength, VertexId};
 use super::{GeometryError, Point, faces};
 
-/// Edges whose half-edges and faces can be told apart by 32 bits.
+/// Edges whose half-edges and faces can be numbered by 32 bits.
 const EDGES_MAX: usize = 1 << 30;
 
 impl Arrangement {
@@ -218,7 +218,7 @@ fn length(points: &[Point], edge: &Edge) -> f64 {
     (points[edge.b] - points[edge.a]).norm()
 }
 
-/// Keeps the edges asked for and the vertices that they use, both in order.
+/// Keeps the selected edges and the vertices that they use, both in order.
 fn compact(points: &[Point], edges: &[Edge], kept: &[bool]) -> (Vec<Point>, Vec<Edge>) {
     let mut edges: Vec<Edge> = edges.iter().zip(kept).filter(|(_, kept)| **kept).map(|(edge, _)| *edge).collect();
     let mut is_used = vec![false; points.len()];

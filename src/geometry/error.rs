@@ -1,4 +1,4 @@
-//! What can be wrong with a geometry. Every line says what, where, the value, the limit and the remedy.
+//! Errors of a geometry. Every line names the item, its place, the value, the limit and the remedy.
 
 /// A geometry that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -6,7 +6,7 @@ pub enum GeometryError {
     /// A coordinate is infinite or not a number.
     #[error("{what} {index} has a coordinate that is not finite ({x}, {y}): correct it in the input")]
     NotFinite {
-        /// What the point belongs to.
+        /// Item that the point belongs to.
         what: String,
         /// Index of the point or segment.
         index: usize,
@@ -153,7 +153,7 @@ pub enum GeometryError {
         parameter: &'static str,
         /// Value given (SI, rad).
         value: f64,
-        /// What it must be.
+        /// Rule for the value.
         rule: &'static str,
     },
     /// A joint set fills its region with too many traces.

@@ -198,7 +198,7 @@ fn rising(arrangement: &Arrangement, edge: usize, y: f64) -> Option<(Point, Poin
     }
 }
 
-/// Tells whether, of two rising edges that do not cross, the first lies to the right where both exist.
+/// Whether, of two rising edges that do not cross, the first lies to the right where both exist.
 fn right_of(e: (Point, Point), f: (Point, Point)) -> bool {
     let (side, turned) =
         if e.0.y >= f.0.y { (orientation(f.0, f.1, e.0), 1.0) } else { (orientation(e.0, e.1, f.0), -1.0) };

@@ -19,7 +19,7 @@ pub(crate) struct CellGrid {
 }
 
 impl CellGrid {
-    /// Lays square cells of at least `cell` (m) over the box, larger where the limit on cells asks for it.
+    /// Lays square cells of at least `cell` (m) over the box, larger where the limit on cells requires it.
     pub fn new(low: Point, high: Point, cell: f64) -> Self {
         let span = high - low;
         let mut cell = cell.max(span.max() / CELLS_MAX);

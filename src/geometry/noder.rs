@@ -11,7 +11,7 @@ use super::{GeometryError, Point, cross, orientation};
 const MERGE_RATIO: f64 = 1.5;
 /// Passes allowed; adversarial inputs settle in about ten.
 const PASSES_MAX: usize = 100;
-/// A split vertex off the line by more than this part of the tolerance bends the edge, which is then tested anew.
+/// A split vertex off the line by more than this part of the tolerance bends the edge, which is then tested again.
 const BEND_RATIO: f64 = 1e-3;
 /// Traces are cut off beyond the box of outline and mesh by this part of its diagonal, so that only the endless are.
 const MARGIN_RATIO: f64 = 1.0;
@@ -294,7 +294,7 @@ impl Noder {
     }
 }
 
-/// Appends the pieces of an edge through its hits, in order; bent pieces must be tested anew.
+/// Appends the pieces of an edge through its hits, in order; bent pieces must be tested again.
 fn push_chain(edge: &WorkEdge, hits: &[Hit], edges: &mut Vec<WorkEdge>) {
     let (mut from, mut bent_from) = (edge.a, false);
     let end = (edge.b, false);

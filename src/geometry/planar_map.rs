@@ -56,7 +56,7 @@ impl Label {
         Self { outline: -self.outline, trace: self.trace, mesh: self.mesh, mesh_reversed }
     }
 
-    /// Tells whether nothing is left: two outlines that cancel, no trace, no mesh.
+    /// Whether nothing is left: two outlines that cancel, no trace, no mesh.
     pub(super) const fn is_empty(self) -> bool {
         self.outline == 0 && self.trace.is_none() && self.mesh.is_none()
     }
@@ -105,7 +105,7 @@ pub struct Face {
     pub winding: i32,
 }
 
-/// What became of one joint trace.
+/// Lengths of one joint trace that were kept and removed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct TraceLength {
     /// Length before pruning (m), without the parts that lie far outside outline and mesh.
@@ -116,7 +116,7 @@ pub struct TraceLength {
     pub in_rock: f64,
 }
 
-/// What the noder did to the input.
+/// Changes that the noder made to the input.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct NodingReport {
     /// Snap tolerance (m).
@@ -131,7 +131,7 @@ pub struct NodingReport {
     pub trimmed_length: f64,
     /// Length along which outlines of opposite sense coincide without a trace (m): there two regions of rock are one.
     pub fused_outline_length: f64,
-    /// What became of each trace.
+    /// Lengths of each trace.
     pub traces: Vec<TraceLength>,
     /// Pairs of traces that coincide along an edge, lower index first, sorted; the lower one holds the edge.
     pub overlapping_traces: Vec<[TraceId; 2]>,
@@ -178,7 +178,7 @@ pub struct Arrangement {
     pub face: Vec<FaceId>,
     /// Faces; face 0 is the unbounded one.
     pub faces: Vec<Face>,
-    /// What the noder did.
+    /// Report of the noder.
     pub report: NodingReport,
 }
 
@@ -224,7 +224,7 @@ impl Arrangement {
         self.cycle(half_edge).map(|h| self.points[self.origin(h)]).collect()
     }
 
-    /// Tells whether rock lies on both sides of an edge.
+    /// Whether rock lies on both sides of an edge.
     pub fn in_rock(&self, edge: usize) -> bool {
         HalfEdgeId::both(edge).iter().all(|&h| self.faces[self.face[h]].winding != 0)
     }

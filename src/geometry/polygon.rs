@@ -72,7 +72,7 @@ pub fn centroid(polygon: &[Point]) -> Point {
     base + moments.first / moments.area
 }
 
-/// Tells whether a point lies in a polygon by the even–odd rule with exact signs; the boundary is inside.
+/// Whether a point lies in a polygon by the even–odd rule with exact signs; the boundary is inside.
 pub fn contains(polygon: &[Point], p: Point) -> bool {
     let mut inside = false;
     for (a, b) in sides(polygon) {
@@ -232,7 +232,7 @@ pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
     cut
 }
 
-/// Tells whether no other corner lies in the triangle, nor a side starts into it from a copy of one of its corners.
+/// Whether no other corner lies in the triangle, nor a side starts into it from a copy of one of its corners.
 fn is_ear(polygon: &[Point], a: Point, b: Point, c: Point) -> bool {
     let left = |from: Point, to: Point, p: Point| orientation(from, to, p);
     let n = polygon.len();

@@ -1,5 +1,5 @@
 //! Whether a state that comes from outside can be one of this model: lengths, indices and numbers. What passes makes no
-//! index go astray and no square of a number overflow; the first thing that does not is told by name.
+//! index go astray and no square of a number overflow; the error names the first value that does not fit.
 
 use std::fmt::Display;
 
@@ -11,15 +11,15 @@ use super::Simulation;
 use super::case::StageKind;
 use super::case::limits::FACTOR_MAX;
 
-/// What is wrong with a state.
+/// Value of a state that the model cannot have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what} is {value}, must be {limit}")]
 pub struct Unfit {
     /// Where.
     pub what: String,
-    /// What is there.
+    /// Value found.
     pub value: String,
-    /// What may be there.
+    /// Values that are allowed.
     pub limit: String,
 }
 
@@ -256,7 +256,7 @@ impl Simulation {
         vectors("neighbours.found_at", found_at, LENGTH)
     }
 
-    /// What stages change: supports, fixities, blocks that are gone, laws and bolts.
+    /// Checks what stages change: supports, fixities, blocks that are gone, laws and bolts.
     fn check_stages(&self, state: &State) -> Fit {
         let own = self.state();
         length("support_force", state.support_force.len(), own.support_force.len())?;

@@ -1,4 +1,4 @@
-//! What a model shows at one instant: the snapshot that outputs draw, and the state of every block.
+//! Observation of a model at one instant: the snapshot that outputs draw, and the state of every block.
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 
@@ -193,7 +193,7 @@ impl Simulation {
         states
     }
 
-    /// The state of one block without what its contacts tell.
+    /// The state of one block without the quantities of its contacts.
     pub fn motion_of(&self, block: BlockId) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;

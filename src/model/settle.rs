@@ -7,11 +7,11 @@ use crate::step::{StepError, StepReport};
 use super::Simulation;
 use super::case::StageKind;
 
-/// Steps between reports of a static stage, which tell whether it is at rest.
+/// Steps between reports of a static stage, which show whether it is at rest.
 pub const REST_STEPS: u64 = 10;
 
 /// Takes steps until the stage in progress of a simulation is over; `of` finds it in its `host`. `step` takes one
-/// step, and returns its report when it asked for one. Returns that of the last step, or the error that ended it.
+/// step, and returns its report when it requested one. Returns that of the last step, or the error that ended it.
 ///
 /// # Errors
 /// The first one of `step`.

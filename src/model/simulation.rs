@@ -27,7 +27,7 @@ pub struct Simulation {
     built: Built,
     workspace: Workspace,
     regime: Regime,
-    /// The report on the state now, once someone has asked for it: it costs a step.
+    /// The report on the state now, once a caller has requested it: it costs a step.
     report: OnceLock<StepReport>,
 }
 
@@ -40,7 +40,7 @@ impl Simulation {
         Self::build(case, &mut |_| ())
     }
 
-    /// As [`Simulation::new`]; `tell` hears of every part of the build as it begins.
+    /// As [`Simulation::new`]; `tell` is called with every part of the build as it begins.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -118,7 +118,7 @@ impl Simulation {
         self.workspace.serial = serial;
     }
 
-    /// What a host has set, to be changed.
+    /// Inputs of the host, to be changed.
     pub fn drive(&mut self) -> &mut Drive {
         self.report.take();
         &mut self.built.state.drive
@@ -141,7 +141,7 @@ impl Simulation {
         self.take_up();
     }
 
-    /// Gives back the memory of the buffers, which the next step then fills anew: outputs need some of their own.
+    /// Gives back the memory of the buffers, which the next step then fills again: outputs need some of their own.
     pub fn drop_buffers(&mut self) {
         let Workspace { serial, seconds, .. } = self.workspace;
         self.workspace = Workspace { serial, seconds, ..Workspace::default() };
@@ -207,7 +207,7 @@ impl Simulation {
 
     /// As [`Simulation::report`]; with `serial` on the calling thread alone.
     pub fn report_on(&self, serial: bool) -> StepReport {
-        // Not `get_or_init`: a thread of the pool that waits for others may take up work that asks for it, too.
+        // Not `get_or_init`: a thread of the pool that waits for others may take up work that requests it, too.
         if let Some(report) = self.report.get() {
             return *report;
         }

@@ -28,9 +28,9 @@ pub enum BytesError {
     /// Another format or engine wrote it.
     #[error("the checkpoint is of {found}, this is {own}: continue with that version, or start a new run")]
     Version {
-        /// What wrote it.
+        /// Version that wrote it.
         found: String,
-        /// What reads it.
+        /// Version that reads it.
         own: String,
     },
     /// It belongs to another case.
@@ -90,7 +90,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, B
     }
 }
 
-/// What stands before a payload.
+/// Header in front of a payload.
 pub struct Head {
     /// Bytes of the head itself.
     size: usize,
@@ -104,7 +104,7 @@ impl Head {
     /// Refuses `found` bytes that are not head and payload, neither more nor less.
     ///
     /// # Errors
-    /// What is too short or too long.
+    /// Whether the size is that of head and payload: an error when the bytes are too short or too long.
     pub fn check_size(&self, found: u64) -> Result<(), BytesError> {
         match found.cmp(&self.length.saturating_add(self.size as u64)) {
             Ordering::Less => Err(BytesError::Truncated(found as usize)),

@@ -1,8 +1,8 @@
-//! What happened for the first time while the model moved.
+//! Events: changes that happened for the first time while the model moved.
 
 use serde::{Deserialize, Serialize};
 
-/// What happened.
+/// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
     /// A block that touched others lost its last contact.

@@ -1,4 +1,4 @@
-//! What a host gives a model while it runs, and how the values go through a communication step.
+//! Inputs that a host gives a model while it runs, and their course through a communication step.
 
 use serde::{Deserialize, Serialize};
 

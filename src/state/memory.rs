@@ -6,7 +6,7 @@ use crate::mechanics::MassMatrix;
 
 use super::{Drive, Events, Inputs, Model, State, Workspace};
 
-/// What a part of a heap is, and its bytes.
+/// Name of a part of a heap, and its bytes.
 pub type Part = (&'static str, usize);
 
 /// An array, whatever it holds.
@@ -151,7 +151,7 @@ fn boundary(boundary: &Boundary) -> usize {
         + sum(&[side_previous, side_next, side_ends, block_thickness])
 }
 
-/// What the buffers share with the model.
+/// Bytes that the buffers share with the model.
 fn shared_masses(MassMatrix { mass, row_sum, .. }: &MassMatrix) -> usize {
     size_of_val(&**mass) + size_of_val(&**row_sum)
 }

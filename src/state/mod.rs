@@ -58,7 +58,7 @@ pub struct State {
     pub neighbours: NeighbourList,
     /// Force of each support (N/m).
     pub support_force: Vec<f64>,
-    /// Displacement along each support's direction at which it bears only its preload (m).
+    /// Displacement along each support's direction at which it carries only its preload (m).
     pub support_rest: Vec<f64>,
     /// Whether each fixity holds.
     pub fix_active: Vec<bool>,
@@ -72,7 +72,7 @@ pub struct State {
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).
     pub stage_force: Vec<Vector>,
-    /// What a host has set.
+    /// Inputs of the host.
     pub drive: Drive,
     /// Bolts.
     pub bolts: Vec<BoltState>,
@@ -84,7 +84,7 @@ pub struct State {
     pub acceleration: Vec<Vector>,
     /// Implicit: time for which inertia counts in the next static sub-step, over its length; 0 before the first.
     pub static_stretch: f64,
-    /// What happened.
+    /// Events so far.
     pub events: Events,
     /// Energy ledger.
     pub ledger: Ledger,
@@ -93,7 +93,7 @@ pub struct State {
 }
 
 impl State {
-    /// What is left (s) of the internal step that the model is in.
+    /// Time (s) that is left of the internal step in progress.
     pub fn rest_of_step(&self, model: &Model) -> f64 {
         model.dt - self.part
     }

@@ -9,7 +9,7 @@ use crate::mechanics::{
 
 use super::OtherIntegrator;
 
-/// What one fixity of the case holds.
+/// Covers that one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Fixity {
     /// Name.
@@ -20,7 +20,7 @@ pub struct Fixity {
     pub active: bool,
 }
 
-/// What a port gives access to.
+/// Kind of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PortKind {
     /// A block: force and moment in, motion and contact force out.
@@ -61,7 +61,7 @@ pub struct Water {
     pub edges: Vec<EdgeId>,
 }
 
-/// What the rows of a motion of the base give.
+/// Quantity in the rows of a motion of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionKind {
     /// Acceleration (m/s²), zero outside.
@@ -84,13 +84,13 @@ pub struct TimedRecord {
 /// A motion of the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseMotion {
-    /// What the rows give.
+    /// Quantity in the rows.
     pub kind: MotionKind,
     /// Rows and direction.
     pub motion: TimedRecord,
 }
 
-/// A boundary that holds in static stages, and in dynamic ones bears what it bore and lets waves leave.
+/// Viscous boundary: fixed in static stages; in dynamic stages it keeps the static reaction and absorbs waves.
 #[doc(alias = "absorbing boundary")]
 #[doc(alias = "viscous boundary")]
 #[derive(Debug, Clone, PartialEq)]
@@ -105,7 +105,7 @@ pub struct QuietBoundary {
     pub column: Option<u32>,
 }
 
-/// What a free-field column gives to a dashpot of the side beside it.
+/// Action of a free-field column on a dashpot of the side beside it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FreeFieldPoint {
     /// Support that is the dashpot.
@@ -160,7 +160,7 @@ pub struct Model {
     pub quiets: Vec<QuietBoundary>,
     /// Free-field columns.
     pub columns: Vec<Column>,
-    /// What the columns give to the dashpots beside them, in the order of the supports.
+    /// Action of the columns on the dashpots beside them, in the order of the supports.
     pub free_field: Vec<FreeFieldPoint>,
     /// Free lengths of all bolts.
     pub bolts: Vec<BoltSegment>,
@@ -199,7 +199,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// What the contacts of a step share: the boundary at its positions, and joint laws with the factor on all
+    /// Data that the contacts of a step share: the boundary at its positions, and joint laws with the factor on all
     /// strengths.
     pub fn contact_setting<'a>(
         &'a self,

@@ -9,7 +9,7 @@ pub struct Quantity<T> {
     pub column: &'static str,
     /// Unit; empty for none.
     pub unit: &'static str,
-    /// What it is, in a line.
+    /// Description in a line.
     pub text: &'static str,
     /// Whether it counts something.
     pub is_count: bool,

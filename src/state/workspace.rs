@@ -28,11 +28,11 @@ pub struct Workspace {
     pub start: Vec<BlockStart>,
     /// Damping of each block.
     pub damping: Vec<Damping>,
-    /// What the damping of all blocks follows from; none when it must be found anew.
+    /// Cache key of `damping`; none forces it to be computed again.
     pub damping_of: Option<Damping>,
     /// Whether all covers of each chunk can move along both axes.
     pub movable: Vec<bool>,
-    /// Whether contacts, supports or bolts may ask for the predicted velocity of each cover: only these have it whole.
+    /// Whether contacts, supports or bolts may read the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
     /// Sums over chunks.
     pub sums: Vec<ChunkSums>,
@@ -40,7 +40,7 @@ pub struct Workspace {
     pub frames: Frames,
     /// Near pairs by node and side.
     pub near_sides: NearSides,
-    /// What the vertex rule admits in this step.
+    /// Candidates that the vertex rule accepts in this step.
     pub accepted: AcceptedPairs,
     /// Where the contacts of the last step are.
     pub contact_cache: ContactCache,
@@ -52,7 +52,7 @@ pub struct Workspace {
     pub strength: f64,
     /// Contacts of this step.
     pub contacts: Vec<VertexEdge>,
-    /// What they did in this step, by run.
+    /// Outcomes of the contacts in this step, by run.
     pub outcomes: Vec<ContactOutcome>,
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
@@ -85,18 +85,18 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// What the contacts of this step share.
+    /// Data that the contacts of this step share.
     pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
         model.contact_setting(&state.laws, &self.frames, self.strength)
     }
 }
 
-/// What a run of contacts did in a step.
+/// Outcome of a run of contacts in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactOutcome {
     /// Work of their forces (J/m).
     pub work: f64,
-    /// What friction took of it (J/m).
+    /// Part of it that friction dissipates (J/m).
     pub friction: f64,
     /// Largest penetration (m) that springs resist.
     pub penetration: f64,

@@ -1,4 +1,4 @@
-//! What acts on the rock from outside: gravity, loads of the case, and what a host has set.
+//! Actions on the rock from outside: gravity, loads of the case, and inputs of a host.
 
 use crate::contact::EdgeId;
 use crate::cover::{BlockId, CoverId};

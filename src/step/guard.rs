@@ -6,7 +6,7 @@ use crate::state::Model;
 
 use super::Step;
 
-/// What went wrong.
+/// Cause of a numerical failure.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// A velocity is not a number.

@@ -1,4 +1,4 @@
-//! What a stage needs before its first step: masses with its fixities, buffers, reference of the static damping.
+//! Preparation of a stage before its first step: masses with its fixities, buffers, reference of the static damping.
 
 use crate::contact::{Support, SupportRow};
 use crate::cover::CoverId;
@@ -30,7 +30,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     integrator_of(model).prepare(model, workspace);
 }
 
-/// Marks the covers whose predicted velocities contacts, supports or bolts may ask for.
+/// Marks the covers whose predicted velocities contacts, supports or bolts may read.
 fn expose(model: &Model, exposed: &mut Vec<bool>) {
     exposed.clear();
     exposed.resize(model.covers.cover_count(), false);

@@ -7,7 +7,7 @@ use crate::state::{Model, State};
 
 use super::{Regime, Step, StepTimes, records};
 
-/// Supports of quiet boundaries whose springs are frozen: each bears its last force for ever.
+/// Supports of quiet boundaries whose springs are frozen: each keeps its last force.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
     let first = model.fixed_supports as usize;
     let is_frozen = |support: &Support| {
@@ -42,7 +42,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
 }
 
 impl Step<'_> {
-    /// What the supports answer to in a sub-step: springs to the position at its end (Eq. 23), dashpots to the
+    /// Sets the supports for a sub-step: springs act by the position at its end (Eq. 23), dashpots by the
     /// mean of the velocities before and after it (Eqs. 46, 47).
     pub fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
         let (model, state) = (self.model, &*self.state);

@@ -1,4 +1,4 @@
-//! What records bring in during a step: the motion of the base, and waves through quiet boundaries.
+//! Records in a step: the motion of the base, and waves through quiet boundaries.
 
 use crate::geometry::Vector;
 use crate::state::{BaseMotion, Model, MotionKind, State, TimedRecord};
@@ -6,7 +6,7 @@ use crate::state::{BaseMotion, Model, MotionKind, State, TimedRecord};
 use super::{Regime, Window};
 
 impl TimedRecord {
-    /// What `mean` of the record makes of a window, times amplitude; nothing before its stage and in static stages.
+    /// Mean of the record over a window by `mean`, times amplitude; zero before its stage and in static stages.
     fn over(&self, regime: Regime, state: &State, window: Window, mean: impl Fn(f64, f64) -> f64) -> Vector {
         match (regime, state.stage_starts.get(self.stage as usize)) {
             (Regime::Dynamic { .. }, Some(start)) => self.amplitude * mean(window.from - start, window.to - start),

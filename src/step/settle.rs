@@ -1,4 +1,4 @@
-//! What contacts did in a sub-step: their works, and what they remember of it.
+//! Works of the contacts in a sub-step, and their histories for the next one.
 
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
@@ -69,7 +69,7 @@ fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
     }
 }
 
-/// What a contact remembers that stores a shear force (N/m) and has slipped (m).
+/// History of a contact that stores a shear force (N/m) and has slipped (m).
 #[inline(always)]
 fn history_of(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
     let mut history = contact.history;

@@ -1,4 +1,4 @@
-//! What tests share beyond runs: case text, ledgers, motion of blocks.
+//! Helpers of tests beyond runs: case text, ledgers, motion of blocks.
 
 use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};

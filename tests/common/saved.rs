@@ -1,4 +1,4 @@
-//! What the bytes of a saved state of a co-simulation hold, for tests that change them.
+//! Layout of the bytes of a saved state of a co-simulation, for tests that change them.
 
 use enmm::cosimulation::Interpolation;
 use enmm::state::State;

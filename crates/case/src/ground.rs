@@ -1,4 +1,4 @@
-//! What shakes a model and lets waves leave it: base motion, quiet boundaries, free-field columns.
+//! Ground motion and boundaries for waves: base motion, quiet boundaries, free-field columns.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ pub enum Axis {
     Y,
 }
 
-/// What the rows of a base motion give.
+/// Quantity in the rows of a base motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BaseMotionKind {
@@ -34,7 +34,7 @@ pub enum BaseMotionKind {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BaseMotion {
-    /// What the rows give.
+    /// Quantity in the rows.
     #[serde(default)]
     pub kind: BaseMotionKind,
     /// Direction.
@@ -56,13 +56,13 @@ pub struct BaseMotion {
 }
 
 /// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
-/// holds like a fixity; in dynamic stages the forces that it bore then stay on.
+/// holds like a fixity; in dynamic stages its static reactions stay as constant forces.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Quiet {
     /// The parts of the rock boundary on this segment (m).
     pub edge: [[f64; 2]; 2],
-    /// What it holds in static stages.
+    /// Directions that it holds in static stages.
     #[serde(default)]
     pub axes: Axes,
     /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity.
@@ -90,7 +90,7 @@ pub struct Quiet {
 pub struct FreeField {
     /// The vertical side (m).
     pub edge: [[f64; 2]; 2],
-    /// What the side holds in static stages.
+    /// Directions that the side holds in static stages.
     #[serde(default = "horizontal")]
     pub axes: Axes,
 }

@@ -37,7 +37,7 @@ pub type TimeTable = Vec<[f64; 2]>;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// What the model is.
+    /// Description of the model.
     pub title: String,
     /// Rock outline and joint traces from files.
     pub domain: Domain,
@@ -100,7 +100,7 @@ pub struct Case {
     /// Named places where hosts exchange values with the model.
     #[serde(default, rename = "port")]
     pub ports: Vec<Port>,
-    /// What an FMU of the case says of it.
+    /// Notes for an FMU of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fmu: Option<FmuNotes>,
     /// Stages in order.
@@ -109,7 +109,7 @@ pub struct Case {
     /// Points whose motion goes into the history.
     #[serde(default, rename = "monitor")]
     pub monitors: Vec<Monitor>,
-    /// What to write and how often.
+    /// Files to write and their intervals.
     #[serde(default)]
     pub output: Output,
     /// Numerical choices.
@@ -387,7 +387,7 @@ pub struct Fix {
     /// The whole block that holds this point (m).
     #[serde(default)]
     pub block: Option<[f64; 2]>,
-    /// What is held.
+    /// Directions that are held.
     #[serde(default)]
     pub axes: Axes,
     /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 and 100 times the contact's.
@@ -402,7 +402,7 @@ fn yes() -> bool {
     true
 }
 
-/// What a load acts on.
+/// Target of a load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadKind {
@@ -427,7 +427,7 @@ pub struct Load {
     /// Name.
     #[serde(default)]
     pub name: Option<String>,
-    /// What it acts on.
+    /// Target of the load.
     pub kind: LoadKind,
     /// Material point (m), for `point` and `block`.
     #[serde(default)]
@@ -665,7 +665,7 @@ pub struct Monitor {
     pub point: [f64; 2],
 }
 
-/// What to write and how often.
+/// Files to write and their intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {

@@ -47,7 +47,7 @@ impl RandomDistribution {
     }
 }
 
-/// What a distribution is of.
+/// Variable of a distribution: the value, its tangent or its logarithm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RandomOf {
@@ -68,7 +68,7 @@ pub struct RandomVariable {
     pub key: String,
     /// Kind of distribution.
     pub distribution: RandomDistribution,
-    /// What the distribution is of: its parameters and bounds are of that.
+    /// Variable of the distribution, with its parameters and bounds.
     #[serde(default)]
     pub of: RandomOf,
     /// Mean of a normal, lognormal or exponential distribution.
@@ -144,7 +144,7 @@ impl Sampling {
     }
 }
 
-/// What is worked out of a sample.
+/// Result that is computed for a sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EnsembleOutput {
@@ -178,7 +178,7 @@ pub struct Ensemble {
     pub sampling: Sampling,
     /// Seed of the random numbers: another one gives other samples.
     pub seed: u64,
-    /// What is worked out of each sample.
+    /// Result that is computed for each sample.
     pub output: EnsembleOutput,
     /// A sample counts as a failure when its output is below this.
     pub limit: f64,

@@ -8,7 +8,7 @@ use enmm_io::files::write_atomic;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
-/// What to time.
+/// Models to time, and options.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Models by name, separated by commas: continuum_N, fractured_resting, fractured_failing, slope_NxM (N blocks of M
@@ -36,7 +36,7 @@ pub struct Arguments {
     /// Directory for tables (Markdown and JSON) and plots.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// What tells these results from others, such as commit and date.
+    /// Label of these results, such as commit and date.
     #[arg(long, default_value = "Measured", value_name = "TEXT")]
     label: String,
 }

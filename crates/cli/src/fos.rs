@@ -140,7 +140,7 @@ fn row(t: &Trial, progress: Progress) -> String {
     )
 }
 
-/// Prints what was found, without the warning that was `told` before the first trial.
+/// Prints what was found, without the warning that was printed before the first trial.
 fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&String>) -> ExitCode {
     if arguments.json {
         match std::fs::read_to_string(directory.join("fos.json")) {
@@ -169,7 +169,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
     }
 }
 
-/// What a search found, as lines of a name and a text.
+/// Results of a search, as lines of a name and a text.
 fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String {
     let mut lines = vec![String::new()];
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));

@@ -15,7 +15,7 @@ const SCHEMA: &str = "case.schema.json";
 /// Arguments of `enmm new`.
 #[derive(Args)]
 pub struct Arguments {
-    /// What the case is about.
+    /// Kind of the case.
     kind: Kind,
     /// File to write, which must not be there yet; default: the kind with `.toml`, here.
     #[arg(short, long, value_name = "FILE")]

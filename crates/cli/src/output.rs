@@ -10,7 +10,7 @@ use crate::FAILED;
 /// The first line that could not be written.
 static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Prints a line; a reader that has gone away ends the output quietly, any other failure is told by [`finish`].
+/// Prints a line; a reader that has gone away ends the output quietly, any other failure is reported by [`finish`].
 pub fn print_line(text: &str) {
     note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
 }
@@ -32,7 +32,7 @@ pub fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
     if more > 0 { format!("{first} and {more} more") } else { first }
 }
 
-/// Prints what the parser of the arguments has to tell, help or error, and returns its exit status.
+/// Prints the message of the parser of the arguments, help or error, and returns its exit status.
 pub fn tell(told: &clap::Error) -> ExitCode {
     let written = told.print();
     if !told.use_stderr() {
@@ -41,7 +41,7 @@ pub fn tell(told: &clap::Error) -> ExitCode {
     finish(ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(FAILED)))
 }
 
-/// The exit status of a command, or that of a failure when it could not print what it had to tell.
+/// The exit status of a command, or that of a failure when it could not print its output.
 pub fn finish(status: ExitCode) -> ExitCode {
     let failure = FAILURE.lock().unwrap_or_else(|poison| poison.into_inner()).take();
     let Some(error) = failure else { return status };
@@ -49,7 +49,7 @@ pub fn finish(status: ExitCode) -> ExitCode {
     if status == ExitCode::SUCCESS { failed } else { status }
 }
 
-/// Prints a line to standard error; there is nobody left to tell when that fails.
+/// Prints a line to standard error; a failure of that cannot be reported.
 pub fn tell_line(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between plain lines.
 const LINES: Duration = Duration::from_secs(5);
-/// Time after which parts of a build are told.
+/// Time after which parts of a build are printed.
 const BUILD: Duration = Duration::from_secs(1);
 /// Time between changes of the bar.
 const REDRAW: Duration = Duration::from_millis(100);

@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     }
 }
 
-/// The first interrupt asks for a checkpoint, the second ends the program at once.
+/// The first interrupt requests a checkpoint, the second ends the program at once.
 pub fn interrupt() {
     if INTERRUPT.swap(true, Ordering::Relaxed) {
         std::process::exit(i32::from(INTERRUPTED));

@@ -153,7 +153,7 @@ fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, values
     command
 }
 
-/// Asks a process for one sample; fails when the process was lost.
+/// Computes one sample in a process; fails when the process was lost.
 fn ask(command: &mut Command, k: usize, loaded: &LoadedCase) -> Result<Answer, String> {
     let output = command.output().map_err(|error| format!("the process of sample {k} did not start: {error}"))?;
     if let Ok(found) = serde_json::from_slice(&output.stdout) {
@@ -229,7 +229,7 @@ fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptio
     ExitCode::SUCCESS
 }
 
-/// What was found, as lines of a name and a text.
+/// Results, as lines of a name and a text.
 fn table(found: &EnsembleResult, options: &EnsembleOptions) -> String {
     let mut lines = Vec::new();
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<23} {text}"));

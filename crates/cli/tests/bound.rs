@@ -1,5 +1,5 @@
-//! Claim: `enmm bound` prints the bounds of a case as text and as JSON, tells factors from none and from no end, and
-//! answers with the promised statuses.
+//! Claim: `enmm bound` prints the bounds of a case as text and as JSON, distinguishes factors from none and from no
+//! end, and answers with the promised statuses.
 
 use crate::support::{Place, incline};
 

@@ -1,4 +1,4 @@
-//! Claim: a command that cannot print what it has to tell fails; only a reader that has gone away ends it quietly.
+//! Claim: a command that cannot print its output fails; only a reader that has gone away ends it quietly.
 
 #![cfg(target_os = "linux")]
 

@@ -1,4 +1,4 @@
-//! Claim: a run draws the pictures that its case asks for, those of the end of a stage at the end of each; a check
+//! Claim: a run draws the pictures that its case requests, those of the end of a stage at the end of each; a check
 //! draws the model alone.
 
 use std::collections::BTreeMap;

@@ -37,7 +37,7 @@ fn run_check_and_fmu_take_settings() {
     assert!((set["stages"][1]["time"].as_f64().expect("a time") - 0.02).abs() < 1e-3, "{set}");
     assert_eq!(set["settings"].as_array().map(Vec::len), Some(3));
     assert!(plain.get("settings").is_none() && plain["case_hash"] != set["case_hash"]);
-    // What is set is the case: the same hash as of a file with that value.
+    // A value that is set belongs to the case: the same hash as of a file with that value.
     let text = case(0.02).replace("Two blocks", "Two other blocks") + "[solver]\nsweeps_max = 50\n";
     fs::write(place.path("other.toml"), text).expect("written");
     let answer = place.enmm(&["run", "other.toml", "--quiet", "-o", "other"]);

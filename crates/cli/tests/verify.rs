@@ -1,5 +1,5 @@
 //! Claim: `enmm verify` prints computed beside exact values, as a table or as JSON, writes cases that run, and exits
-//! with 0 when all pass, 1 when one does not, 2 when it is asked for what there is not.
+//! with 0 when all pass, 1 when one does not, 2 when a request names nothing that exists.
 
 use crate::support::{Place, case};
 

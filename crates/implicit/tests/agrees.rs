@@ -73,7 +73,7 @@ fn a_rollback_gives_the_same_bits() {
     }
 }
 
-/// What the implicit integrator does not know is refused, with the remedy.
+/// Features that the implicit integrator does not support are refused, with the remedy.
 #[test]
 fn what_it_does_not_know_is_refused() {
     let text = format!(

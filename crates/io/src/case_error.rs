@@ -14,7 +14,7 @@ pub enum CaseError {
     Unreadable {
         /// File as the user named it.
         file: String,
-        /// What is wrong and the remedy.
+        /// The fault and the remedy.
         message: String,
     },
     /// A line, or the file as a whole, is not of its format.
@@ -24,7 +24,7 @@ pub enum CaseError {
         file: String,
         /// Line, counted from 1.
         line: usize,
-        /// What is wrong and the remedy.
+        /// The fault and the remedy.
         message: String,
     },
     /// A value that the command line sets cannot be used.
@@ -32,7 +32,7 @@ pub enum CaseError {
     Setting {
         /// Key and value as the user wrote them.
         setting: String,
-        /// What is wrong, the value, the limit and the remedy.
+        /// The fault, the value, the limit and the remedy.
         message: String,
     },
     /// A value cannot be used.
@@ -44,7 +44,7 @@ pub enum CaseError {
         line: usize,
         /// Position in the file, such as `rock.granite.young`.
         key: String,
-        /// What is wrong, the value, the limit and the remedy.
+        /// The fault, the value, the limit and the remedy.
         message: String,
     },
 }

@@ -35,7 +35,7 @@ pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Resu
 /// Reads a checkpoint; what is no regular file, or has the wrong head or size, is refused before it is read.
 ///
 /// # Errors
-/// What cannot be read, or is no whole checkpoint of this engine and case.
+/// When the file cannot be read, or is no whole checkpoint of this engine and case.
 pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, CheckpointError> {
     // Opening a pipe would wait for its writer.
     let metadata = fs::metadata(path).map_err(CheckpointError::Unreadable)?;

@@ -66,7 +66,7 @@ pub fn sweep_temporaries(directory: &Path) -> io::Result<()> {
     for entry in entries {
         let path = entry.map_err(at_path(directory))?.path();
         let writer = path.file_name().and_then(|name| name.to_str()).and_then(writer_of_temporary);
-        // Where the system tells which processes there are, one that still writes is left alone.
+        // Where the system lists its processes, one that still writes is left alone.
         if writer.is_some_and(|process| !Path::new("/proc").join(process.to_string()).exists()) {
             fs::remove_file(&path).map_err(at_path(&path))?;
         }

@@ -62,7 +62,7 @@ fn a_dip_has_a_side_and_an_angle_none() {
     ] {
         assert!(error(&set(keys)).contains(message), "{}", error(&set(keys)));
     }
-    // What the checks take can be built.
+    // Values that pass the checks can be built.
     for keys in ["angle_deg = 1\nangle_sd_deg = 30", "angle_deg = 1\nspacing_sd = 3.0"] {
         Simulation::new(loaded(&set(keys)).case).unwrap_or_else(|error| panic!("{keys}: {error}"));
     }

@@ -56,7 +56,7 @@ struct Section {
 struct Schema(Json);
 
 impl Schema {
-    /// What a property is, behind references and behind the choice of none.
+    /// Type of a property, behind references and behind the choice of none.
     fn resolve<'a>(&'a self, property: &'a Json) -> &'a Json {
         if let Some(name) = property["$ref"].as_str() {
             return self.resolve(&self.0["$defs"][name.rsplit('/').next().expect("a name")]);
@@ -342,7 +342,7 @@ fn cases_of_the_key_reference_are_valid() {
     assert!(unused.is_empty(), "{unused:?}");
 }
 
-/// What the sentence of a key says of its limits, against what the program says of values outside them.
+/// Limits in the sentence of a key, against the limits that the program checks.
 #[test]
 fn limits_in_the_sentences_of_keys_are_those_of_the_checks() {
     let (page, _) = reference();

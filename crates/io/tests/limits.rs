@@ -175,7 +175,7 @@ fn every_number_of_the_schema_has_a_limit_at_both_ends() {
     refuses_extremes(&short_as_json(), &|name| !plain.contains(name));
 }
 
-/// What reading does with a case: turns short words into plain data and checks them. Keys are those that were written.
+/// Reads a case as files are read: turns short words into plain data and checks them. Keys are those that were written.
 fn read(mut case: Case) -> Result<(), String> {
     let found = case.expand().map_err(|error| error.key)?;
     let written = |key: String| {
@@ -264,7 +264,7 @@ fn deep_nesting_is_an_error() {
     }
 }
 
-/// What edits put into a text beside random letters.
+/// Pieces that edits put into a text beside random letters.
 const PIECES: [&str; 26] = [
     "[",
     "]",

@@ -37,7 +37,7 @@ pub trait Arithmetic:
 
 impl Arithmetic for f64 {}
 
-/// What is reckoned with a value of each of eight lanes at once, or with that of the first lane only.
+/// Arithmetic on values of eight lanes at once, or on that of the first lane only.
 pub trait Values: Copy {
     /// Values of the lanes.
     type F: Arithmetic;
@@ -82,7 +82,7 @@ pub trait Values: Copy {
     fn scatter_to(self, lanes: [Self::F; 2], pairs: &mut [Pair], at: &Places);
 }
 
-/// What a processor does to eight `f64` at once; a value of this type proves that the processor can.
+/// Instructions of a processor for eight `f64` at once; a value of this type proves that the processor has them.
 pub trait Lanes: Values {
     /// Eight pairs in a row, as x and y.
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Self::F; 2];
@@ -187,7 +187,7 @@ pub trait Lanes: Values {
 
 /// Work that is written once for all kinds of lanes; its methods should be `#[inline(always)]`.
 pub trait Kernel {
-    /// What it returns.
+    /// Result.
     type Output;
 
     /// Does the work with lanes of one kind.

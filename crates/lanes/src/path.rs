@@ -1,4 +1,4 @@
-//! Which kind of lanes runs: the widest that the processor has, or the one that is asked for.
+//! Which kind of lanes runs: the widest that the processor has, or the one that is requested.
 
 use std::sync::OnceLock;
 

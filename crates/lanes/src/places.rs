@@ -2,7 +2,7 @@
 
 use super::{LANES, Pair};
 
-/// Indices of eight pairs of a list that is long enough, as is asked once for all eight.
+/// Indices of eight pairs of a list that is long enough, as is checked once for all eight.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Places {
     /// Twice the indices: places of the values x.

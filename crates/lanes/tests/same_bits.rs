@@ -82,7 +82,7 @@ impl Kernel for Everything {
     }
 }
 
-/// What the first lane alone can do as well: the values of each operation, and a list that was written to.
+/// Operations that the first lane alone has as well: the values of each, and a list that was written to.
 fn common<V: Values>(lanes: V, seed: u64) -> (Vec<[f64; LANES]>, Vec<Pair>) {
     let (a, b) = (lanes.load(&numbers(seed)), lanes.load(&numbers(seed + 1)));
     let mut list: Vec<Pair> = numbers(seed + 2).iter().map(|&x| Pair::new(x, -3.0 * x)).collect();

@@ -15,7 +15,7 @@ pub const HEADER: usize = 16;
 /// Effort of the compression, 0 to 10: more costs time and gains little on the noise of mantissas.
 const EFFORT: u8 = 5;
 
-/// What a chunk holds.
+/// Kind of a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// The head as JSON.
@@ -63,7 +63,7 @@ pub fn pack(kind: Kind, time: f64, body: &[u8]) -> io::Result<Vec<u8>> {
 /// A whole chunk as it stands in a film.
 #[derive(Debug)]
 pub struct Chunk {
-    /// What it holds.
+    /// Its kind.
     pub kind: Kind,
     /// Its time (s).
     pub time: f64,
@@ -72,7 +72,7 @@ pub struct Chunk {
 }
 
 impl Chunk {
-    /// What it holds, inflated.
+    /// Its content, inflated.
     ///
     /// # Errors
     /// `InvalidData` when it is damaged.

@@ -1,8 +1,8 @@
-//! What a film is made of, as plain data. SI units, y up, tension positive, counter-clockwise angles.
+//! Parts of a film, as plain data. SI units, y up, tension positive, counter-clockwise angles.
 
 use serde::Serialize;
 
-/// What a film begins with.
+/// Head of a film.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Head {
     /// Title of the case.
@@ -15,9 +15,9 @@ pub struct Head {
     pub case_file: String,
     /// Text of the case file.
     pub case_text: String,
-    /// What the slider moves along.
+    /// Axis of the slider.
     pub axis: Axis,
-    /// What frames hold of blocks beside their displacement; the page shows nothing else.
+    /// Quantities of blocks in frames, beside their displacement; the page shows nothing else.
     pub quantities: Vec<Quantity>,
     /// Columns of the histories; the first is the time (s).
     pub columns: Vec<Column>,
@@ -39,7 +39,7 @@ pub enum Quantity {
     Stress,
 }
 
-/// What the slider moves along.
+/// Axis of the slider.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Axis {
     /// Quantity, such as `time`.
@@ -103,7 +103,7 @@ pub struct Outline {
     pub loops: Vec<Vec<[f64; 2]>>,
 }
 
-/// What an edge of an outline does in a frame: the edge behind corner `k` runs from corner `k` to the next of its loop.
+/// State of an edge of an outline in a frame: the edge behind corner `k` runs from corner `k` to the next of its loop.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum EdgeState {
     /// No joint: a free face.
@@ -143,13 +143,13 @@ pub struct MonitorFrame {
     pub velocity: [f64; 2],
 }
 
-/// What a free length of a bolt does in a frame.
+/// State of a free length of a bolt in a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum BoltState {
     /// It is installed later, or its rock is gone.
     #[default]
     Absent,
-    /// It bears, or it is slack.
+    /// It is whole: in tension, or slack.
     Whole,
     /// It has yielded.
     Yielded,
@@ -160,7 +160,7 @@ pub enum BoltState {
 /// A free length of a bolt in a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BoltFrame {
-    /// What it does.
+    /// Its state.
     pub state: BoltState,
     /// Displacement of both ends (m).
     pub displacement: [[f64; 2]; 2],
@@ -179,7 +179,7 @@ pub struct SupportFrame {
     pub absorbs: bool,
 }
 
-/// What acts on the rock in a frame beside its joints.
+/// Actions on the rock in a frame beside its joints.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Structures<'a> {
     /// All free lengths of bolts, in the order of [`Head::bolts`].
@@ -233,7 +233,7 @@ pub enum Note {
         /// How it ended, such as `at rest`; empty while it lasts.
         outcome: String,
     },
-    /// What the user should know.
+    /// A warning for the user.
     Warning {
         /// The warning.
         text: String,
@@ -268,7 +268,7 @@ pub struct Fact {
 /// Trials of a factor of safety.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrialTable {
-    /// What was found, in one line.
+    /// Result in one line.
     pub result: String,
     /// Trials, ascending in the factor.
     pub trials: Vec<Trial>,
@@ -298,7 +298,7 @@ pub struct Trial {
 /// Blocks to mark on the slope.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Marked {
-    /// What they are, such as `failing mass`.
+    /// Name, such as `failing mass`.
     pub name: String,
     /// Their ids.
     pub blocks: Vec<u32>,

@@ -13,7 +13,7 @@ pub enum FilmError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         error: io::Error,
     },
     /// A number that cannot be shown.
@@ -29,7 +29,7 @@ pub enum FilmError {
     /// A list of the wrong length.
     #[error("{found} {what} were given, the film has {expected}")]
     Count {
-        /// What the list holds.
+        /// Content of the list.
         what: &'static str,
         /// Entries given.
         found: usize,
@@ -41,7 +41,7 @@ pub enum FilmError {
     NoFilm {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         problem: String,
     },
 }

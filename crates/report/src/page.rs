@@ -56,7 +56,7 @@ pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
     std::fs::rename(&temporary, page).map_err(FilmError::at(page))
 }
 
-/// The page without a film, which asks its server for one.
+/// The page without a film, which requests one from its server.
 pub fn live_page() -> String {
     halves().concat()
 }

@@ -29,7 +29,7 @@ impl Server {
     /// Listens on this machine at a port, or at one that is free for port 0. The film may come later.
     ///
     /// # Errors
-    /// What the system refuses, such as a port that is in use.
+    /// When the system refuses it, as for a port that is in use.
     pub fn open(film: &Path, port: u16) -> io::Result<Self> {
         Ok(Self { listener: TcpListener::bind((Ipv4Addr::LOCALHOST, port))?, film: film.to_owned() })
     }
@@ -37,7 +37,7 @@ impl Server {
     /// Where it listens.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// When the system refuses it.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }
@@ -90,7 +90,7 @@ impl Server {
     }
 }
 
-/// What a browser asks for.
+/// Request of a browser.
 struct Request {
     path: String,
     host: String,

@@ -95,7 +95,7 @@ impl FilmWriter {
     /// Appends a note at a time (s).
     ///
     /// # Errors
-    /// What the file system refuses.
+    /// When the file system refuses it.
     pub fn note(&mut self, time: f64, note: &Note) -> Result<(), FilmError> {
         let bytes = json(note, &self.path)?;
         self.flush()?;
@@ -105,7 +105,7 @@ impl FilmWriter {
     /// Writes the rows that are gathered.
     ///
     /// # Errors
-    /// What the file system refuses.
+    /// When the file system refuses it.
     pub fn flush(&mut self) -> Result<(), FilmError> {
         let Some(time) = self.rows.last().and_then(|row| row.first()).copied() else { return Ok(()) };
         let mut bytes = Vec::new();

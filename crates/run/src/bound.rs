@@ -20,7 +20,7 @@ pub enum BoundFailure {
 /// Finds the bounds of a case file.
 ///
 /// # Errors
-/// What cannot be built or treated, with file and line, or what was not solved.
+/// When the case cannot be built or treated, with file and line, or was not solved.
 pub fn bound(loaded: &LoadedCase) -> Result<Bound, BoundFailure> {
     let mut bound = limit_analysis::bound(&loaded.case).map_err(|error| match error {
         BoundError::Case(invalid) => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),

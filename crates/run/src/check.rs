@@ -1,4 +1,4 @@
-//! What `enmm check` tells of a model that has been built and not run.
+//! Report of `enmm check` on a model that has been built and not run.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ pub struct Check {
     pub memory_bytes: u64,
     /// That memory by part; the state counts once.
     pub memory: Vec<MemoryPart>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -96,7 +96,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
 pub struct MemoryPart {
     /// `model`, `state` or `buffers`.
     pub heap: &'static str,
-    /// What it holds.
+    /// Its content.
     pub part: &'static str,
     /// Its size (bytes).
     pub bytes: usize,

@@ -104,7 +104,7 @@ pub enum FosError {
     /// The slope does not come to rest, or fails numerically, before the trials.
     #[error("{0}")]
     NoRest(ReductionError),
-    /// The caller asked to stop before the first trial.
+    /// The caller stopped it before the first trial.
     #[error("interrupted before the first trial")]
     Interrupted,
     /// The threads cannot be started.
@@ -118,7 +118,7 @@ pub enum FosError {
 /// Finds the factor of safety of a case and writes its results.
 ///
 /// # Errors
-/// What cannot be used, built or written; a search without end is not an error but an [`End`].
+/// When something cannot be used, built or written; a search without end is not an error but an [`End`].
 pub fn fos(
     loaded: &LoadedCase,
     options: &FosOptions,
@@ -141,7 +141,7 @@ pub fn fos(
 /// Finds the factor of safety of a case and writes nothing.
 ///
 /// # Errors
-/// What cannot be used or built.
+/// When something cannot be used or built.
 pub fn search(
     loaded: &LoadedCase,
     options: &FosOptions,

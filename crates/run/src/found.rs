@@ -1,8 +1,8 @@
-//! What a search for a factor of safety found.
+//! Result of a search for a factor of safety.
 
 use enmm_stability::strength_reduction::{End, MechanismOptions, Reduction};
 
-/// What was found: one search for each mechanism, in their order.
+/// Results: one search for each mechanism, in their order.
 #[derive(Debug)]
 pub struct Found {
     /// Searches; none is left out, also where too little rock fails to count.
@@ -24,7 +24,7 @@ impl Found {
     }
 }
 
-/// What a user can do about a search that found no factor; none when it did.
+/// Remedy for a search that found no factor; none when it did.
 pub fn remedy(reduction: &Reduction) -> Option<String> {
     let edge = |pick: fn(f64, f64) -> f64, start: f64| reduction.trials.iter().map(|t| t.factor).fold(start, pick);
     match &reduction.end {

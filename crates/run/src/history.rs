@@ -29,7 +29,7 @@ impl HistoryWriter {
 
     /// Continues the file of an interrupted run: rows later than `keep_until_time` (s) are dropped, then rows follow.
     ///
-    /// A last row that the interruption cut short is dropped too. A missing file is started anew.
+    /// A last row that the interruption cut short is dropped too. A missing file is started again.
     ///
     /// # Errors
     /// `InvalidData` if the header is not that of `columns` or a kept row is not numbers; else what the file system
@@ -64,7 +64,7 @@ impl HistoryWriter {
     /// Fails when the file is no longer in its place: rows then went where nobody finds them.
     ///
     /// # Errors
-    /// Whatever the file system tells of it, with the path in the message.
+    /// Any error of the file system, with the path in the message.
     pub fn check_place(&self) -> io::Result<()> {
         fs::metadata(&self.path).map(|_| ()).map_err(at_path(&self.path))
     }

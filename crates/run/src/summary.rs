@@ -21,13 +21,13 @@ use enmm_picture::structures::BoltKind;
 pub enum RunStatus {
     /// All stages are over.
     Finished,
-    /// The caller asked it to stop; a checkpoint was written.
+    /// The caller stopped it; a checkpoint was written.
     Interrupted,
     /// A numerical failure; the checkpoint holds the last good state.
     Failed,
 }
 
-/// What a run was, did and cost.
+/// Setting, results and cost of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// Title of the case.
@@ -72,7 +72,7 @@ pub struct Summary {
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
     pub threads: usize,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Why the results of a run that has ended are worthless; it is among the warnings too.
     #[serde(skip)]
@@ -176,13 +176,13 @@ pub struct StageRecord {
     pub penetration_max: f64,
 }
 
-/// What a bar segment does.
+/// State of a bar segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BarState {
     /// It is not installed, or a block that held it is gone, whatever the bar did before.
     Absent,
-    /// It bears no force.
+    /// It carries no force.
     Slack,
     /// It is in tension and has never yielded.
     Elastic,
@@ -205,7 +205,7 @@ pub struct BoltRecord {
     pub force: f64,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
-    /// What it does.
+    /// Its state.
     pub state: BarState,
 }
 
@@ -306,7 +306,7 @@ impl WallSeconds {
     }
 }
 
-/// What only the driver of a run knows of it.
+/// Record that only the driver of a run has.
 pub(super) struct RunRecord<'a> {
     pub case_file: &'a str,
     pub case_hash: &'a str,

@@ -47,7 +47,7 @@ fn built(text: &str) -> Simulation {
     simulation
 }
 
-/// Time on a processor of this thread (s) where the system tells it, else on the clock: for reading, not for claims.
+/// Time on a processor of this thread (s) where the system reports it, else on the clock: for reading, not for claims.
 fn seconds() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
@@ -101,14 +101,14 @@ fn elements_are_found_by_place() {
     assert!(covers.element_near([-5.0, 10.0].into(), 5.001).is_some());
 }
 
-/// Largest resident memory of this process so far (bytes), where the system tells it.
+/// Largest resident memory of this process so far (bytes), where the system reports it.
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
 }
 
-/// Tells when a part of the build begins and when steps are taken.
+/// Reports when a part of the build begins and when steps are taken.
 struct Clock;
 
 impl Observer for Clock {

@@ -26,7 +26,7 @@ fn example(name: &str) -> Simulation {
     Simulation::new(case(name, &text(name))).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What `enmm fos` finds.
+/// Factor of safety by `enmm fos`.
 fn factor(name: &str, text: &str) -> f64 {
     let found = factor_of_safety(&case(name, text), &ReductionOptions::default(), &mut |_, _| {});
     found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")

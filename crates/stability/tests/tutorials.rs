@@ -26,13 +26,13 @@ fn simulation(text: &str) -> Simulation {
     Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What `enmm fos` finds.
+/// Factor of safety by `enmm fos`.
 fn factor(text: &str) -> f64 {
     let found = factor_of_safety(&case(text), &ReductionOptions::default(), &mut |_, _| {});
     found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
 }
 
-/// What `enmm bound` finds for joints that dilate by their friction angle.
+/// Factor by `enmm bound` for joints that dilate by their friction angle.
 fn limit(text: &str) -> f64 {
     bound(&case(text)).unwrap_or_else(|e| panic!("{e}")).associated.factor.value()
 }
@@ -139,7 +139,7 @@ fn the_columns_of_the_drawing_topple() {
     assert!(crest.x < -1.0 && crest.x.abs() > crest.y.abs() && behind.norm() < 0.01, "{crest:?} {behind:?}");
 }
 
-/// Fresh columns without dilation bear less than limit analysis allows, which lets joints dilate.
+/// Fresh columns without dilation are weaker than limit analysis allows, which lets joints dilate.
 #[test]
 fn the_fresh_columns_bear_less_than_limit_analysis_allows() {
     let text = text("toppling");

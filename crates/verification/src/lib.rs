@@ -2,7 +2,7 @@
 //! values beside exact ones. Nothing here knows a number that the formula of the problem does not give.
 
 //!
-//! [`choose`] makes jobs from what a user asks for, [`solve_all`] solves them, [`Record`] is what came out as data,
+//! [`choose`] makes jobs from the request of a user, [`solve_all`] solves them, [`Record`] is what came out as data,
 //! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side.
 
 pub mod comparison;

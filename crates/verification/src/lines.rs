@@ -28,7 +28,7 @@ impl Lines<'_> {
     }
 }
 
-/// What stands before an entry on a line.
+/// Separator in front of an entry on a line.
 fn separator(first: bool) -> &'static [u8] {
     if first { b"" } else { b", " }
 }

@@ -26,7 +26,7 @@ impl fmt::Display for Trouble {
     }
 }
 
-/// What a problem is solved with, and the cases that it has built so far.
+/// Parameters and options of a problem, and the cases that it has built so far.
 pub struct Setup {
     /// Values of the parameters.
     pub values: Values,
@@ -52,7 +52,7 @@ impl Setup {
     /// Builds a model from the text of a case and keeps the text under `name`.
     ///
     /// # Errors
-    /// What the case file's reader or the builder says.
+    /// When the case cannot be read or built.
     pub fn simulation(&mut self, name: &str, text: String) -> Result<Simulation, Trouble> {
         let mut case = io::parse_case(&text, name, Path::new("."))?.case;
         self.cases.push((name.to_owned(), text));
@@ -80,7 +80,7 @@ pub fn wider_open(a: StepReport, b: StepReport) -> StepReport {
 }
 
 impl Row {
-    /// What the energy ledger leaves unexplained, relative to its largest term (claim A4).
+    /// Residual of the energy ledger, relative to its largest term (claim A4).
     pub fn ledger(report: &StepReport) -> Self {
         Self::new("energy ledger, residual over largest term", "", report.ledger.residual_relative(), 0.0)
             .within(Tolerance::AtMost(1e-3), "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy")

@@ -1,4 +1,4 @@
-//! What a problem found: rows of computed against exact, and plots.
+//! Results of a problem: rows of computed against exact, and plots.
 
 /// How far a computed value may be from the exact one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,13 +27,13 @@ pub enum Origin {
 /// One value beside its exact one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What it is, with the variant of the problem.
+    /// Name, with the variant of the problem.
     pub quantity: String,
     /// Unit.
     pub unit: &'static str,
-    /// What the engine says.
+    /// Value of the engine.
     pub computed: f64,
-    /// What it should say.
+    /// Exact value.
     pub exact: f64,
     /// How far apart they may be.
     pub tolerance: Tolerance,
@@ -114,7 +114,7 @@ pub struct Plot {
     pub series: Vec<Series>,
 }
 
-/// What a problem found.
+/// Results of a problem.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     /// Rows.

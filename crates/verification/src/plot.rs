@@ -7,7 +7,7 @@ use crate::{Plot, Series};
 /// Most points of a series that are drawn.
 const POINTS_MAX: usize = 300;
 
-/// The picture of a plot; a series of more points than can be told apart is thinned.
+/// The picture of a plot; a series of more points than can be distinguished is thinned.
 pub fn picture(plot: &Plot) -> Picture {
     let points = |s: &Series| if s.marks { spread(&s.points) } else { outlined(&s.points) };
     let series = |s: &Series| ChartSeries { name: s.name.clone(), points: points(s), marks: s.marks };

@@ -13,7 +13,7 @@ pub struct Parameter {
     pub default: f64,
     /// Least and greatest value for which the problem makes sense.
     pub range: [f64; 2],
-    /// What it is.
+    /// Description.
     pub doc: &'static str,
 }
 
@@ -21,11 +21,11 @@ pub struct Parameter {
 pub struct Problem {
     /// Name of the problem, such as `C1`.
     pub id: &'static str,
-    /// What it is.
+    /// Title.
     pub title: &'static str,
     /// The closed form or table, where it comes from, and what the problem catches.
     pub source: &'static str,
-    /// What may be changed.
+    /// Parameters that may be changed.
     pub parameters: &'static [Parameter],
     /// Whether it is part of the quick set.
     pub quick: bool,

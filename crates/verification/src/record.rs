@@ -1,4 +1,4 @@
-//! What came out of problems, as data that can be written and read back.
+//! Results of problems, as data that can be written and read back.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct Record {
 pub struct ProblemRecord {
     /// Name of the problem, such as `C1`.
     pub id: String,
-    /// What it is.
+    /// Title.
     pub title: String,
     /// The closed form, where it comes from, and what the problem catches.
     pub source: String,
@@ -60,7 +60,7 @@ pub struct ParameterRecord {
     pub default: f64,
     /// Least and greatest value.
     pub range: [f64; 2],
-    /// What it is.
+    /// Description.
     pub doc: String,
 }
 
@@ -81,13 +81,13 @@ pub enum ToleranceKind {
 /// One value beside its exact one; a value that is no number is `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RowRecord {
-    /// What it is.
+    /// Name.
     pub quantity: String,
     /// Unit.
     pub unit: String,
-    /// What the engine says.
+    /// Value of the engine.
     pub computed: Option<f64>,
-    /// What it should say.
+    /// Exact value.
     pub exact: Option<f64>,
     /// Relative error where the exact value is not zero, else the absolute one.
     pub error: Option<f64>,

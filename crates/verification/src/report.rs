@@ -25,7 +25,7 @@ const COLUMNS: usize = 110;
 /// Writes document, record and plots into a directory; returns the paths.
 ///
 /// # Errors
-/// What the file system refuses.
+/// When the file system refuses it.
 pub fn write(record: &Record, solved: &[Solved], directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = vec![directory.join(DOCUMENT), directory.join(RECORD)];
     write_atomic(&paths[0], document(record).as_bytes())?;
@@ -44,7 +44,7 @@ pub fn write(record: &Record, solved: &[Solved], directory: &Path) -> io::Result
 /// Removes plots of an earlier report that this one does not show.
 ///
 /// # Errors
-/// What the file system refuses.
+/// When the file system refuses it.
 pub fn remove_stale_plots(record: &Record, directory: &Path) -> io::Result<()> {
     let folder = directory.join(PLOTS);
     let Ok(entries) = std::fs::read_dir(&folder) else { return Ok(()) };

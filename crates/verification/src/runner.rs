@@ -27,7 +27,7 @@ pub struct Job {
 
 /// A problem that has been solved, or was tried.
 pub struct Solved {
-    /// What was asked.
+    /// The job.
     pub job: Job,
     /// Rows and plots, or why there are none.
     pub outcome: Result<Outcome, Trouble>,
@@ -54,14 +54,14 @@ pub fn solve(job: Job) -> Solved {
     Solved { job, outcome, cases: setup.cases, wall: start.elapsed() }
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn message(payload: &(dyn Any + Send)) -> &str {
     let owned = payload.downcast_ref::<String>().map(String::as_str);
     owned.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no message")
 }
 
 /// Solves problems, `threads` at a time, and returns them in the order of the jobs. Results do not depend on
-/// `threads`. `done` is told of each with its place, in the order in which they end.
+/// `threads`. `done` is called with each with its place, in the order in which they end.
 pub fn solve_all(jobs: Vec<Job>, threads: usize, done: impl Fn(usize, &Solved) + Sync) -> Vec<Solved> {
     let solved: Vec<Mutex<Option<Solved>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
@@ -86,7 +86,7 @@ pub fn solve_all(jobs: Vec<Job>, threads: usize, done: impl Fn(usize, &Solved) +
 /// Writes the cases that a problem built into a folder of its own below `directory`; returns their paths.
 ///
 /// # Errors
-/// What the file system refuses.
+/// When the file system refuses it.
 pub fn write_cases(solved: &Solved, directory: &Path) -> std::io::Result<Vec<PathBuf>> {
     let folder = directory.join(solved.job.problem.id.to_lowercase());
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -108,7 +108,7 @@ fn file_stem(name: &str) -> String {
     if stem.trim_matches('.').is_empty() { "case".to_owned() } else { stem }
 }
 
-/// The text of a case that asks for the integrator that the problem was solved with.
+/// The text of a case that names the integrator that the problem was solved with.
 fn with_integrator(text: &str, integrator: Integrator) -> String {
     let name = match integrator {
         Integrator::Explicit => return text.to_owned(),

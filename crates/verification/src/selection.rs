@@ -1,11 +1,11 @@
-//! From what a user asks for to jobs: problems by ID or prefix, values of parameters, every mistake with its remedy.
+//! From the request of a user to jobs: problems by ID or prefix, values of parameters, every mistake with its remedy.
 
 use enmm::model::case::Integrator;
 use enmm::model::case::key::{list, nearest};
 
 use crate::{Job, Problem, Trouble, Values};
 
-/// What a user asks for.
+/// Problems and parameters that a user requests.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
     /// IDs or beginnings of IDs, such as `C6` or `B`; none means all.

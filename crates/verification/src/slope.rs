@@ -36,7 +36,7 @@ pub fn slope_text(spacing: f64, seconds: f64) -> String {
     )
 }
 
-/// What a slope has done since it began to fail. Single blocks go their own ways; these sums hardly know them.
+/// Motion of a slope since it began to fail. Single blocks go their own ways; these sums hardly depend on them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Totals {
     /// Potential energy set free (J/m).

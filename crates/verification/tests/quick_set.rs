@@ -4,7 +4,7 @@
 //! rows of the full set those of the quick form of every quick problem into `docs/verification.json`. Here
 //! - the document must follow from the record to the letter, and the record must have every problem with its title,
 //!   source and parameters: checked without a run;
-//! - the quick set is solved anew and compared row by row with its record: names, units, exact values, tolerances,
+//! - the quick set is solved again and compared row by row with its record: names, units, exact values, tolerances,
 //!   reasons, verdicts, and computed values to a hundredth of their tolerance (bits may differ between the mathematical
 //!   libraries of machines). A change of a problem, of its formula or of the engine shows here;
 //! - the full form of some problems, with `ENMM_LONG=1` (`cargo xtask long`) of all, is compared in the same way.
@@ -31,7 +31,7 @@ fn solve(quick: bool, only: &[&str]) -> Record {
     Record::of(&solve_all(jobs, 2, |_, _| ()))
 }
 
-/// What differs between rows that are computed now and rows of the report.
+/// Differences between rows that are computed now and rows of the report.
 fn differences(id: &str, now: &[RowRecord], reported: &[RowRecord]) -> Vec<String> {
     let names = |rows: &[RowRecord]| rows.iter().map(|row| row.quantity.clone()).collect::<Vec<_>>();
     if names(now) != names(reported) {

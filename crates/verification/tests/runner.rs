@@ -1,5 +1,5 @@
-//! Claim: problems are chosen and set as asked or refused with a remedy, solved in order, and one that fails or panics
-//! shows as failed and takes no other with it.
+//! Claim: problems are chosen and set as requested or refused with a remedy, solved in order, and one that fails or
+//! panics shows as failed and takes no other with it.
 
 use enmm::model::case::Integrator;
 use enmm_verification::{
@@ -147,7 +147,7 @@ fn cases_are_written_under_names_of_their_own() {
     let folder = tempfile::tempdir().expect("a folder");
     let implicit = Request { integrator: Some(Integrator::Implicit), ..request(&["A1"], &[]) };
     let mut jobs = choose(&ALL, &implicit).expect("jobs");
-    // What the implicit integrator makes of it is not the matter here: the text must ask for it.
+    // The result of the implicit integrator does not matter here: the text must name it.
     jobs[0].integrator = Integrator::Explicit;
     let mut solved = solve_all(jobs, 1, |_, _| ());
     solved[0].job.integrator = Integrator::Implicit;

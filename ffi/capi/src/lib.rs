@@ -3,8 +3,8 @@
 //! [`safe`] does the work and forbids `unsafe`; the file of the same name in [`abi`] holds the entry points, which only
 //! turn pointers into references and back. `include/enmm.h` is generated from [`types`] and [`abi`].
 //!
-//! Handles are numbers in the clothes of pointers: slot and generation of an entry in a table of the process. Nothing
-//! is ever read through them, so that a handle which is NULL, dead or made up is an error and never a crash. The table
+//! Handles are integers cast to pointers: slot and generation of an entry in a table of the process. They are never
+//! dereferenced, so that a handle which is NULL, dead or made up is an error and never a crash. The table
 //! is the only thing that the process shares; it is locked for the look-up alone.
 #![deny(unsafe_op_in_unsafe_fn)]
 // C sees the names of this crate as they are. What each pointer must be is said once, at the head of the header.

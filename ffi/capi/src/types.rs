@@ -125,7 +125,7 @@ pub enum enmm_log_level {
 pub type enmm_log_callback =
     Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
 
-/// What a communication step did.
+/// Outcome of a communication step.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct enmm_step_info {
@@ -306,7 +306,7 @@ pub struct enmm_contact {
 pub struct enmm_event {
     /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
     pub struct_size: usize,
-    /// What happened.
+    /// Kind of the event.
     pub kind: enmm_event_kind,
     /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT.
     pub subject: u32,

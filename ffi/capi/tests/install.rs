@@ -1,4 +1,4 @@
-//! What `cargo xtask install` installs can be moved, and is found and used by pkg-config and CMake.
+//! Files of `cargo xtask install` can be moved, and are found and used by pkg-config and CMake.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! A packed FMU holds what the standard asks for, says the same as the table, and is the same for the same case.
+//! A packed FMU holds what the standard requires, says the same as the table, and is the same for the same case.
 
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
@@ -345,7 +345,7 @@ fn the_library_is_found_beside_the_program_and_the_newer_one_wins() {
     }
 }
 
-/// What the descriptions promise by `dependencies=""`.
+/// Promise of the descriptions by `dependencies=""`.
 #[test]
 fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {
     let loaded = case(CASES[0]);

@@ -41,7 +41,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     })
 }
 
-/// Tells the importer where the model stands; returns the time of an early return if it wants one.
+/// Reports the progress of the model to the importer; returns the time of an early return if it wants one.
 fn intermediate_update(importer: &Importer, update: Update) -> Option<f64> {
     let callback = importer.intermediate_update?;
     let (mut wanted, mut time) = (0_u8, update.time);

@@ -88,7 +88,7 @@ impl Limits {
         }
     }
 
-    /// Whether the greatest shear force is no straight line over the normal force, so that sweeps ask for it anew.
+    /// Whether shear strength is nonlinear in the normal force, so that each sweep evaluates it.
     #[inline(always)]
     pub fn is_curved(&self) -> bool {
         match self {

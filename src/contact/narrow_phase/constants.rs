@@ -18,9 +18,9 @@ pub struct EntranceRule {
     pub opposed_cosine: f64,
     /// Distance beyond a corner up to which a contact that carries force is kept.
     pub held_beyond: f64,
-    /// Depth from which a new contact starts without force,
+    /// Depth from which a new contact starts without force.
     pub deep: f64,
-    /// and the same relative to the thickness of the thinner block, where that is less.
+    /// The same depth relative to the thickness of the thinner block; the lesser of both counts.
     pub deep_share: f64,
     /// Distance, relative to the gap, by which the foot of a contact without force may miss an edge where the boundary
     /// bends.

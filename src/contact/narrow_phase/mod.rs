@@ -254,7 +254,7 @@ impl NarrowPhase<'_> {
                 contested |= !candidate.is_held & (candidate.gap < -TIE_TOLERANCE * self.size);
                 sides.push(candidate);
             }
-            // Those that are not accepted matter only where a deep one without force is.
+            // Rejected sides matter only beside a new contact in penetration.
             if contested {
                 std::mem::swap(sides, accepted_sides);
                 self.all_sides(&found, group[0] as usize, accepted_sides, sides);
@@ -382,7 +382,7 @@ impl NarrowPhase<'_> {
     }
 }
 
-/// What is found of the near sides of a run.
+/// Results for the near sides of a run.
 #[derive(Clone, Copy)]
 struct Found<'a> {
     near_pairs: &'a [NearPair],
@@ -399,8 +399,7 @@ impl Found<'_> {
     }
 }
 
-/// Whether a node may be in contact by where it is. What carried force ends by rule 2: the overlap, not the foot, tells
-/// when.
+/// Whether the node is over the edge, or carried force in the last step; rule 2 then decides.
 fn is_considered(verdict: u8) -> bool {
     verdict & (OVER | CARRIED) != 0
 }

@@ -76,7 +76,7 @@ impl NearSides {
             + size_of_val(self.order.as_slice())
     }
 
-    /// Makes the next step list anew: the near pairs are others.
+    /// Makes the next step renew the list: the near pairs have changed.
     pub fn forget(&mut self) {
         self.near_sides.clear();
     }

@@ -15,7 +15,7 @@ pub(super) const ENTERS: u8 = 2;
 /// Bit of a verdict: the contact of the last step carried force.
 pub(super) const CARRIED: u8 = 4;
 
-/// What is found of the near sides of a run.
+/// Results for the near sides of a run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
     /// Distance of each node along its nearest edge, gap, and distance beyond the end of the edge (m).

@@ -13,9 +13,9 @@ const LENGTH_FLOOR: f64 = 1e-9;
 pub(super) struct Tributary {
     /// Tributary length (m).
     pub length: f64,
-    /// Length of joint (m) that bears cohesion and tension: faces that lie along each other, without those that meet at
-    /// an angle. Where a joint ends on another one, the corners beside it have faces on both, and each face counts on
-    /// its own joint alone.
+    /// Length of joint (m) on which cohesion and tension act: faces that lie along each other, without those that meet
+    /// at an angle. Where a joint ends on another one, the corners beside it have faces on both, and each face counts
+    /// on its own joint alone.
     pub bonded: f64,
     /// Length for the default stiffness (m).
     pub penalty: f64,

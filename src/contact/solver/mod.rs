@@ -49,7 +49,7 @@ pub struct SolverOptions {
     pub serial: bool,
 }
 
-/// What the iteration did.
+/// Report of the iteration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SolverReport {
     /// Sweeps done, those over what still moved included.
@@ -80,7 +80,7 @@ pub struct Approach<'a> {
     pub forward: f64,
     /// Damping ratio of a dynamic stage.
     pub damping: Option<f64>,
-    /// What the contacts share.
+    /// Data that the contacts share.
     pub setting: ContactSetting<'a>,
     /// Centroids of the blocks.
     pub motion: &'a [BlockMotion],
@@ -95,7 +95,7 @@ impl Approach<'_> {
     }
 }
 
-/// What a step is solved with.
+/// Inputs of the solver in a step.
 #[derive(Clone, Copy)]
 struct SolverInputs<'a> {
     mass_matrix: &'a MassMatrix,
@@ -103,7 +103,7 @@ struct SolverInputs<'a> {
     approach: &'a Approach<'a>,
 }
 
-/// What is solved in a step besides contacts.
+/// Constraints that are solved in a step besides contacts.
 pub struct OtherConstraints<'a> {
     /// Supports of this step.
     pub rows: &'a mut [SupportRow],
@@ -127,7 +127,7 @@ pub struct OpenClose {
     block_impulse: Vec<PackedImpulse>,
     /// First block and first cover of each run of blocks.
     cuts: Vec<(BlockId, CoverId)>,
-    /// What a [`SolverView`] has of the covers.
+    /// Inverse masses of the covers, as a [`SolverView`] holds them.
     masses: Vec<Vector>,
 }
 
@@ -164,7 +164,7 @@ impl OpenClose {
         self.supports.prepare(supports, rows, &mass_matrix.inverse);
     }
 
-    /// Makes the next step order the near pairs anew.
+    /// Makes the next step renew the order of the near pairs.
     pub fn forget_order(&mut self) {
         self.order.clear();
     }
@@ -251,8 +251,8 @@ impl OpenClose {
         .run(&SubdomainPass { from, first_turn: &self.sequence.first_turn, kind })
     }
 
-    /// Sweeps over all contacts until they settle; between two such sweeps only those are solved that have something to
-    /// answer, until none has.
+    /// Sweeps over all contacts until they settle. Between full sweeps only pairs whose blocks moved are solved, until
+    /// none has.
     fn sweeps(&mut self, inputs: SolverInputs, contacts: &[VertexEdge], others: &mut OtherConstraints) -> SolverReport {
         let SolverInputs { options, .. } = inputs;
         let mut report = SolverReport::default();

@@ -33,8 +33,8 @@ pub struct SolverOrder {
     /// Near sides by the lower of both blocks, then by the other one.
     by_block: Vec<u32>,
     leaf: Vec<u32>,
-    /// What the block pairs push, pair by pair: a free block by its number, a cover of a held one by its number after
-    /// those of all blocks, among those that are pushed.
+    /// Bodies of the block pairs, pair by pair: a free block by its number, a cover of a held one by its number after
+    /// those of all blocks, among the covers that contacts touch.
     pushed: Vec<u32>,
     /// Of a step: the number of contacts of each block pair, then the slot of its next.
     count: Vec<u32>,
@@ -76,7 +76,7 @@ struct BlockPair {
     /// Those near sides, among all of them by block.
     first: u32,
     end: u32,
-    /// What it pushes: the first, and the one after the last.
+    /// Range of its bodies in `pushed`: the first, and the one after the last.
     pushed: [u32; 2],
     blocks: [BlockId; 2],
 }
@@ -143,7 +143,7 @@ impl SolverOrder {
         self.leaf_block.is_empty()
     }
 
-    /// Makes the next step order anew.
+    /// Makes the next step renew the order.
     pub fn clear(&mut self) {
         self.leaf_block.clear();
     }
@@ -293,7 +293,7 @@ impl SolverOrder {
 }
 
 impl Groups {
-    /// Numbers anew the covers of held blocks that are pushed, since most covers are not.
+    /// Renumbers the few covers of fixed blocks that contacts touch.
     fn number_covers(&mut self, blocks: usize, pushed: &mut [u32]) {
         let Self { held, pushing, .. } = self;
         held.clear();

@@ -14,7 +14,7 @@ use crate::mechanics::MassMatrix;
 
 use super::{Approach, BlockImpulse, LIGHT, SolverOptions, SolverReport};
 
-/// What a contact answers with in a step, beside what [`VertexEdge`] says of it.
+/// Linear response of a contact in a step, beside the data of [`VertexEdge`].
 #[derive(Debug, Clone)]
 struct Equation {
     /// The node and the position on the edge that it faces.
@@ -59,7 +59,7 @@ impl Equation {
     }
 }
 
-/// What the impulses of all contacts so far have done to covers and blocks.
+/// Effect of the impulses of all contacts so far on covers and blocks.
 #[derive(Debug, Clone)]
 pub struct Impulses<'a> {
     mass_matrix: &'a MassMatrix,
@@ -166,7 +166,7 @@ fn solve_contact(
     change[0].abs().max(change[1].abs())
 }
 
-/// Forces (N/m) that the springs ask for at the end of the step, before any limit (Eqs. 14, 15), where all impulses so
+/// Forces (N/m) of the springs at the end of the step, before any limit (Eqs. 14, 15), where all impulses so
 /// far have given the points the relative velocity u (m/s).
 ///
 /// Of each spring [`SoftSpring`] holds what no sweep changes: `rest` = −k(g + θΔt·u*), or T_hist − kθΔt·u* along the

@@ -14,7 +14,7 @@ pub const ROUNDS: u32 = 2;
 /// Contacts below which both halves of a part stay in one thread.
 const GRAIN: usize = 2048;
 
-/// What is done with the block pairs.
+/// Kind of a pass over the block pairs.
 #[derive(Debug, Clone, Copy)]
 pub enum PassKind {
     /// Rows are made, and push with the forces that are expected.
@@ -24,7 +24,7 @@ pub enum PassKind {
     Sweep { all: bool, floor: f64, turn: u32 },
 }
 
-/// What all parts share.
+/// Data that all parts share.
 pub struct SubdomainPass<'a> {
     pub from: ContactView<'a>,
     /// First turn of each row, and the number of turns.
@@ -32,7 +32,7 @@ pub struct SubdomainPass<'a> {
     pub kind: PassKind,
 }
 
-/// What a pass has done.
+/// Outcome of a pass.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepOutcome {
     /// Largest change of a force over its size.
@@ -60,7 +60,7 @@ pub struct Subdomain<'a> {
     pub accumulators: Accumulators<'a>,
 }
 
-/// Work on the block pairs of a part from `from` on, which belong to no half: compiled for every kind of lanes.
+/// Kernel over the separator, the pairs from `from` on, which connect the two halves; compiled for every kind of lanes.
 struct SubdomainKernel<'p, 'a, 'v> {
     subdomain: &'p mut Subdomain<'a>,
     from: usize,

@@ -31,7 +31,7 @@ pub struct SupportSystem {
     factor: Vec<f64>,
     /// Changes of the forces (N/m).
     change: Vec<f64>,
-    /// What the factor was made for: kick (s) and viscosities.
+    /// Parameters of the factor: kick (s) and viscosities.
     kick: f64,
     viscosity: Vec<f64>,
 }

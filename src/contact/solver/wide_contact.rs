@@ -10,12 +10,12 @@ use super::wide_block::{F64x8, WideBlock};
 use super::wide_point::{Bodies, Points};
 use super::{Approach, SolverOptions, SolverView};
 
-/// Contacts from which on they are fetched ahead: fewer stay in the caches, where asking costs more than waiting.
+/// Contacts from which on they are fetched ahead: fewer stay in the caches, where prefetching costs more than waiting.
 const FAR: usize = 16_384;
 /// Positions by which a contact is fetched ahead.
 const AHEAD: usize = 8;
 
-/// Contacts of eight block pairs. A lane without one bears nothing and repeats the covers of the first lane.
+/// Contacts of eight block pairs. A lane without one carries no force and repeats the covers of the first lane.
 #[doc(alias = "SIMD")]
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(64))]
@@ -33,7 +33,7 @@ pub struct WideContact {
     open: F64x8,
     /// First turn and the one after the last.
     turns: [u32; 2],
-    /// Lanes, a bit each, that do not bear, and those that push when they are asked for a normal force.
+    /// Bit masks of lanes: open contacts, and contacts in compression.
     shut: u8,
     pressed: u8,
     /// Whether spring or strength of one of them follow a curve.
@@ -72,7 +72,7 @@ impl Start {
     }
 }
 
-/// What a row is made from.
+/// Contacts and order from which a wide contact is made.
 pub struct ContactView<'a> {
     /// Contacts of the step, and the one of each turn.
     pub contacts: &'a [VertexEdge],
@@ -93,7 +93,7 @@ impl ContactView<'_> {
         self.turns[first..end].iter().map(|&contact| contact as usize)
     }
 
-    /// Asks the memory for contacts that come later, and for the points of those that have been asked for.
+    /// Prefetches contacts that come later, and the points of those that are prefetched already.
     #[inline(always)]
     fn fetch(&self, turns: [u32; 2]) {
         for contact in self.later(turns, 2 * AHEAD) {
@@ -268,8 +268,8 @@ impl WideContact {
         contact.end([self.force[0][lane], self.force[1][lane]], bears, torn, setting);
     }
 
-    /// Pushes with the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
-    /// bear shear alone.
+    /// Applies the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
+    /// carry shear alone.
     #[inline(always)]
     pub fn warm_start<L: Values>(
         &self,
@@ -315,7 +315,7 @@ impl WideContact {
             self.follow(from, &mut asked, &mut limits);
             (normal, limit) = (lanes.load(&asked), lanes.load(&limits));
         }
-        // No branch depends on what bears, slips or changes: it would be known too late.
+        // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
         (self.shut, self.pressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
         let limit = lanes.keep_above(limit, normal, open);
@@ -328,8 +328,8 @@ impl WideContact {
         [larger_size(lanes, step), larger_size(lanes, force)]
     }
 
-    /// Pushes with impulses what moved as `before` told. The second points go first, and lanes from the last on: where
-    /// a cover stands twice it has no part in what is overwritten.
+    /// Applies impulses to the points; `before` holds the values as gathered. The second points go first, and lanes
+    /// from the last on: duplicate covers have zero weight, so that overwriting them is harmless.
     #[inline(always)]
     fn push<L: Values>(
         &self,
@@ -368,7 +368,7 @@ fn along<T: Arithmetic>([x, y]: [T; 2], vector: [T; 2]) -> [T; 2] {
 }
 
 impl SoftSpring<F64x8> {
-    /// What springs ask for at velocities (m/s) by all impulses so far.
+    /// Force of the springs at velocities (m/s) by all impulses so far.
     #[inline(always)]
     fn ask<L: Values>(&self, lanes: L, velocity: L::F, force: L::F) -> L::F {
         lanes.load(&self.rest) - lanes.load(&self.rate) * velocity + lanes.load(&self.kept) * force

@@ -25,10 +25,10 @@ pub struct WidePairs {
     common: [F64x8; 2],
     spin: [F64x8; 2],
     unit: [F64x8; 2],
-    /// Turn of the last move that each has answered.
+    /// Sequence number up to which each pair is solved; pairs whose blocks have not moved since are skipped.
     answered: F64x8,
-    /// The same is `share`·turn + `shift` when it has been solved: a single contact has answered what it did itself,
-    /// block pairs without a free block have always something to answer, lanes without a block pair never.
+    /// A pair that is solved gets `share`·turn + `shift`: a single contact also counts its own impulse as solved, block
+    /// pairs without a free block are solved in every sweep, lanes without a block pair in none.
     share: F64x8,
     shift: F64x8,
     /// Blocks of the first and of the second points of each block pair.

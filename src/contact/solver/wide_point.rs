@@ -162,7 +162,7 @@ impl Points {
         covers.filter(move |(_, weights)| weights[lane] != 0.0).map(move |(covers, _)| covers.index(lane))
     }
 
-    /// What their covers have of their own: nothing where they are held, whatever was pushed there.
+    /// Impulses on their own covers: zero where these are held.
     #[inline(always)]
     pub fn cover_impulse<L: Values>(&self, lanes: L, cover_impulse: &[Vector]) -> [[L::F; 2]; 3] {
         let mut found = [

@@ -27,7 +27,7 @@ pub(super) struct OuterPiece {
     pub piece: BoundaryPiece,
 }
 
-/// A material point with a support's stiffness (N/m per metre) and the force (N/m) that it bears from the start.
+/// A material point with a support's stiffness (N/m per metre) and the force (N/m) that it carries from the start.
 pub(super) struct Hold {
     pub block: BlockId,
     pub covers: [CoverId; 3],

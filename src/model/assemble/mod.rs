@@ -28,7 +28,7 @@ pub use integrators::{ExplicitAlone, Integrators};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
-/// A model as built: what is fixed, the state at its start, and what the build has to tell.
+/// A model as built: what is fixed, the state at its start, and the report of the build.
 #[derive(Debug, Clone)]
 pub struct Built {
     /// Fixed part.
@@ -37,7 +37,7 @@ pub struct Built {
     pub state: State,
     /// Element and reference point of each monitor.
     pub monitors: Vec<(ElementId, Point)>,
-    /// What the noder did.
+    /// Report of the noder.
     pub noding: NodingReport,
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
     pub boundary_pieces: usize,
@@ -45,11 +45,11 @@ pub struct Built {
     pub traces: Vec<(Vec<Point>, LawId)>,
     /// First of these traces of each joint set, and one past the last.
     pub set_start: Vec<usize>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// Builds the model of a case; `tell` hears of every part of the build as it begins.
+/// Builds the model of a case; `tell` is called with every part of the build as it begins.
 ///
 /// # Errors
 /// The first key of the case that does not fit the model: integrator, geometry, references to positions without rock,
@@ -90,7 +90,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     })
 }
 
-/// The boundary loops of a case's blocks, cut anew: a model keeps them only as contact sees them.
+/// The boundary loops of a case's blocks, cut again: a model keeps them only as contact sees them.
 ///
 /// # Errors
 /// As [`build`].
@@ -103,7 +103,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 /// size, since they do not resolve stiffer joints.
 const STIFFNESS_LENGTH: f64 = 1.0;
 
-/// The fixed part of the model, and what its bolts have to tell.
+/// The fixed part of the model, and the warnings about its bolts.
 fn model(
     case: &Case,
     joints: &geometry::Joints,
@@ -172,7 +172,7 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
     Ok((fixities, supports, of_case, quiets))
 }
 
-/// What acts on faces of the rock.
+/// Loads, ports and water on faces of the rock.
 type OnFaces = (Vec<Load>, Vec<Port>, Option<Water>);
 
 fn on_faces(case: &Case, positions: &Locator, boundary: &Boundary) -> Result<OnFaces, Invalid> {

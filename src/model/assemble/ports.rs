@@ -21,7 +21,7 @@ impl Faces<'_> {
         ends.iter().all(|&p| segment::distance(p, Point::from(a), Point::from(b)) <= self.tolerance)
     }
 
-    /// What a load of kind `joint` presses on: joint faces or the parts of them that lie on its segment.
+    /// Faces on which a load of kind `joint` presses: joint faces or the parts of them that lie on its segment.
     pub fn loaded(&self, key: &str, load: &Load) -> Result<Vec<LoadedFace>, Invalid> {
         let segment = load.edge.unwrap_or_default();
         let joints = self.boundary.edges().filter(|&k| self.boundary.trace[k].is_some());

@@ -14,7 +14,7 @@ const ROW: f64 = 0.866_025_403_784_438_6;
 /// Distance from the side's line, relative to the mesh size, at which the rock of a column is looked up.
 const INSIDE: f64 = 1e-3;
 
-/// What the quiet boundaries of a case are made from.
+/// Inputs from which the quiet boundaries of a case are made.
 pub(super) struct Ground<'a> {
     pub case: &'a Case,
     pub positions: &'a Locator<'a>,
@@ -181,7 +181,7 @@ impl Ground<'_> {
         self.case.quiets.iter().position(reaches).map_or(Foot::Rigid, |k| Foot::Quiet(k as u32))
     }
 
-    /// What a column gives to the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. 51).
+    /// Action of a column on the dashpots of a piece of side: its velocity, and its stress on the piece (Eq. 51).
     fn beside(&self, column: &Column, piece: &OuterPiece, first: u32, dashpots: &[Support]) -> Vec<FreeFieldPoint> {
         let rock = &self.rocks[self.element_rock[piece.piece.element] as usize];
         let (a, b) = (piece.piece.a, piece.piece.b);
@@ -197,7 +197,7 @@ impl Ground<'_> {
     }
 }
 
-/// Quiet boundaries that bear no weight when motion begins: they hold in static stages only.
+/// Quiet boundaries that carry no weight when motion begins: they hold in static stages only.
 pub(super) fn warning(case: &Case) -> Option<String> {
     let has_some = !case.quiets.is_empty() || !case.free_fields.is_empty();
     let begins_dynamic = case.stages.first().is_some_and(|stage| stage.kind == case::StageKind::Dynamic);

@@ -87,7 +87,7 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
 /// Elements over the height of a model below which triangles that lock make rock that yields much too strong.
 const FINE: f64 = 20.0;
 
-/// Tells that factors of safety of rock that yields come out too high on a coarse mesh (theory, section 15).
+/// Warns that factors of safety of rock that yields come out too high on a coarse mesh (theory, section 15).
 pub(super) fn coarse(case: &Case) -> Option<String> {
     let (low, high) = polygon::bounds(&points(&case.domain.outline));
     let (size, height) = (case.mesh.size, (high - low).y);

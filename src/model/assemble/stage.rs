@@ -1,4 +1,4 @@
-//! The parts of a build, told as they begin.
+//! The parts of a build, reported as they begin.
 
 /// A part of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! What the user should know of a model that can be built: what its geometry became, and values beyond the usual ranges
+//! Warnings about a model that can be built: changes of its geometry, and values beyond the usual ranges
 //! of rock and soil, which are mostly slips in a unit or a sign.
 
 use crate::contact::LawId;
@@ -25,7 +25,7 @@ const TENSION_SHARE: f64 = 0.01;
 /// Ignored traces that are named.
 const NAMED: usize = 5;
 
-/// What the noder did.
+/// Warnings about changes by the noder.
 pub(super) fn of_geometry(noding: &NodingReport, case: &Case, joints: &Joints) -> Vec<String> {
     let traces = &joints.traces;
     let mut warnings = Vec::new();
@@ -95,7 +95,7 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
     (0..noding.traces.len()).filter(|&t| noding.traces[t].in_rock == 0.0).collect()
 }
 
-/// What is unusual about values of the case.
+/// Warnings about unusual values of the case.
 pub(super) fn of_values(case: &Case, model: &Model, positions: &Locator) -> Vec<String> {
     let mut warnings = rocks(case);
     warnings.extend(without_effect(&case.solver));

@@ -1,4 +1,4 @@
-//! What kick and end of a step ask of a block: its masses, its damping, and what its parts have in common.
+//! Data of a block for kick and end of a step: its masses, its damping, and the velocity that its parts share.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::state::Model;
 
 use super::DECAY_MAX;
 
-/// What covers of a part of a block that can move have in common with the others of the block.
+/// Rigid-body velocity that the covers of a chunk receive from their block, when it can move.
 pub(super) fn spread<'a>(
     mass_matrix: &'a MassMatrix,
     (part, block): (&Chunk, BlockId),

@@ -25,7 +25,7 @@ pub(super) trait Cut: Sized + Send {
     /// The outputs of some covers, blocks and chunks, and the rest.
     fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self);
 
-    /// Outputs on covers that are asked for before they are written.
+    /// Outputs on covers that are prefetched before they are written.
     fn asked(&self) -> &[Vector] {
         &[]
     }
@@ -34,7 +34,7 @@ pub(super) trait Cut: Sized + Send {
 /// Work on a run of chunks with its outputs.
 pub(super) trait Work: Sync {
     type Out<'o>: Cut;
-    /// Does the work on a chunk; `next` is what of the outputs behind it is asked for before it is written.
+    /// Does the work on a chunk; `next` are the following outputs, to prefetch.
     fn chunk<L: Lanes>(&self, lanes: L, chunk: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
 }
 

@@ -30,11 +30,11 @@ pub(super) struct Finish<'a> {
     pub damping: &'a [Damping],
     /// Whether all covers of each chunk can move along both axes.
     pub movable: &'a [bool],
-    /// Whether contacts, supports or bolts may ask for each cover.
+    /// Whether contacts, supports or bolts may read each cover.
     pub exposed: &'a [bool],
     /// Time (s) for which covers move now: 0 where a report wants the positions before.
     pub moves_for: f64,
-    /// Whether the work of body loads is asked for.
+    /// Whether the work of body loads is needed.
     pub is_loaded: bool,
     pub grain: usize,
 }

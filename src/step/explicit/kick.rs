@@ -14,10 +14,10 @@ use crate::state::{ChunkSums, Model, State};
 use super::blocks::{inertial, inverse, spread};
 use super::chunk_runs::{Cut, Run, Work};
 
-/// Covers from which on a step does not find them in the caches, and the next chunk is asked for in advance.
+/// Covers from which on a step does not find them in the caches, and the next chunk is prefetched.
 const ASKED: usize = 1 << 17;
 
-/// What every block of a step shares.
+/// Data that every block of a step shares.
 pub(super) struct Kick<'a> {
     pub model: &'a Model,
     pub state: &'a State,
@@ -29,7 +29,7 @@ pub(super) struct Kick<'a> {
     pub damping: &'a [Damping],
     /// Whether all covers of each chunk can move along both axes.
     pub movable: &'a [bool],
-    /// Whether contacts, supports or bolts may ask for each cover.
+    /// Whether contacts, supports or bolts may read each cover.
     pub exposed: &'a [bool],
     /// Time (s) for which forces act.
     pub kick: f64,
@@ -74,7 +74,7 @@ impl Kick<'_> {
         }
     }
 
-    /// What the chunk after this one will read.
+    /// Data that the chunk after this one will read.
     fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
         let (start, count) = (chunk.covers.end, self.state.displacement.len());
         let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
@@ -133,8 +133,7 @@ impl Kick<'_> {
     }
 }
 
-/// Covers whose values will be read soon, and are asked for piece by piece: memory is slow to come, and idle while a
-/// chunk is in hand.
+/// Prefetches the next chunk in pieces while this one is computed.
 struct Ahead<'a> {
     kick: &'a Kick<'a>,
     covers: Range<usize>,
@@ -297,7 +296,7 @@ impl Kick<'_> {
     }
 }
 
-/// What a kick fills.
+/// Arrays that a kick fills.
 pub(super) struct KickOut<'a> {
     pub predicted: &'a mut [Vector],
     pub motion: &'a mut [BlockMotion],
@@ -305,7 +304,7 @@ pub(super) struct KickOut<'a> {
     pub sums: &'a mut [ChunkSums],
 }
 
-/// Adds what is common to a block to covers of its parts that contacts, supports or bolts may ask for.
+/// Adds the rigid-body velocity of a block to covers of its parts that contacts, supports or bolts may read.
 struct Exposed<'a> {
     kick: &'a Kick<'a>,
     sums: &'a [ChunkSums],

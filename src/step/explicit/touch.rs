@@ -1,4 +1,4 @@
-//! What contacts, supports and bolts answer: who takes part in an explicit sub-step, and the open–close iteration.
+//! Contacts, supports and bolts of an explicit sub-step: their selection, and the open–close iteration.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ impl Step<'_> {
         self.workspace.seconds.entrance += clock.elapsed().as_secs_f64();
     }
 
-    /// Bolts that bear in this step.
+    /// Bolts that carry force in this step.
     fn load_bolts(&mut self) {
         let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
         let view = BoltView {

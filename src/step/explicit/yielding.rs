@@ -33,7 +33,7 @@ pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time:
     state.ledger.yielding += workspace.yielded.iter().sum::<f64>();
 }
 
-/// What all runs share.
+/// Data that all runs share.
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],

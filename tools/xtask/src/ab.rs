@@ -12,7 +12,7 @@ const MODELS: &str = "continuum_10000,continuum_100000,slope_500x4,slope_2000x4"
 const ROUNDS: usize = 5;
 /// Wall time (s) for the steps of each model in a round.
 const SECONDS: &str = "0.5";
-/// What is compared: name, and place in the object of a model.
+/// Times that are compared: name, and place in the object of a model.
 const PARTS: [(&str, &str); 7] = [
     ("step", "/ms_per_step"),
     ("search", "/stages/search"),
@@ -23,7 +23,7 @@ const PARTS: [(&str, &str); 7] = [
     ("rest", "/stages/rest"),
 ];
 
-/// What to compare.
+/// Programs and models to compare.
 pub struct Comparison<'a> {
     old: &'a Path,
     new: &'a Path,
@@ -55,7 +55,7 @@ impl<'a> Comparison<'a> {
     /// Runs both programs in turn and prints the median of each part and of the ratios of the rounds.
     ///
     /// # Errors
-    /// When a program does not run, or tells something else than `enmm bench --json` does.
+    /// When a program does not run, or prints something else than `enmm bench --json` does.
     pub fn run(&self, repository: &Repository) -> Result<(), String> {
         println!("| model | part | old ms | new ms | old / new | range |\n|---|---|---|---|---|---|");
         for model in self.models.split(',') {
@@ -76,7 +76,7 @@ impl<'a> Comparison<'a> {
         Ok(())
     }
 
-    /// What a program tells of a model.
+    /// Times of a model by a program.
     fn bench(&self, repository: &Repository, program: &Path, model: &str) -> Result<Value, String> {
         let mut command = repository.command(repository::program(program));
         command.args(["bench", "--json", "--no-limits", "--threads", self.threads, "--seconds", SECONDS]);

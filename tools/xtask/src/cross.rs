@@ -24,7 +24,7 @@ const PYTHON: &str = "python_tests/windows/run.py";
 const FMU_CASE: &str = "examples/cases/coupled_slope.toml";
 /// Steps before its rollback.
 const FMU_STEPS: &str = "50";
-/// What an FMU may have for each platform (bytes).
+/// Most bytes of an FMU for each platform.
 const FMU_SIZE_MAX: u64 = 8_000_000;
 
 /// Builds for a platform; with `--test` in `words` it then tests what it has built. `--quick` is the share of

@@ -11,7 +11,7 @@ use crate::venv::succeeds;
 /// Random numbers for a Wine that lacks the library that has them.
 const RANDOM: &str = "ffi/fmi/tests/c/bcryptprimitives.c";
 
-/// What stands before the name of a program; nothing for programs of this machine.
+/// Words in front of the name of a program; none for programs of this machine.
 #[derive(Default)]
 pub struct Emulator {
     words: &'static [&'static str],

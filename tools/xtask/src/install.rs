@@ -8,7 +8,7 @@ use crate::repository::Repository;
 const LIBRARIES: [&str; 4] = ["libenmm.so", "libenmm.a", "libenmm_fmi2.so", "libenmm_fmi3.so"];
 /// Headers by their place in the repository.
 const HEADERS: [&str; 2] = ["include/enmm.h", "ffi/cpp/enmm.hpp"];
-/// What the static library needs of the system.
+/// System libraries that the static library needs.
 const SYSTEM_LIBRARIES: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 
 /// Builds everything and installs it below `prefix`.

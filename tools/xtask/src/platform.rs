@@ -11,7 +11,7 @@ use crate::venv::succeeds;
 pub struct Platform {
     /// The word of its task; also its folder in the target folder.
     pub name: &'static str,
-    /// What a cross build needs; none for this machine.
+    /// Requirements of a cross build; none for this machine.
     pub cross: Option<Cross>,
     library: [&'static str; 2],
     program: &'static str,
@@ -23,7 +23,7 @@ pub struct Platform {
     profile: &'static str,
 }
 
-/// What a cross build needs.
+/// Requirements of a cross build.
 pub struct Cross {
     /// Name of the target of the compiler.
     pub triple: &'static str,
@@ -39,7 +39,7 @@ pub struct Cross {
     pub wheel: &'static str,
     /// Name of FMI 3, by which `enmm fmu --library` takes its libraries.
     pub fmi: &'static str,
-    /// What linkers of C programs take beside the shared library.
+    /// File that linkers of C programs take beside the shared library.
     pub import_library: Option<&'static str>,
     /// Program that runs its programs on this machine, with its options.
     pub emulator: &'static [&'static str],
@@ -194,7 +194,7 @@ impl Cross {
         self.emulator.first().is_some_and(|program| succeeds(Command::new(program).arg("--version")))
     }
 
-    /// What a cross build lacks on this machine, with the commands that bring it.
+    /// Requirements of a cross build that this machine lacks, with the commands that install them.
     pub fn missing(&self) -> Option<String> {
         let Self { triple, compiler, compiler_package, .. } = self;
         let mut missing = Vec::new();

@@ -196,7 +196,7 @@ pub fn program(path: &Path) -> PathBuf {
 /// Removes a folder or a file, if there is one.
 ///
 /// # Errors
-/// What the file system refuses.
+/// When the file system refuses it.
 pub fn remove(path: &Path) -> Result<(), String> {
     let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     match removed {
@@ -208,7 +208,7 @@ pub fn remove(path: &Path) -> Result<(), String> {
 /// All files below a folder but hidden ones, which a run that was killed may leave half written.
 ///
 /// # Errors
-/// What the file system refuses.
+/// When the file system refuses it.
 pub fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut files = BTreeMap::new();
     let mut folders = vec![(folder.to_owned(), String::new())];

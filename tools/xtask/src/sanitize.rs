@@ -1,6 +1,6 @@
 //! Memory under the eyes of other tools: valgrind and the sanitizers of the C compiler over the hosts in C, the address
 //! sanitizer of the nightly compiler over the share of fuzzing, its thread sanitizer over the claim of equal bits. What
-//! is not there is told with what would bring it, and is no failure.
+//! is missing is reported with the command that installs it, and is no failure.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -28,7 +28,7 @@ const HOST_FLAGS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-re
 /// A flood is a find, as without the sanitizer, which takes too much address space for a limit of that.
 const ASAN_OPTIONS: &str = "detect_leaks=1:hard_rss_limit_mb=4096:allocator_may_return_null=1";
 
-/// What came of a tool.
+/// Verdict of a tool.
 enum Verdict {
     Clean(String),
     Missing(&'static str),
@@ -47,7 +47,7 @@ const TOOLS: [Tool; 4] = [
 /// Runs all tools that are there; fails when one finds something.
 ///
 /// # Errors
-/// What was found.
+/// When a tool finds something.
 pub fn run(repository: &Repository) -> Result<(), String> {
     run_tools(repository, &TOOLS)
 }

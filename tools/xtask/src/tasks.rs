@@ -31,7 +31,7 @@ pub fn verification(repository: &Repository, program: &str) -> Result<(), String
     repository::run(repository.cargo(&run).env("ENMM_LABEL", label(repository)?))
 }
 
-/// Tells what a step costs through every export.
+/// Prints the cost of a step through every export.
 ///
 /// # Errors
 /// When the program does not build or run.
@@ -39,7 +39,7 @@ pub fn overhead(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--bin", "enmm-overhead"]))
 }
 
-/// Writes the schema of the case file as the command line tells it.
+/// Writes the schema of the case file as the command line prints it.
 ///
 /// # Errors
 /// When the program does not build or run, or the file cannot be written.

@@ -12,7 +12,7 @@ use crate::venv;
 const PACKAGE: &str = "ffi/python";
 /// Packages of the binaries.
 const PACKAGES: [&str; 4] = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
-/// What a package index takes without asking, with room to spare (bytes).
+/// Size that a package index takes without asking, with room to spare (bytes).
 const SIZE_MAX: u64 = 15_000_000;
 
 /// Packages of the binaries, as cargo takes them.

@@ -1,4 +1,4 @@
-//! What a case may say in the words of the field becomes the plain data that the engine builds: dips become angles,
+//! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
 //! bolt patterns bolts, construction joints joints with a law, K0 a stress. This is the only place that does so.
 
 mod bolts;

@@ -47,7 +47,7 @@ pub fn validate_set(key: &Key, set: &JointSet) -> Check {
     set.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
 }
 
-/// What the distribution of angles needs and what it has no use for.
+/// Checks the keys that the distribution of angles needs, and those that it does not use.
 fn validate_angles(key: &Key, set: &JointSet) -> Check {
     let is_fisher = set.angle_distribution == AngleDistribution::Fisher;
     optional(key, "fisher_k", set.fisher_k, Range::from(5.0).to(1e6), "", "20 scatters widely, 200 little")?;
@@ -69,7 +69,7 @@ fn validate_angles(key: &Key, set: &JointSet) -> Check {
     Ok(())
 }
 
-/// What the distribution of spacings or lengths needs.
+/// Checks the keys that the distribution of spacings or lengths needs.
 fn validate_spread(key: &Key, name: &str, kind: Distribution, mean: f64, sd: f64) -> Check {
     let place = key.field(&format!("{name}_sd"));
     match kind {

@@ -26,7 +26,7 @@ use checks::{
 pub struct Invalid {
     /// Place in the case, such as `rock.granite.young` or `joint[3].points[1]`.
     pub key: String,
-    /// What is wrong, the value, the limit and the remedy.
+    /// The fault, the value, the limit and the remedy.
     pub message: String,
 }
 

@@ -49,7 +49,7 @@ impl Place {
     }
 }
 
-/// What the program answered.
+/// Output of the program.
 #[derive(Debug)]
 pub struct Outcome {
     pub status: Option<i32>,

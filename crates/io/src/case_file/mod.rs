@@ -22,7 +22,7 @@ pub struct LoadedCase {
     pub source: CaseSource,
     /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
     pub hash: String,
-    /// What the user should know though it is no error.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Values that took the place of those of the case file, as `key=value`.
     pub settings: Vec<String>,
@@ -35,7 +35,7 @@ impl LoadedCase {
     /// The first value that cannot be used.
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
-        // Old names were told of where the case was read.
+        // Old names were reported where the case was read.
         Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: Vec::new(), ..loaded })
     }
 

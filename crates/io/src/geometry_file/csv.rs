@@ -94,7 +94,7 @@ struct Open {
     line: usize,
 }
 
-/// What reading gathers.
+/// Table with the rows read so far.
 struct Table<'a> {
     file: &'a str,
     reader: wkt::Reader,

@@ -43,7 +43,7 @@ pub fn parse(document: Document) -> Result<Geometry, CaseError> {
 /// A joint law with its key.
 type Law = Option<(String, String)>;
 
-/// What a walk gathers.
+/// Reader with the geometry found so far.
 struct Reader<'a> {
     document: &'a Document<'a>,
     geometry: Geometry,

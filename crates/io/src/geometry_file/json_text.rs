@@ -126,7 +126,7 @@ struct Frame {
 }
 
 impl Scan {
-    /// Notes lines until the end, or returns key and message of the first thing that the parser would not tell: a bare
+    /// Notes lines until the end, or returns key and message of the first thing that the parser would accept: a bare
     /// token that is a number to others but not to JSON, or a key that stands twice.
     fn run(&mut self, text: &str) -> Result<(), (Key, String)> {
         let bytes = text.as_bytes();

@@ -19,7 +19,7 @@ use enmm::model::case::PointList;
 /// Points with their key in the file.
 pub type Located = (PointList, String);
 
-/// What a geometry file holds.
+/// Content of a geometry file.
 #[derive(Debug, Default)]
 pub struct Geometry {
     /// Outer loop of the rock.
@@ -30,7 +30,7 @@ pub struct Geometry {
     pub islands: Vec<Located>,
     /// Joint traces.
     pub traces: Vec<Trace>,
-    /// What was not used, with counts.
+    /// Warnings of parts that were not used, with counts.
     pub warnings: Vec<String>,
     /// Lines of the keys of the file.
     pub lines: LineMap,

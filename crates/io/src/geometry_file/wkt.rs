@@ -48,10 +48,10 @@ pub fn parse(file: &str, text: &str) -> Result<Geometry, CaseError> {
     Ok(reader.finish())
 }
 
-/// What reading gathers.
+/// Reader with the geometry found so far.
 #[derive(Default)]
 pub struct Reader {
-    /// What was found.
+    /// Geometry found so far.
     pub geometry: Geometry,
     points: usize,
     high: usize,
@@ -115,7 +115,7 @@ impl Reader {
         coords.iter().map(|coord| [coord.x, coord.y]).collect()
     }
 
-    /// What was found, with warnings of what was not used.
+    /// The geometry, with warnings of parts that were not used.
     pub fn finish(self) -> Geometry {
         let Self { mut geometry, points, high } = self;
         if points > 0 {

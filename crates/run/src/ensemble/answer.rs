@@ -1,4 +1,4 @@
-//! What is worked out of one sample.
+//! Result of one sample.
 
 use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::Row;

@@ -107,7 +107,7 @@ pub enum EnsembleError {
              the same command again"
     )]
     Changed,
-    /// The caller asked to stop.
+    /// The caller stopped it.
     #[error("interrupted with {done} of {n} samples done, which are stored: run the same command again to continue")]
     Interrupted {
         /// Samples done.
@@ -120,7 +120,7 @@ pub enum EnsembleError {
     Output(io::Error),
 }
 
-/// What a worker answers.
+/// Result of a worker.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
     /// The sample is done.
@@ -131,7 +131,7 @@ pub enum Answer {
 
 /// Works out the samples of a case that are not in the store yet, and writes the results of all.
 ///
-/// `ask` works out one sample: it gets its number and its values as settings of the case, and fails when the worker was
+/// `ask` computes one sample: it gets its number and its values as settings of the case, and fails when the worker was
 /// lost. `hear` is called with the number of samples done, and of all.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! What follows from all samples, and the files that hold it.
+//! Summary of all samples, and the files that hold it.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -24,7 +24,7 @@ const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 pub struct EnsembleResult {
     /// All samples.
     pub samples: Samples,
-    /// What each gave.
+    /// Results of the samples.
     pub rows: Vec<Row>,
     /// How they were drawn.
     pub ensemble: Ensemble,

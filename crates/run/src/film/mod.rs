@@ -1,4 +1,4 @@
-//! What the page `report.html` shows of a model: its blocks and frames as the film has them.
+//! Blocks and frames of a model for the film of the page `report.html`.
 
 mod structures;
 
@@ -29,16 +29,16 @@ pub struct Film {
     corners: Vec<EdgeId>,
 }
 
-/// What a film begins with beside the case and its model.
+/// Opening of a film beside the case and its model.
 #[derive(Debug)]
 pub struct Opening<'a> {
     /// The command, such as `run`.
     pub command: &'static str,
     /// The film.
     pub film: PathBuf,
-    /// What the slider moves along.
+    /// Axis of the slider.
     pub axis: Axis,
-    /// What frames hold of blocks beside their displacement.
+    /// Quantities of blocks in frames, beside their displacement.
     pub quantities: Vec<Quantity>,
     /// Names and units of the columns of the histories, the time first.
     pub columns: &'a [(String, &'static str)],

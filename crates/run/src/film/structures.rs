@@ -7,7 +7,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm_picture::structures::{BoltKind, BoltLine, SupportKind, bolts, supports, water_surface};
 
-/// What acts on the rock at one instant beside its joints.
+/// Actions on the rock at one instant beside its joints.
 #[derive(Debug)]
 pub struct Beside {
     bolts: Vec<BoltFrame>,
@@ -53,7 +53,7 @@ impl Beside {
         }
     }
 
-    /// What a frame takes, without wet edges.
+    /// Structures of a frame, without wet edges.
     pub fn structures(&self) -> Structures<'_> {
         Structures {
             bolts: &self.bolts,

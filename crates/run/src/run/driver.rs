@@ -34,7 +34,7 @@ use super::{Observer, RunError, RunOptions, RunProgress, results};
 /// Most steps between two copies of the state to which a failed run falls back.
 const GOOD_STEPS: u64 = 200;
 
-/// What a run knows beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
+/// Progress of a run beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 struct Progress {
     /// Stages that are over.
@@ -95,7 +95,7 @@ enum StageEnd {
     Failed(StepError),
 }
 
-/// What ends a stage before it is over.
+/// Early end of a stage.
 type Halt = Result<StageEnd, RunError>;
 
 struct Driver<'a> {
@@ -244,7 +244,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// What is due at the start of a step, and the step.
+    /// Outputs that are due at the start of a step, and the step.
     fn pass(&mut self, plan: &Plan) -> Result<Option<StepReport>, Halt> {
         if self.options.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Ok(StageEnd::Interrupted));
@@ -562,7 +562,7 @@ fn film(
     Ok(film)
 }
 
-/// What a user should know whose histories begin at a checkpoint.
+/// Warning when the histories begin at a checkpoint.
 fn lost_past(past: Past, simulation: &Simulation, directory: &Path) -> Option<String> {
     let lost = past == Past::Lost && simulation.time() > 0.0;
     lost.then(|| {

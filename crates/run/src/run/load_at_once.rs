@@ -2,7 +2,7 @@
 //!
 //! One mode of frequency ω with the displacement u and its value at rest u_s: the loads in Eq. 12 give the damping
 //! c = 2ω/√s with s = u/u_s, so that s'' + 2s'/√s + s = 1 over τ = ωt. This curve has no parameter. The forces out of
-//! balance are the share 1 − s of the loads, and the slope of ln(1 − s) over ln τ tells τ at any moment, thus ω.
+//! balance are the share 1 − s of the loads, and the slope of ln(1 − s) over ln τ gives τ at any moment, thus ω.
 
 use std::sync::LazyLock;
 

@@ -81,7 +81,7 @@ pub enum RunError {
     Checkpoint {
         /// The checkpoint.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         error: CheckpointError,
     },
     /// The threads cannot be started.
@@ -98,7 +98,7 @@ pub enum RunError {
 /// Runs all stages of a case and writes its results.
 ///
 /// # Errors
-/// What cannot be read, built or written. A numerical failure is not an error but a status of the summary.
+/// When something cannot be read, built or written. A numerical failure is not an error but a status of the summary.
 pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
     let Some(threads) = options.threads else { return driver::run(loaded, options, observer) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();

@@ -72,7 +72,7 @@ impl Outlook {
         Some(own + later.sum::<f64>())
     }
 
-    /// What static stages took so far, on the average (s).
+    /// Mean time (s) of the static stages so far.
     fn usual(&self) -> Option<f64> {
         (!self.taken.is_empty()).then(|| self.taken.iter().sum::<f64>() / self.taken.len() as f64)
     }

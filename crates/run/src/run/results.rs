@@ -1,4 +1,4 @@
-//! What a run leaves at its start and end beside histories and frames: pictures, and the directory itself.
+//! Files of a run at its start and end beside histories and frames: pictures, and the directory itself.
 
 use std::fs;
 use std::io;
@@ -33,10 +33,10 @@ const STAGE_PICTURES: [(PictureKind, &[&str]); 7] = [
     (PictureKind::MeanStressContours, &["mean_stress_contours"]),
 ];
 
-/// What tells that a run has written into a directory.
+/// Files by which a directory is known as that of a run.
 const TRACES: [&str; 2] = ["history.csv", "summary.json"];
 
-/// Makes the directory, removes what a killed run left half written, and tells whether a run has been here before.
+/// Makes the directory, removes what a killed run left half written, and returns whether a run has been here before.
 pub fn enter(directory: &Path) -> io::Result<bool> {
     fs::create_dir_all(directory).map_err(at_path(directory))?;
     sweep_temporaries(directory)?;
@@ -128,7 +128,7 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
     Ok(Past::Copied)
 }
 
-/// Draws the model before it moves: those pictures of it that the case asks for.
+/// Draws the model before it moves: those pictures of it that the case requests.
 pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     let pictures = &simulation.case().output.pictures;
     if pictures.include(PictureKind::Model) {
@@ -146,7 +146,7 @@ fn draw_slope(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     model_picture(&simulation.snapshot(), &model_annotations(simulation)).write_png(&directory.join("model.png"))
 }
 
-/// Draws a model that is only looked at into a directory: `model.png`, and `covers.png` if the case asks for it.
+/// Draws a model that is only looked at into a directory: `model.png`, and `covers.png` if the case requests it.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
@@ -172,7 +172,7 @@ pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Draws the slope at the end of a stage: those pictures that the case asks for. `started` are the displacements of the
+/// Draws the slope at the end of a stage: those pictures that the case requests. `started` are the displacements of the
 /// covers (m) at the start of the stage.
 pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], directory: &Path) -> io::Result<()> {
     let pictures = &simulation.case().output.pictures;

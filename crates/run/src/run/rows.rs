@@ -19,7 +19,7 @@ const FRAMES: [f64; 2] = [20.0, 2.0];
 /// Least and most frames of the film of a dynamic stage, and those of a doubling of the steps of a static one.
 const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
-/// What a row tells of its step behind the energies.
+/// Quantities of a step in a row, behind the energies.
 const REPORTED: [Quantity<StepReport>; 4] = [
     Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |report| report.unbalanced),
     Quantity::new(["penetration_max"; 2], "m", "Largest penetration", |report| report.penetration_max),

@@ -88,7 +88,7 @@ impl<'a> Array<'a> {
         }
     }
 
-    /// What numbers stand for: one entry with a component of each name, whose value is the number of the name.
+    /// Meanings of numbers: one entry with a component of each name, whose value is the number of the name.
     pub fn names(name: &'static str, names: &[impl AsRef<str>]) -> Self {
         let numbers: Vec<u8> = (0..names.len() as i64).flat_map(i64::to_le_bytes).collect();
         Self {

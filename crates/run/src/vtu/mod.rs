@@ -199,7 +199,7 @@ fn state_code(state: ContactState) -> u8 {
     }
 }
 
-/// What a frame shows beside the elements.
+/// Structures that a frame shows beside the elements.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Structures {
     /// Joints.
@@ -315,7 +315,7 @@ impl PvdWriter {
     }
 
     /// Continues the collection of an interrupted run: frames later than `keep_until_time` (s) leave the list, and
-    /// their files are written over. A missing collection is started anew.
+    /// their files are written over. A missing collection is started again.
     ///
     /// # Errors
     /// `InvalidData` if `run.pvd` is not a collection that this type wrote; else what the file system refuses.
@@ -379,7 +379,7 @@ fn listed_frames(text: &str) -> io::Result<Vec<Frame>> {
 /// An unstructured grid whose cells have their own points, stored in the order of the cells.
 struct Grid<'a> {
     time: f64,
-    /// What numbers stand for.
+    /// Meanings of numbers.
     names: Vec<Array<'a>>,
     points: Array<'a>,
     cell_type: u8,

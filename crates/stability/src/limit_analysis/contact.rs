@@ -14,9 +14,9 @@ pub struct Contact {
     pub normal: Vector,
     /// tan φ.
     pub friction: f64,
-    /// Shear force (N/m) that it bears without a normal force.
+    /// Shear strength (N/m) without a normal force.
     pub cohesion: f64,
-    /// Tensile force (N/m) that it bears.
+    /// Tensile strength (N/m).
     pub tension: f64,
 }
 

@@ -97,7 +97,7 @@ fn merged(group: &[Sector]) -> Vec<Sector> {
     sectors
 }
 
-/// How two sectors about one point bear on each other besides the interfaces that they share.
+/// How two sectors about one point press on each other besides the interfaces that they share.
 enum Meeting {
     Points(Vec<Contact>),
     Facing(Corner),

@@ -8,7 +8,7 @@ use super::contact::Contact;
 use super::model::Strengths;
 
 /// The straight interfaces of all blocks: pieces that follow each other on one line are one interface, because a
-/// rigid face bears any distribution of pressure by a force at each end (Eq. 77).
+/// rigid face carries any distribution of pressure by a force at each end (Eq. 77).
 pub fn interfaces(
     outlines: &Outlines,
     element_block: &[BlockId],

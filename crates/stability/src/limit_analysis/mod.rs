@@ -21,7 +21,7 @@ use program::{Program, Unsolved};
 pub use refusal::staged;
 use search::{Limit, Search};
 
-/// Least and greatest factor that are told from none and from no end.
+/// Range of factors that is searched; outside it the result is `AtMost` or `AtLeast`.
 pub const RANGE: [f64; 2] = [1e-3, 1e3];
 /// Speed, relative to that of the fastest block, from which a block is part of a mechanism.
 const MOVES: f64 = 1e-2;
@@ -86,17 +86,17 @@ pub struct Collapse {
     pub mechanism: Vec<MovingBlock>,
 }
 
-/// What limit analysis says of a model.
+/// Result of limit analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bound {
     /// Corners that face each other at crossings may pass through each other: exact for joints that dilate by their
     /// friction angle, as far as such corners play no part.
     pub associated: Collapse,
-    /// Each of them stays outside one facet or the other: no rule of contact by which level tops pass bears more.
+    /// Each of them stays outside one facet or the other: upper bound when corners pass over level tops.
     pub level_tops: Collapse,
     /// No choice of facets gives less than this: the factor of `level_tops`, unless choices were left untried.
     pub least: Factor,
-    /// Each of them stays outside both facets: what a rule bears that catches blocks at every crossing.
+    /// Each of them stays outside both facets: bound when corners catch at every crossing.
     pub catching: Collapse,
     /// Blocks that are there, and those that can move.
     pub blocks: [usize; 2],
@@ -108,7 +108,7 @@ pub struct Bound {
     pub corners: usize,
     /// Linear programs that were solved.
     pub programs: usize,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -126,7 +126,7 @@ pub enum BoundError {
     Unsolved {
         /// Blocks that can move.
         blocks: usize,
-        /// What the solver says.
+        /// Status of the solver.
         status: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Rigid blocks with the forces on them, and what their joints, bolts and fixities can bear.
+//! Rigid blocks with the forces on them, and the strength of their joints, bolts and fixities.
 
 use enmm::contact::LawId;
 use enmm::cover::BlockId;

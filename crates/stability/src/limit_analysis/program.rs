@@ -20,7 +20,7 @@ pub struct Program {
     pub bars: Vec<Bar>,
 }
 
-/// Accuracy that is asked for, relative to the weight of a block.
+/// Accuracy of the solution, relative to the weight of a block.
 const ACCURACY: f64 = 1e-10;
 /// Accuracy that will do where the solver gets no farther, by its own account and by ours.
 const REDUCED: f64 = 1e-8;
@@ -31,7 +31,7 @@ const REGULARIZATIONS: [f64; 3] = [1e-8, 1e-6, 1e-10];
 /// Velocity (m/s) of a block's centroid and its angular velocity (rad/s), as large as one likes.
 pub type Motion = (Vector, f64);
 
-/// What a program says of one strength.
+/// Solution of a program at one strength.
 #[derive(Debug, Clone)]
 pub struct Solution {
     /// Least share of its weight by which the worst block is out of balance; 0 when there is equilibrium.
@@ -45,7 +45,7 @@ pub struct Solution {
 /// The solver gave up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unsolved {
-    /// What it says.
+    /// Status of the solver.
     pub status: SolverStatus,
 }
 
@@ -146,7 +146,7 @@ struct Rows {
     columns: usize,
     /// First row of each block that can move.
     first: Vec<Option<usize>>,
-    /// What the strength changes: row, column, change of the left side.
+    /// Entries that depend on the strength: row, column, change of the left side.
     strength: Vec<(usize, usize, f64)>,
     unit: f64,
 }

@@ -1,4 +1,4 @@
-//! What limit analysis cannot treat, by name, and the stage in which it looks at a model.
+//! Features that limit analysis cannot treat, by name, and the stage in which it looks at a model.
 
 use enmm::model::Simulation;
 use enmm::model::case::key::Key;

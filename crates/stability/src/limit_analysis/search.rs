@@ -34,7 +34,7 @@ pub struct Limit {
     pub low: Option<f64>,
     /// Least strength with equilibrium; none when there is none throughout.
     pub high: Option<f64>,
-    /// What the program says at `low`.
+    /// Solution of the program at `low`.
     pub mechanism: Option<Solution>,
 }
 
@@ -60,7 +60,7 @@ impl Limit {
     }
 }
 
-/// What a choice of facets found.
+/// Result of a choice of facets.
 pub struct Choice {
     /// The limit of the best choice.
     pub limit: Limit,

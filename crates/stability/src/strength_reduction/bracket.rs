@@ -41,7 +41,7 @@ impl Search {
         [low, high]
     }
 
-    /// How many trials there will be, as far as can be told: as many as the bracket needs that is known, or that the
+    /// How many trials there will be, as far as it is known: as many as the bracket needs that is known, or that the
     /// next pair may find.
     pub fn expected(&self) -> usize {
         let width = match self.bracket() {

@@ -1,4 +1,4 @@
-//! What a reader of a factor of safety should know of its trials.
+//! Doubts about a factor of safety that follow from its trials.
 
 use super::{Reason, Reduction, Trial, Verdict};
 use enmm::model::case::Case;
@@ -24,7 +24,7 @@ impl Reduction {
     }
 }
 
-/// What speaks against taking the result as it is.
+/// Reasons not to take the result as it is.
 pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     let trials = &reduction.trials;
     let mut doubts = Vec::new();

@@ -1,6 +1,6 @@
-//! Whether a slope bears a reduced strength, from its motion alone.
+//! Whether a slope is stable at a reduced strength, from its motion alone.
 
-/// Whether the slope bears the strength of a trial.
+/// Whether the slope is stable at the strength of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// Motion has died, and elasticity explains how far it went.
@@ -22,7 +22,7 @@ impl Verdict {
     }
 }
 
-/// What a verdict rests on.
+/// Reason of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
     /// Speeds, energy and growth of displacements have died.
@@ -64,7 +64,7 @@ pub struct Sample {
     pub released: f64,
 }
 
-/// What a motion is measured against (Eqs. 61–64).
+/// Scales against which a motion is measured (Eqs. 61–64).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
     /// Window between samples (s).

@@ -53,9 +53,9 @@ impl Default for ReductionOptions<'_> {
 pub struct Trial {
     /// F.
     pub factor: f64,
-    /// Whether the slope bears it.
+    /// Whether the slope is stable at it.
     pub verdict: Verdict,
-    /// What told so.
+    /// Reason of the verdict.
     pub reason: Reason,
     /// Simulated time (s).
     pub time: f64,
@@ -98,7 +98,7 @@ impl Trial {
 pub struct Progress {
     /// Trials so far.
     pub trials: usize,
-    /// How many there will be, as far as can be told.
+    /// How many there will be, as far as it is known.
     pub expected: usize,
 }
 
@@ -130,13 +130,13 @@ pub enum End {
     StableThroughout,
     /// Not stable even at the least F.
     UnstableThroughout,
-    /// The caller asked it to stop.
+    /// The caller stopped it.
     Interrupted,
     /// A trial failed numerically.
     Failed(StepError),
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Reduction {
     /// All trials, ascending in F.
@@ -155,7 +155,7 @@ pub struct Reduction {
     pub free_area: f64,
     /// Limit analysis of the same model, or why there is none.
     pub bound: Result<Bound, String>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,
@@ -173,7 +173,7 @@ impl Reduction {
         self.trials.iter().find(|trial| Some(trial.factor) == self.high)
     }
 
-    /// The greatest F that was tried, when the slope bears it: the factor of safety is at least that.
+    /// The greatest F that was tried, when the slope is stable at it: the factor of safety is at least that.
     pub fn at_least(&self) -> Option<f64> {
         self.low.filter(|_| self.end == End::StableThroughout)
     }
@@ -214,8 +214,8 @@ impl From<Invalid> for ReductionError {
     }
 }
 
-/// Finds the factor of safety of a case; `hear` is told each trial as it ends. Limit analysis of the same model stands
-/// beside it.
+/// Finds the factor of safety of a case; `hear` is called with each trial as it ends. Limit analysis of the same model
+/// stands beside it.
 ///
 /// Trials are made in pairs, which two threads can share; what is tried does not depend on how many there are.
 ///

@@ -24,7 +24,7 @@ pub struct Rest {
     pub factor: f64,
     /// Time (s) and steps that it took.
     pub effort: (f64, u64),
-    /// What was left out.
+    /// Warnings about what was left out.
     pub warnings: Vec<String>,
 }
 

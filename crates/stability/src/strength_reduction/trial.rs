@@ -27,13 +27,13 @@ const TAKES_PART: f64 = 0.1;
 
 /// Why a trial gave no verdict.
 pub enum Stop {
-    /// The caller asked for it.
+    /// The caller stopped it.
     Interrupted,
     /// A numerical failure before anything had failed.
     Failed(StepError),
 }
 
-/// What all trials begin with.
+/// Common start of all trials.
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,

@@ -1,5 +1,5 @@
 //! Sets the cost of explicit and implicit steps on a continuum side by side and writes the document (default:
-//! `docs/implicit_ratio.md`); `--quick` takes the small model alone and only tells.
+//! `docs/implicit_ratio.md`); `--quick` takes the small model alone and only prints.
 //!
 //! Exit status: 2 when a run fails or the document cannot be written.
 

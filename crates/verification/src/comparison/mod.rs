@@ -17,7 +17,7 @@ use crate::{Plot, Setup, Trouble, Values};
 
 pub use crate::slope::{Totals, slope_text};
 
-/// When, by what and on what the times of a document were taken: `cargo xtask` tells commit and date.
+/// When, by what and on what the times of a document were taken: `cargo xtask` passes commit and date.
 fn origin() -> String {
     let label = std::env::var("ENMM_LABEL").unwrap_or_else(|_| "Commit and date not told".to_owned());
     let Machine { processor, cores, .. } = Machine::here(false);
@@ -29,7 +29,7 @@ fn origin() -> String {
 pub struct Entry {
     /// Model.
     pub model: &'static str,
-    /// What varies.
+    /// Variant.
     pub variant: String,
     /// Method.
     pub integrator: Integrator,
@@ -63,7 +63,7 @@ pub const FAILING: f64 = 1.0;
 pub struct Failure {
     /// Cost of the failure, without that of coming to rest.
     pub entry: Entry,
-    /// What it has done after [`FAILING`] seconds.
+    /// Motion after [`FAILING`] seconds.
     pub totals: Totals,
 }
 
@@ -194,7 +194,7 @@ fn of_implicit(buffers: &ImplicitBuffers) -> usize {
     matrix + factor + fields * size_of::<Vector>() + places
 }
 
-/// Processor time (s) of all threads of this process so far; 0 where the system does not tell.
+/// Processor time (s) of all threads of this process so far; 0 where the system does not report it.
 fn cpu_seconds() -> f64 {
     // The system brings its count up to date when a thread gives way.
     std::thread::yield_now();

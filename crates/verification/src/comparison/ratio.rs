@@ -1,4 +1,4 @@
-//! What a step of each method costs on a continuum, at given ratios of their steps, with the errors of both.
+//! Cost of a step of each method on a continuum, at given ratios of their steps, with the errors of both.
 //!
 //! Rock of height H on a fixed base, between smooth walls, feels its weight at once and vibrates: a column whose exact
 //! motion is u = −g/c²·(H·y − y²/2) + Σ 2g/(c²·H·k³)·sin k·y·cos k·c·t, with k = (2n+1)π/2H and c² = (λ+2μ)/ρ.

@@ -54,7 +54,7 @@ impl Load {
     }
 }
 
-/// What one mesh gives.
+/// Result of one mesh.
 #[derive(Debug, Clone, Copy)]
 struct Result {
     /// Deflection (m) of the middle over the supports, and below the mean of the points L/10 inside.

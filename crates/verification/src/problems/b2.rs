@@ -32,7 +32,7 @@ pub const PROBLEM: Problem = Problem {
     run,
 };
 
-/// What swings.
+/// Body that swings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Supported,

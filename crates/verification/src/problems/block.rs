@@ -39,7 +39,7 @@ pub struct Block {
     pub ramp: f64,
 }
 
-/// What became of a block.
+/// Motion of a block on an incline.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fate {
     /// Time (s).
@@ -95,7 +95,7 @@ impl Block {
         setup.simulation(name, self.case(duration))
     }
 
-    /// What has become of the block by now.
+    /// Motion of the block until now.
     pub fn fate(&self, simulation: &Simulation) -> Fate {
         let (s, c) = self.dip.sin_cos();
         let down = Vector::new(c, -s);

@@ -26,7 +26,7 @@ pub const PROBLEM: Problem = Problem {
     run,
 };
 
-/// Friction and dilation (degrees) with which limit analysis is asked for the limit.
+/// Friction and dilation (degrees) with which limit analysis finds the limit.
 const ASKED: f64 = 45.0;
 /// Samples of the displacement over time.
 const SAMPLES: usize = 100;

@@ -91,7 +91,7 @@ fn case(setup: &Setup) -> String {
     .concat()
 }
 
-/// What a run shows: places of both blocks at three times, their distance (s), mean push and curves.
+/// Record of a run: places of both blocks at three times, their distance (s), mean push and curves.
 struct Slide {
     places: Vec<[f64; 2]>,
     span: f64,

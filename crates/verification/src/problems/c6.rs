@@ -198,7 +198,7 @@ fn kind(setup: &mut Setup, k: f64, friction: f64) -> Result<Kind, Trouble> {
     let slips = slips(&mut simulation, block.ramp, 2.0 * JUDGED * block.ramp)?;
     let Fate { time, spin, slides, .. } = block.fate(&simulation);
     let turns = spin * block.height > MOVES * G * time;
-    // The toe of a block that turns moves a little in any case: whether it slips, the friction work tells.
+    // The toe of a block that turns moves a little in any case: whether it slips, the friction work shows.
     let slides = if turns { slips } else { slides > MOVES * G * time };
     Ok(match (turns, slides) {
         (false, false) => Kind::Stands,

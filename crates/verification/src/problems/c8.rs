@@ -142,7 +142,7 @@ fn moving(columns: &Columns, reduction: &Reduction) -> Vec<Mode> {
     columns.middles().iter().enumerate().map(of).collect()
 }
 
-/// Limits under the forces that the formulas ask for: strength reduced until the held slope fails.
+/// Limits under the forces that the formulas require: strength reduced until the held slope fails.
 ///
 /// The force itself would be ill conditioned: it changes by some 13 MN/m per unit of tan φ, so that a limit which is
 /// right to 0.1 % leaves 3 % of the smallest one open.

@@ -1,4 +1,4 @@
-//! What the continuum problems share: quarter models of holes and discs, tractions of a known field on their far
+//! Helpers for continuum problems: quarter models of holes and discs, tractions of a known field on their far
 //! edges, and stresses at points.
 
 use enmm::geometry::{Point, Vector};
@@ -64,7 +64,7 @@ impl QuarterPlate {
     /// The stages of a hole that is opened: from the stress `before` to the one `after` in a slow dynamic stage, so
     /// that no shock runs out, then to rest; with the loads on far edges and wall that go with both fields.
     ///
-    /// The plate deforms as if it went on for ever, since its far edges bear the tractions of the infinite one.
+    /// The plate deforms as if it went on for ever, since its far edges carry the tractions of the infinite one.
     pub fn opened(&self, before: Field, after: Field, speed: f64) -> String {
         let ramp = TRANSITS * self.half / speed;
         let table = smooth_rise(ramp);

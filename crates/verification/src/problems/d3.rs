@@ -77,7 +77,7 @@ fn case(setup: &Setup, law: &str, stress: f64, guided: bool) -> String {
 }
 
 /// Shears a box by `distance` (m); returns the states of the joint, the greatest shear stress that its
-/// guides bore (Pa) and the last report.
+/// guides carried (Pa) and the last report.
 fn shear(
     simulation: &mut Simulation,
     distance: f64,

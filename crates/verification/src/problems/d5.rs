@@ -30,7 +30,7 @@ pub const PROBLEM: Problem = Problem {
 /// Young's modulus of the mass over the stiffness of the spring (1/m).
 const RIGIDITY: f64 = 1e4;
 
-/// What a drop was like.
+/// Record of a drop.
 #[derive(Clone, Debug)]
 struct Drop {
     /// Speed at contact (m/s).

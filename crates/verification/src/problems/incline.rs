@@ -1,4 +1,4 @@
-//! What problems on inclined planes share: factors of safety.
+//! Factors of safety for problems on inclined planes.
 
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 

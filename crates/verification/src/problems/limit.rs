@@ -1,4 +1,4 @@
-//! What problems of limit analysis share: text of cases with several blocks and laws, rows of factors.
+//! Helpers for problems of limit analysis: text of cases with several blocks and laws, rows of factors.
 
 use enmm_stability::limit_analysis::{Bound, bound};
 
@@ -80,7 +80,7 @@ pub fn bound_of(setup: &mut Setup, name: &str, text: String) -> Result<Bound, Tr
     Ok(bound(&case)?)
 }
 
-/// What all rows of factors are within, and why.
+/// Reason for the tolerance of all rows of factors.
 const REASON: &str = "the bracket is 2e-5 wide, and 2e-7 of a block's weight counts as balanced";
 
 /// Both bounds beside one closed form.

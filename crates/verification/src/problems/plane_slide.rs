@@ -98,7 +98,7 @@ impl PlaneSlide {
         [(2.0 * x + h / self.face.tan()) / 4.0, (y + 2.0 * h) / 4.0]
     }
 
-    /// What the water does to the wedge by the formula: the force (N/m) of V and U, and their moment (N) about the toe.
+    /// Action of water on the wedge by the formula: the force (N/m) of V and U, and their moment (N) about the toe.
     pub fn water_force(&self) -> (Vector, f64) {
         let ((s, c), [x, y]) = (self.plane.sin_cos(), self.head());
         let thrust = Vector::new(-0.5 * self.water_weight * self.water.powi(2), 0.0);

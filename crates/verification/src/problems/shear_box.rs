@@ -1,4 +1,4 @@
-//! A body that is moved against joints in small steps: its supports are carried along, and tell the force.
+//! A body that is moved against joints in small steps: its supports move along, and measure the force.
 
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
@@ -53,7 +53,7 @@ pub fn share(point: usize, points: usize) -> f64 {
     way / (1.0 - 0.5 * rise)
 }
 
-/// What a joint bears and how it has moved, over all of its contacts.
+/// Force on a joint and its displacement, over all of its contacts.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JointState {
     /// Mean normal stress (Pa), pressing positive.

@@ -28,7 +28,7 @@ pub struct Slider<'a> {
     pub reach: f64,
 }
 
-/// What a slide was like.
+/// Record of a slide.
 pub struct Slide {
     /// Time (s) and way down the plane (m) of the block's centroid relative to the base.
     pub path: Vec<[f64; 2]>,

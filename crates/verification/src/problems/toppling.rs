@@ -31,7 +31,7 @@ pub struct Columns {
     pub size: f64,
 }
 
-/// What a column does at the limit.
+/// Mode of a column at the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
     /// It stands by itself.
@@ -70,7 +70,7 @@ impl Columns {
     /// Goodman and Bray's equations from the crest down.
     ///
     /// P(n−1) = max(0, [P_n(M − Δx·tan φ) + ½W(y·sin β − Δx·cos β)]/L, P_n − W(cos β·tan φ − sin β)/(1 − tan²φ)).
-    /// The force P₀ that a further column would bear along the base is borne by P₀(1 − tan²φ)/(tan φ·sin β + cos β).
+    /// The force P₀ that one more column would carry along the base, by P₀(1 − tan²φ)/(tan φ·sin β + cos β).
     pub fn equilibrium(&self, tangent: f64) -> Equilibrium {
         let (s, c) = self.base.sin_cos();
         let (mut force, mut modes) = (0.0f64, vec![Mode::Stable; self.count]);

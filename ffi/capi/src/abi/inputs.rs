@@ -1,4 +1,4 @@
-//! What hosts set.
+//! Inputs of hosts.
 
 use engine::cosimulation::PortKind;
 use engine::geometry::Vector;

@@ -194,7 +194,7 @@ pub unsafe extern "C" fn enmm_set_log_callback(
 fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_char), user: *mut c_void) -> Sink {
     /// The pointer of a host, which is only handed back.
     struct User(*mut c_void);
-    // SAFETY: nothing is read or written through it here; the host is told on which threads it gets it back.
+    // SAFETY: nothing is read or written through it here; the header says on which threads it gets it back.
     unsafe impl Send for User {}
     // SAFETY: as above.
     unsafe impl Sync for User {}

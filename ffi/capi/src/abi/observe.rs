@@ -1,4 +1,4 @@
-//! What hosts read.
+//! Outputs for hosts.
 
 use engine::geometry::Point;
 use libc::c_char;

@@ -1,4 +1,4 @@
-//! What pointers of hosts may do here: each function says what the pointer must be and checks what can be checked.
+//! Pointers of hosts: each function says what the pointer must be and checks what can be checked.
 
 use std::ffi::CStr;
 
@@ -152,7 +152,7 @@ unsafe fn stride_of<T: Growing>(out: *const T) -> Result<usize, Failure> {
     Err(Failure::invalid(format!("struct_size: is {size}, must be {limit}; set it to sizeof({name})")))
 }
 
-/// Tells the caller the number of items, and this library whether they are to be written.
+/// Returns the number of items to the caller, and to this library whether they are to be written.
 ///
 /// # Safety
 /// `written` is NULL or points to a number.
@@ -203,7 +203,7 @@ mod tests {
         let mut place = [[7_u64; 5]; 2];
         place[0][0] = 40;
         let (mut written, out) = (0, place.as_mut_ptr().cast());
-        // SAFETY: two structures of the size that the first one tells.
+        // SAFETY: two structures of the size that the first one has.
         let outcome = unsafe { fill_structs(&[event(1), event(2)], out, 2, &mut written) };
         assert_eq!((outcome, written), (Ok(()), 2));
         for (k, words) in place.iter().enumerate() {

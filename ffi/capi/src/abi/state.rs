@@ -14,7 +14,7 @@ use crate::types::{enmm_model, enmm_state, enmm_status};
 /// Errors: ENMM_NULL_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut enmm_state) -> enmm_status {
-    // SAFETY: promised by the host. Without a model there is no state either; a NULL is told below.
+    // SAFETY: promised by the host. Without a model there is no state either; a NULL is reported below.
     let _ = unsafe { pointers::write_handle("out", out, 0) };
     with_model(model.addr(), |model| {
         // SAFETY: promised by the host. A state that cannot be handed out is not made.
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn enmm_state_deserialize(
     size: usize,
     out: *mut *mut enmm_state,
 ) -> enmm_status {
-    // SAFETY: promised by the host. Without a model there is no state either; a NULL is told below.
+    // SAFETY: promised by the host. Without a model there is no state either; a NULL is reported below.
     let _ = unsafe { pointers::write_handle("out", out, 0) };
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe {

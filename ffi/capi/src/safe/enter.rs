@@ -8,7 +8,7 @@ use crate::types::enmm_status;
 
 /// Runs `act` and turns what comes of it into a status.
 pub fn guard(act: impl FnOnce() -> Outcome) -> enmm_status {
-    // What a panic leaves behind is not looked at again: a model is then poisoned, all else is written whole.
+    // Data behind a panic is not used again: a model is then poisoned, all else is written whole.
     let outcome = catch_unwind(AssertUnwindSafe(act)).unwrap_or_else(|payload| Err(Failure::panic(&*payload)));
     match outcome {
         Ok(()) => enmm_status::ENMM_OK,

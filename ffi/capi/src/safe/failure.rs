@@ -17,7 +17,7 @@ pub struct Failure {
     pub message: String,
 }
 
-/// What an entry point does.
+/// Outcome of an entry point.
 pub type Outcome = Result<(), Failure>;
 
 impl Failure {

@@ -1,4 +1,4 @@
-//! Handles that tell whether what they stand for is still there, without ever being followed.
+//! Handles that show whether their object still exists, without ever being dereferenced.
 //!
 //! A handle holds the generation of its slot in the upper half, the slot above the lowest eight bits, and there a tag
 //! of the kind of thing. A slot that is given free gets the next generation, so that an old handle finds nothing; a

@@ -200,7 +200,7 @@ impl Model {
         })
     }
 
-    /// Tells of the initial equilibrium when the call has sought it.
+    /// Logs the initial equilibrium when this call has computed it.
     fn log_start(&mut self, was_started: bool) {
         if was_started || !self.inner.is_started() {
             return;
@@ -222,7 +222,7 @@ impl Model {
         }
     }
 
-    /// Warns of a motion that is worthless, of which no status tells.
+    /// Warns of a motion that is worthless, which no status reports.
     fn warn_of(&mut self, doubt: Option<String>) {
         if let Some(text) = doubt {
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, || text);

@@ -41,7 +41,7 @@ impl Model {
         Ok(self.inner.restore(&kept.saved)?)
     }
 
-    /// Hands the bytes of a state to `copy`, and keeps them when they are `asked` for by number only.
+    /// Hands the bytes of a state to `copy`, and keeps them when only their number is `asked` for.
     ///
     /// # Errors
     /// A dead state, one of another case, or what `copy` says.

@@ -29,7 +29,7 @@ pub fn libraries() -> &'static Path {
     })
 }
 
-/// Tells what nobody asserts, whether the test is good or not.
+/// Prints values that no test asserts, whether the test passes or not.
 pub fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
 }

@@ -104,7 +104,7 @@ pub fn write_resources(loaded: &LoadedCase, folder: &Path) {
     std::fs::write(resources.join("case.json"), enmm_fmi::resource::encode(loaded, "case").unwrap()).unwrap();
 }
 
-/// What an importer may choose.
+/// Choices of an importer.
 #[derive(Default, Clone)]
 pub struct Options {
     pub token: Option<String>,
@@ -122,7 +122,7 @@ pub type Line = (Status, String, String);
 #[derive(Default)]
 pub struct Log {
     pub lines: Mutex<Vec<Line>>,
-    /// What the logger does at the next message.
+    /// Action of the logger at the next message.
     pub meddle: Mutex<Option<Meddle>>,
     pub updates: Mutex<Updates>,
 }
@@ -134,7 +134,7 @@ pub struct Updates {
     pub instance: usize,
     pub references: Vec<u32>,
     pub seen: Vec<(f64, Vec<f64>, bool)>,
-    /// Time from which on an early return is asked for, and the time that is asked for.
+    /// Time from which on an early return is requested, and the time that is requested.
     pub ask: Option<(f64, f64)>,
     /// Statuses of calls that are illegal within an update.
     pub illegal: Vec<Status>,

@@ -1,6 +1,6 @@
 //! How much memory a model will take: estimated from the case before anything is cut, and counted while it is.
 //!
-//! Each refusal names the key that asks for the most, its value, the limit and the remedy.
+//! Each refusal names the key that needs the most, its value, the limit and the remedy.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
@@ -28,8 +28,7 @@ const BYTES_PER_PAIR: f64 = 150.0;
 const CELLS_MAX: [f64; 2] = [1e9, u32::MAX as f64 / 3.0];
 /// Distance over the snap tolerance below which traces count as one: more than that at which vertices are merged.
 const MERGED: f64 = 4.0;
-/// Sine of the angle below which traces that cross become one on some way round the crossing, so that it may vanish
-/// among others.
+/// Sine of an angle: crossings flatter than this may be merged by the noder and are not counted.
 const SLANT: f64 = 0.1;
 /// Most pieces of traces whose crossings are counted one by one.
 const SAMPLE: usize = 2000;
@@ -40,12 +39,12 @@ const DEAD: f64 = 0.5;
 /// How many times more than the limit an estimate must be to refuse a case: twice as many sides as there may be. What
 /// remains is counted when it has been cut.
 const FLOOD: f64 = 4.0;
-/// Limit over the estimate at a spacing that is told as a remedy, so that it will do.
+/// Limit over the estimate at a spacing that the remedy names, so that it suffices.
 const ROOM: f64 = 2.0;
 /// Step of the search for such a spacing.
 const WIDER: f64 = 1.1;
 
-/// What a case asks for, and the box of its rock (m).
+/// Sizes that a case demands, and the box of its rock (m).
 pub(super) struct Demand<'a> {
     pub case: &'a Case,
     pub low: Point,
@@ -292,7 +291,7 @@ impl Demand<'_> {
         }
     }
 
-    /// What an arrangement that fails has to tell.
+    /// Message for an arrangement that fails.
     pub fn explain(&self, error: &GeometryError) -> Invalid {
         if matches!(error, GeometryError::TooManyPieces { .. }) {
             return self.refuse(&error.to_string());

@@ -10,7 +10,7 @@ use super::{Results, platform};
 /// Where the table is.
 pub const PLACE: &str = "tests/golden/bits.csv";
 const HEADER: &str = "item,result,sha1";
-/// Item of the row that tells the platform.
+/// Item of the row that names the platform.
 const PLATFORM: &str = "platform";
 
 /// The table.
@@ -67,7 +67,7 @@ impl Golden {
     /// Writes the table into the repository.
     ///
     /// # Errors
-    /// What the file system refuses.
+    /// When the file system refuses it.
     pub fn write(&self, root: &Path) -> Result<(), String> {
         std::fs::write(root.join(PLACE), self.text()).map_err(|error| format!("{PLACE}: {error}"))
     }
@@ -94,7 +94,7 @@ impl Golden {
         self.rows.insert(item.to_owned(), hashes);
     }
 
-    /// What is not as the table says of an item.
+    /// Differences of an item from the table.
     pub fn problems(&self, item: &str, found: &BTreeMap<String, String>) -> Vec<String> {
         let nothing = BTreeMap::new();
         let known = self.rows.get(item).unwrap_or(&nothing);
@@ -123,7 +123,7 @@ pub fn hashes(results: &Results) -> BTreeMap<String, String> {
     sums.into_iter().map(|(kind, sum)| (kind, sum.digest().to_string())).collect()
 }
 
-/// What a file counts as.
+/// Kind of a file.
 fn kind(name: &str) -> &str {
     match name {
         _ if name.ends_with(".vtu") || name.ends_with(".pvd") => "frames",

@@ -1,4 +1,4 @@
-//! What is run, and what of its results counts.
+//! Items that are run, and the results that count.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -112,7 +112,7 @@ pub struct Maker<'a> {
     pub repository: &'a Repository,
     /// The platform of the build.
     pub platform: &'a Platform,
-    /// What runs its programs.
+    /// Emulator of its programs.
     pub emulator: &'a Emulator,
     /// Host of FMUs for another platform.
     pub host: Option<&'a Path>,
@@ -147,7 +147,7 @@ impl Maker<'_> {
     /// Removes the files of an item: frames of all items together would take more than a gigabyte.
     ///
     /// # Errors
-    /// What the file system refuses.
+    /// When the file system refuses it.
     pub fn forget(&self, item: &Item) -> Result<(), String> {
         repository::remove(&self.folder.join(item.name))
     }
@@ -191,7 +191,7 @@ impl Maker<'_> {
         Ok(results)
     }
 
-    /// What the program prints.
+    /// Output of the program.
     fn bound(&self, name: &str, place: &Path) -> Result<Results, String> {
         let mut bound = self.command(&["bound", &case(name), "--json", "-o"]);
         let mut results = Results::from([("bound.json".to_owned(), repository::capture(bound.arg(place))?)]);

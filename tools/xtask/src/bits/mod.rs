@@ -155,7 +155,7 @@ fn beside_golden<'a>(golden: &Golden, maker: &Maker, items: impl Iterator<Item =
     Ok(counts)
 }
 
-/// Writes the golden table anew.
+/// Renews the golden table.
 fn renew(repository: &Repository) -> Result<(), String> {
     let (folder, program) = (fresh_folder(repository)?, repository.enmm());
     let here = Emulator::default();
@@ -203,7 +203,7 @@ fn newlines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
 
-/// What stands around a place in a text, within its line.
+/// Text around a place, within its line.
 fn excerpt(text: &str, at: usize) -> String {
     const AROUND: usize = 24;
     let start =

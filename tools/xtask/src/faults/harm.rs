@@ -192,7 +192,7 @@ impl<'a> Disk<'a> {
 
 impl Drop for Disk<'_> {
     fn drop(&mut self) {
-        // One that stays mounted is told when the folder is next made anew.
+        // One that stays mounted is reported when the folder is next made.
         let _ = Command::new("umount").arg(self.place.path(self.name)).stderr(Stdio::null()).status();
     }
 }

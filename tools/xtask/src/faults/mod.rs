@@ -14,9 +14,9 @@ use place::Place;
 /// Rounds when no number is given.
 const ROUNDS: u64 = 5;
 
-/// What came of a fault that was tried.
+/// Verdict on a fault that was tried.
 pub enum Verdict {
-    /// What was promised holds; what was seen.
+    /// The promise holds; the observation.
     Held(String),
     /// It cannot be tried here, and why.
     Skipped(String),

@@ -113,12 +113,12 @@ impl Place {
     }
 }
 
-/// What a run complained of.
+/// Complaint of a run.
 pub fn complaint(answer: &Output) -> String {
     String::from_utf8_lossy(&answer.stderr).trim().to_owned()
 }
 
-/// An error unless a run told in one line what was wrong and ended with a status of the program's own.
+/// An error unless a run named the fault in one line and ended with a status of the program's own.
 pub fn refused(answer: &Output, names: &str) -> Result<String, String> {
     let told = complaint(answer);
     let good = matches!(answer.status.code(), Some(2 | 3)) && told.starts_with("error: ") && told.lines().count() == 1;

@@ -1,4 +1,4 @@
-//! What the JSON Schema of the case expects at a key, and how an example of it is written in TOML.
+//! Type that the JSON Schema of the case expects at a key, and an example of it in TOML.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct Schema<'a> {
     node: &'a Value,
 }
 
-/// What a value must be.
+/// Expected type of a value.
 pub enum Expected<'a> {
     /// A table with these keys.
     Table(Fields<'a>),

@@ -48,7 +48,7 @@ fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// What a walk carries along.
+/// Context of a walk.
 struct Reader<'a> {
     file: &'a str,
     starts: LineStarts,

@@ -6,7 +6,7 @@ use enmm::model::case::key::Key;
 /// One pair of lines.
 #[derive(Debug, Clone, Copy)]
 pub struct Group<'a> {
-    /// What the value means.
+    /// Meaning of the value.
     pub code: i32,
     /// The value.
     pub value: &'a str,

@@ -31,7 +31,7 @@ pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, CaseError>
     Ok(reader.finish())
 }
 
-/// What reading gathers.
+/// Reader with the entities found so far.
 struct Reader<'a> {
     groups: &'a Groups<'a>,
     case: &'a Case,
