@@ -49,6 +49,51 @@ pub struct BoltState {
     pub force: f64,
 }
 
+impl BoltState {
+    /// The condition now. A bar that has yielded or broken and lost its rock is absent.
+    pub fn condition(&self) -> BoltCondition {
+        match self {
+            now if !now.active => BoltCondition::Absent,
+            now if now.broken => BoltCondition::Broken,
+            now if now.rest > now.natural => BoltCondition::Yielded,
+            now if now.force > 0.0 => BoltCondition::Elastic,
+            _ => BoltCondition::Slack,
+        }
+    }
+}
+
+/// Condition of a bar segment at one instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BoltCondition {
+    /// A stage installs it later, or a block that held it is gone, whatever the bar did before.
+    #[default]
+    Absent,
+    /// It carries no force and has never yielded.
+    Slack,
+    /// It is in tension and has never yielded.
+    Elastic,
+    /// It has yielded.
+    Yielded,
+    /// It has broken.
+    Broken,
+}
+
+impl BoltCondition {
+    /// Names of the numbers in files.
+    pub const NAMES: [&str; 4] = ["absent", "whole", "yielded", "broken"];
+
+    /// Number in files of bolts and in films, where a slack bar and one in tension count as whole.
+    pub fn number(self) -> u8 {
+        match self {
+            Self::Absent => 0,
+            Self::Slack | Self::Elastic => 1,
+            Self::Yielded => 2,
+            Self::Broken => 3,
+        }
+    }
+}
+
 /// A bar segment during one step.
 #[derive(Debug, Clone, Copy)]
 pub struct BoltRow {
@@ -158,5 +203,24 @@ impl BoltRow {
         let a = self.stiffness * dt * (theta * kappa / (1.0 + kappa));
         let trial = (self.stiffness * (self.length - self.rest) + a * (rate + wa * self.force)) / (1.0 + a * wa);
         trial.clamp(0.0, self.yield_force)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
+        let slack = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 0.0 };
+        let elastic = BoltState { force: 1e5, ..slack };
+        let yielded = BoltState { rest: 2.1, ..elastic };
+        let broken = BoltState { broken: true, force: 0.0, ..yielded };
+        let all = [slack, elastic, yielded, broken];
+        let conditions = all.map(|now| now.condition());
+        use BoltCondition::{Absent, Broken, Elastic, Slack, Yielded};
+        assert_eq!(conditions, [Slack, Elastic, Yielded, Broken]);
+        assert_eq!(conditions.map(BoltCondition::number), [1, 1, 2, 3]);
+        assert!(all.iter().all(|now| BoltState { active: false, ..*now }.condition() == Absent));
     }
 }

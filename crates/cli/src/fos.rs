@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::fos::{Found, remedy};

@@ -126,7 +126,7 @@ fn draw(stage: &StageEnd, what: &str, title: &str, note: &str, field: &Field) ->
     }
     sheet.sheet.clipped(&view.area, |sheet| {
         draw_filled(sheet, elements, &view, &colours, base);
-        for (band, colour) in bands.iter().zip(&colours[1..]) {
+        for (band, colour) in bands.into_iter().zip(&colours[1..]) {
             sheet.path(band, Style::fill(*colour).crisp());
         }
         sheet.path(lines, Style::line(INK, 1.1).opacity(0.75));

@@ -12,9 +12,9 @@ use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines, draw_filled,
     draw_title, outlines, outlines_show, time_text,
 };
-use super::structures::{BoltKind, height_at};
+use super::structures::height_at;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
+use enmm::model::{BoltCondition, Snapshot};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 760.0;
@@ -142,7 +142,7 @@ pub struct BoltMark {
     /// Largest tension (N per metre of depth) along it.
     pub force: f64,
     /// What it is.
-    pub kind: BoltKind,
+    pub condition: BoltCondition,
 }
 
 /// A joint set of the case.
@@ -419,7 +419,8 @@ impl Model<'_> {
         let annotations = self.annotations;
         let held = |held: Held| annotations.held.iter().any(|row| row.held == held);
         let place = |is: fn(&PortPlace) -> bool| annotations.ports.iter().any(|port| is(&port.place));
-        let bolt = |later: bool| annotations.bolts.iter().any(|bolt| (bolt.kind == BoltKind::Absent) == later);
+        let bolt =
+            |later: bool| annotations.bolts.iter().any(|bolt| (bolt.condition == BoltCondition::Absent) == later);
         let joints = annotations.loads.iter().any(|load| matches!(load, LoadMark::Joint { .. }));
         let forces = annotations.loads.iter().any(|load| !matches!(load, LoadMark::Joint { .. }));
         let all = [
@@ -455,7 +456,7 @@ pub fn draw_label(sheet: &mut Sheet, labels: &mut Labels, at: Pixel, text: &str)
 pub fn draw_bolts(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) {
     for bolt in bolts.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
         let style = Style::line(ACCENT, 2.6);
-        let style = if bolt.kind == BoltKind::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
+        let style = if bolt.condition == BoltCondition::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
         signs::draw_bolt(sheet, bolt.ends.map(|end| view.pixel(&end)), style);
     }
 }

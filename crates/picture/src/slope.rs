@@ -85,7 +85,7 @@ pub fn draw_filled(
             paths[choice(k) % colours.len()].polygon(pixels());
         }
     }
-    for (path, &colour) in paths.iter().zip(colours) {
+    for (path, &colour) in paths.into_iter().zip(colours) {
         sheet.path(path, Style::fill(colour).crisp());
     }
 }

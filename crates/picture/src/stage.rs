@@ -16,10 +16,9 @@ use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines,
     draw_filled, draw_title,
 };
-use super::structures::BoltKind;
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
+use enmm::model::{BoltCondition, Snapshot};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 780.0;
@@ -169,7 +168,7 @@ fn joint_stress_picture(
     }
     sheet.sheet.clipped(&view.area, |sheet| {
         sheet.path(open, Style::line(PALE, 2.0));
-        for (step, path) in paths.iter().enumerate() {
+        for (step, path) in paths.into_iter().enumerate() {
             sheet.path(path, Style::line(scale(step), 4.6));
         }
     });
@@ -217,7 +216,7 @@ fn vectors_picture(
         }
     }
     sheet.sheet.clipped(&view.area, |sheet| {
-        sheet.path(arrows, Style::line(WHITE, 3.4).opacity(0.8));
+        sheet.path(arrows.clone(), Style::line(WHITE, 3.4).opacity(0.8));
         sheet.path(arrows, Style::line(INK, 1.5));
     });
     sheet.decorate();
@@ -344,13 +343,14 @@ impl<'a> StageSheet<'a> {
         let (stage, view) = (self.stage, self.view);
         draw_absence(&mut self.sheet, &view, &stage.snapshot.elements);
         self.sheet.clipped(&view.area, |sheet| draw_water(sheet, &view, stage.water));
-        let there: Vec<BoltMark> = stage.bolts.iter().filter(|bolt| bolt.kind != BoltKind::Absent).cloned().collect();
+        let there: Vec<BoltMark> =
+            stage.bolts.iter().filter(|bolt| bolt.condition != BoltCondition::Absent).cloned().collect();
         draw_bolts(&mut self.sheet, &view, &there);
         let mut labels = Labels::new(view.area);
         for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            let state = match bolt.kind {
-                BoltKind::Broken => " broken",
-                BoltKind::Yielded => " yields",
+            let state = match bolt.condition {
+                BoltCondition::Broken => " broken",
+                BoltCondition::Yielded => " yields",
                 _ => "",
             };
             draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &(si_text(bolt.force, "N/m") + state));

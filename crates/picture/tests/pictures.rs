@@ -208,7 +208,7 @@ fn names_with_markup_stay_text() {
     while let event = reader.read_event().unwrap()
         && event != quick_xml::events::Event::Eof
     {
-        titles += usize::from(matches!(&event, quick_xml::events::Event::Start(tag) if tag.name().0 == b"script"));
+        titles += usize::from(matches!(&event, quick_xml::events::Event::Start(tag) if tag.name().0 == "script"));
     }
     assert_eq!(titles, 0);
 }

@@ -1,5 +1,6 @@
 //! Parts of a film, as plain data. SI units, y up, tension positive, counter-clockwise angles.
 
+use enmm::model::BoltCondition;
 use serde::Serialize;
 
 /// Head of a film.
@@ -143,25 +144,11 @@ pub struct MonitorFrame {
     pub velocity: [f64; 2],
 }
 
-/// State of a free length of a bolt in a frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum BoltState {
-    /// It is installed later, or its rock is gone.
-    #[default]
-    Absent,
-    /// It is whole: in tension, or slack.
-    Whole,
-    /// It has yielded.
-    Yielded,
-    /// It has broken.
-    Broken,
-}
-
 /// A free length of a bolt in a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BoltFrame {
-    /// Its state.
-    pub state: BoltState,
+    /// Its condition.
+    pub condition: BoltCondition,
     /// Displacement of both ends (m).
     pub displacement: [[f64; 2]; 2],
     /// Tension (N per metre of depth).

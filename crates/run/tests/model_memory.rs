@@ -12,7 +12,7 @@ use enmm::geometry::polygon;
 use enmm::model::{BuildStage, Simulation};
 use enmm_io::parse_case;
 use enmm_run::{Observer, RunOptions, RunProgress};
-use extent::{Extent, extent};
+use extent::by_extent;
 
 /// A slope 100 m high, all of it cut by two joint sets of this spacing (m), or by none, that rests for a while (s).
 fn slope(spacing: Option<f64>, mesh: f64, duration: f64) -> String {
@@ -138,7 +138,7 @@ fn run(text: &str) {
 /// peak was 2.25 GB before the iteration had rows of its own, which add 0.7 GB; the aim is 2 GB.
 #[test]
 fn long_a_hundred_thousand_blocks_run_from_case_to_pictures() {
-    let large = extent() == Extent::Long;
+    let large = by_extent([false, false, true]);
     let share = if large { 1.0 } else { 10.0 };
     let jointed = slope(Some(0.436 * share), 0.335 * share, 3e-4 * share);
     let whole = slope(None, 0.207 * share, 5e-4 * share);

@@ -4,7 +4,6 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use engine::model::Simulation;
 use enmm_io::parse_case;
 
 use crate::parts::{Act, Outcome, finite};
