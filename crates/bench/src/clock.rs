@@ -1,9 +1,9 @@
-//! What the system tells of this program: time that a thread had, and memory.
+//! Figures of the system about this program: time that a thread had, and memory.
 
 use std::fs;
 use std::time::Instant;
 
-/// What the processor's clock may be late by (s).
+/// Delay (s) of the processor's clock at most.
 pub const PROCESSOR_TICK: f64 = 0.004;
 
 /// Result of work on one thread and the seconds that it takes: wall time, or what the processor gave to this thread

@@ -43,7 +43,7 @@ pub enum BenchError {
     Threads(usize),
 }
 
-/// What to time.
+/// Options of a benchmark.
 #[derive(Debug, Clone)]
 pub struct BenchOptions {
     /// Models.
@@ -58,7 +58,7 @@ pub struct BenchOptions {
     pub first_second: bool,
 }
 
-/// What was timed, on what machine.
+/// Results of a benchmark, and its machine.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct BenchReport {
     /// Version of the engine.

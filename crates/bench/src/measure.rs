@@ -31,7 +31,7 @@ const ELEMENT_BYTES: f64 = 3.0 * 2.0 + 8.0;
 /// predicted velocity fetched and written.
 const COVER_BYTES: f64 = 3.0 * 16.0 + 2.0 * 8.0 + 2.0 * 16.0;
 
-/// What a model costs.
+/// Costs of a model.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Measured {
     /// Name of the model.
@@ -115,7 +115,7 @@ pub struct StageMilliseconds {
     pub sweep: f64,
     /// Velocities, positions, ledger.
     pub commit: f64,
-    /// What no stage claims.
+    /// Time outside all stages.
     pub rest: f64,
 }
 
@@ -137,7 +137,7 @@ impl StageMilliseconds {
 /// Seconds of a step: search, elements, entrance, sweep, commit, and all of it.
 type StepSeconds = [f64; 6];
 
-/// What all windows together have found.
+/// Sums over all windows.
 struct Windows {
     /// Each step at its quickest, stage by stage.
     quickest: Vec<StepSeconds>,

@@ -9,7 +9,7 @@ use super::{BenchReport, Machine, Measured, Model};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Chart, ChartSeries, chart_picture};
 
-/// What a set of results says of itself beside the figures.
+/// Origin of a set of results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Origin {
     /// Commit and date, or whatever tells one set of results from another.

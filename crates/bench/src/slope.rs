@@ -23,7 +23,7 @@ const SCATTER: f64 = 0.15;
 /// Side (m) of the square continuum.
 const SIDE: f64 = 100.0;
 
-/// What blocks and continua are made of.
+/// Rock of blocks and continua.
 const ROCK: &str = "[rock.rock]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n";
 /// Motion without end.
 const MOTION: &str = "[[stage]]\nname = \"motion\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.1\n";

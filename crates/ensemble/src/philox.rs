@@ -5,7 +5,7 @@ use sha2::{Digest, Sha256};
 
 const ROUNDS: usize = 10;
 const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
-/// What is added to the key after each round.
+/// Increment of the key after each round.
 const WEYL: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
 
 /// The four words of a counter.

@@ -1,4 +1,4 @@
-//! What follows from the outputs of all samples.
+//! Statistics of the outputs of all samples.
 
 use crate::{normal, philox};
 

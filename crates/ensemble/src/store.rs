@@ -21,7 +21,7 @@ const WAIT: Duration = Duration::from_secs(60);
 /// A sample that is done.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What it gave, in the order of the columns; empty when the case itself has no answer.
+    /// Its outputs, in the order of the columns; empty when the case itself has no answer.
     pub outputs: Vec<(String, Json)>,
     /// Why it has no answer; empty when it has one.
     pub message: String,

@@ -183,7 +183,7 @@ impl Substep<'_, '_> {
         }
     }
 
-    /// What inertia sees besides the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
+    /// Inertia besides that of the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
     fn set_offset(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let state = &*self.step.state;
         let buffers = &mut self.buffers;

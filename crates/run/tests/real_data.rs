@@ -98,7 +98,7 @@ fn traces_and_slopes_give_the_blocks_on_which_noders_agree(data: &Path) {
     for (file, wanted) in expected.as_object().expect("an object") {
         let (blocks, area) = (wanted["blocks"].as_u64().expect("a count"), number(&wanted["total_area"]));
         let size = (area / 2000.0).sqrt();
-        let found = check(&data, file, number(&wanted["snap_tol"]), &format!("size = {size:?}\nangle_deg = 7.0"));
+        let found = check(data, file, number(&wanted["snap_tol"]), &format!("size = {size:?}\nangle_deg = 7.0"));
         assert_eq!(found.blocks as u64, blocks, "{file}");
         assert!((found.total_area - area).abs() < 1e-6 * area, "{file}: {} of {area}", found.total_area);
         let mass: f64 = found.cover_masses.iter().sum();

@@ -1,4 +1,4 @@
-//! What the model descriptions of both versions have in common.
+//! Common parts of the model descriptions of both versions.
 
 use std::io;
 
@@ -13,14 +13,14 @@ use crate::xml::{Xml, number};
 /// Made when the times of the archive begin: no clock is read, so that the same case gives the same bytes.
 const MADE_AT: &str = "1980-01-01T00:00:00Z";
 
-/// What a model description says beside its variables.
+/// Contents of a model description beside its variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facts {
     /// Title of the case.
     pub title: String,
     /// Name of the library, a C identifier.
     pub identifier: String,
-    /// What the model is.
+    /// Description of the model.
     pub summary: String,
     /// Who made the case and the engine.
     pub author: String,
@@ -40,7 +40,7 @@ pub struct Facts {
     pub blocks: usize,
 }
 
-/// What a version of the standard writes in its own way.
+/// Details that each version of the standard writes in its own way.
 pub struct Dialect {
     /// Version.
     pub version: &'static str,
@@ -123,7 +123,7 @@ impl Facts {
     }
 }
 
-/// What the case says, or what holds when it does not.
+/// The note of the case, or other words where it has none.
 fn said<'a>(note: &'a Option<String>, otherwise: &'a str) -> &'a str {
     note.as_deref().map_or(otherwise, str::trim)
 }
@@ -226,7 +226,7 @@ pub fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
     attributes
 }
 
-/// What the unknown of an output depends on: nothing that a host can set, where its value is a function of the state
+/// Dependencies of the unknown of an output: nothing that a host can set, where its value is a function of the state
 /// alone; unsaid, and so everything, elsewhere. Importers may then close loops over such outputs.
 pub fn dependencies(variable: &Variable) -> Option<(&'static str, String)> {
     variable.quantity.is_of_state().then(|| ("dependencies", String::new()))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// The folder of a `file` URI, percent-decoded.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Fault of it.
 pub fn of_uri(uri: &str) -> Result<PathBuf, String> {
     let not = |what: &str| format!("the resource location `{uri}` {what}: give `file:///` and an absolute path");
     let scheme = uri.get(..5).filter(|scheme| scheme.eq_ignore_ascii_case("file:"));
@@ -33,7 +33,7 @@ pub fn of_uri(uri: &str) -> Result<PathBuf, String> {
 /// The folder of a `file` URI. An importer that does not encode is understood where only its spelling exists.
 ///
 /// # Errors
-/// What is wrong with the URI.
+/// Fault of the URI.
 pub fn resolve(uri: &str) -> Result<PathBuf, String> {
     let folder = of_uri(uri)?;
     if folder.exists() {

@@ -19,7 +19,7 @@ pub fn is_structured(name: &str) -> bool {
     }
 }
 
-/// What follows a word, plain or in quotes.
+/// Text behind a word, plain or in quotes.
 fn after_word(text: &str) -> Option<&str> {
     if let Some(quoted) = text.strip_prefix('\'') {
         return after_quoted(quoted);
@@ -28,7 +28,7 @@ fn after_word(text: &str) -> Option<&str> {
     begins.then(|| text.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || c == '_'))
 }
 
-/// What follows the closing quote; between the quotes is at least one character, and some need a backslash.
+/// Text behind the closing quote; between the quotes is at least one character, and some need a backslash.
 fn after_quoted(text: &str) -> Option<&str> {
     let mut chars = text.char_indices();
     while let Some((at, c)) = chars.next() {
@@ -43,7 +43,7 @@ fn after_quoted(text: &str) -> Option<&str> {
     None
 }
 
-/// What follows array indices such as `[1,2]`, if there are any.
+/// Text behind array indices such as `[1,2]`, if there are any.
 fn after_indices(text: &str) -> Option<&str> {
     let Some(inside) = text.strip_prefix('[') else { return Some(text) };
     let (indices, after) = inside.split_once(']')?;

@@ -23,7 +23,7 @@ pub struct Packed {
     pub variables: usize,
     /// Number of blocks.
     pub blocks: usize,
-    /// What the user should know of the case and of the model as built.
+    /// Warnings about the case and about the model as built.
     pub warnings: Vec<String>,
 }
 

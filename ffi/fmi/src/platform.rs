@@ -64,7 +64,7 @@ pub enum NotALibrary {
     /// The file is a library of other platforms.
     #[error("is a library of {found}, not of {wanted}: give the name of its platform, or the library of {wanted}")]
     Other {
-        /// What the file is.
+        /// Kind of the file.
         found: String,
         /// The name that was given.
         wanted: String,

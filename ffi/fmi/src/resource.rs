@@ -19,7 +19,7 @@ pub enum ResourceError {
     Unreadable {
         /// Path of the file.
         path: String,
-        /// What the system says.
+        /// Message of the system.
         problem: String,
     },
     /// The file is something else, damaged or of another version.
@@ -27,7 +27,7 @@ pub enum ResourceError {
     Damaged {
         /// Path of the file.
         path: String,
-        /// What is wrong.
+        /// The fault.
         problem: String,
     },
 }

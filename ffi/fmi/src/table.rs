@@ -104,7 +104,7 @@ pub enum Total {
     LastEventSubject,
 }
 
-/// What a variable stands for. Indices count ports, monitors and parameters in the order of the case.
+/// Meaning of a variable. Indices count ports, monitors and parameters in the order of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Time (s).
@@ -162,7 +162,7 @@ pub struct Variable {
     pub reference: u32,
     /// Name, without control characters.
     pub name: String,
-    /// What it is, with sign and when it acts.
+    /// Description, with sign and when it acts.
     pub description: String,
     /// Unit name of the model description; empty for none.
     pub unit: &'static str,
@@ -178,7 +178,7 @@ pub struct Variable {
     pub length: Option<usize>,
     /// Name of the port that it belongs to.
     pub port: Option<String>,
-    /// What it stands for.
+    /// Its meaning.
     pub quantity: Quantity,
 }
 

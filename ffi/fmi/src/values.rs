@@ -1,4 +1,4 @@
-//! What an importer has set: the values of all parameters and inputs, and how they reach the model.
+//! Values that an importer has set: all parameters and inputs, and how they reach the model.
 
 use enmm::cosimulation::{Cosimulation, CosimulationError, PortKind};
 use enmm::geometry::Vector;

@@ -25,7 +25,7 @@ pub struct Block {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What is told: seconds for a simulated second, and where the corners of each block came to be.
+/// Answer: seconds for a simulated second, and where the corners of each block came to be.
 #[derive(serde::Serialize)]
 pub struct Answer {
     pub program: String,

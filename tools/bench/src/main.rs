@@ -37,7 +37,7 @@ struct Arguments {
     /// Directory for the tables (Markdown and JSON).
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// What distinguishes these results from others, such as commit and date.
+    /// Label of these results, such as commit and date.
     #[arg(long, default_value = "Measured", value_name = "TEXT")]
     label: String,
 }

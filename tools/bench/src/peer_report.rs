@@ -40,7 +40,7 @@ pub fn write_peers(report: &PeerReport, origin: &Origin, directory: &Path) -> io
     write_atomic(&directory.join("peers.md"), peers_markdown(report, origin).as_bytes())
 }
 
-/// What was compared, as a page.
+/// The comparison as a page.
 pub fn peers_markdown(report: &PeerReport, origin: &Origin) -> String {
     let mut text = String::from("# enmm beside other programs\n\n");
     let _ = writeln!(text, "{}; enmm {}, {} rounds.\n", origin.label, report.version, report.rounds);

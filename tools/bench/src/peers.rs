@@ -74,7 +74,7 @@ impl Peer {
     }
 }
 
-/// What to compare.
+/// Options of a comparison.
 #[derive(Debug, Clone)]
 pub struct PeerOptions {
     /// Models: slopes and continua.
@@ -119,7 +119,7 @@ pub struct PeerReport {
     pub duration: f64,
     /// The models.
     pub models: Vec<Compared>,
-    /// What could not be timed, and why.
+    /// Programs and models that could not be timed, and why.
     pub left_out: Vec<String>,
 }
 
@@ -147,7 +147,7 @@ pub struct Timed {
     pub elements: Option<usize>,
     /// Contacts at the end.
     pub contacts: Option<usize>,
-    /// What became of the slope.
+    /// Outcome of the slope.
     pub outcome: Option<Outcome>,
 }
 
@@ -179,7 +179,7 @@ fn range(mut values: Vec<f64>) -> [f64; 3] {
     [at(0), at(values.len() / 2), at(values.len().saturating_sub(1))]
 }
 
-/// What a program tells of a run.
+/// Answer of a program about a run.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Answer {
@@ -239,7 +239,7 @@ fn compare_here(options: &PeerOptions, begin: &mut dyn FnMut(&str)) -> Result<Pe
     Ok(report)
 }
 
-/// What the programs do on a model.
+/// Work of the programs on a model.
 enum Task {
     /// Simulate a slope.
     Slope(Box<Scene>),
@@ -257,7 +257,7 @@ impl Task {
         })
     }
 
-    /// What the others are called with: a file that is written, or a number.
+    /// Argument of the others: a file that is written, or a number.
     fn argument(&self, file: PathBuf) -> std::io::Result<PathBuf> {
         match self {
             Self::Slope(scene) => std::fs::write(&file, serde_json::to_vec(scene)?).map(|()| file),
@@ -290,7 +290,7 @@ impl Task {
         })
     }
 
-    /// What became of the slope; an error when the answer has other blocks or wrong numbers.
+    /// Outcome of the slope; an error when the answer has other blocks or wrong numbers.
     fn outcome(&self, answer: &Answer) -> Result<Option<Outcome>, String> {
         let Self::Slope(scene) = self else { return Ok(None) };
         let wrong = || "its blocks are not those of the slope, or their places are not finite".to_owned();
@@ -385,7 +385,7 @@ fn environment(sources: &Path, place: &Path) -> Result<PathBuf, String> {
     Ok(python)
 }
 
-/// What a command prints; its last words when it cannot be started or fails.
+/// Output of a command; its last words when it cannot be started or fails.
 fn output(command: &mut Command) -> Result<Vec<u8>, String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let told = command.output().map_err(|error| format!("{name} cannot be started ({error}): install it"))?;

@@ -7,7 +7,7 @@ use enmm::cover::BlockId;
 use enmm::geometry::{Point, polygon};
 use enmm::model::Simulation;
 
-/// What the other programs read and write.
+/// Types that the other programs read and write.
 #[cfg(test)]
 #[path = "../peers/scene.rs"]
 #[expect(dead_code, reason = "the programs read and write by it; here only its types count")]
@@ -61,7 +61,7 @@ impl SceneBlock {
 /// Where a program left a block: its corners (m) in the order of the scene; none for a block that it could not take.
 pub type Placed = Option<Vec<[f64; 2]>>;
 
-/// What moved, and how well the blocks stayed apart.
+/// Motion of the blocks, and how well they stayed apart.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Outcome {
     /// Blocks that the program could take.

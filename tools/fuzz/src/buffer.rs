@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 /// Watched words on either side.
 const MARGIN: usize = 32;
-/// What is in them, and in the memory before it is written to.
+/// Pattern of the watched words, and of memory before it is written to.
 const MARK: u64 = 0xa5a5_5a5a_c3c3_3c3c;
 
 /// Some words of memory.

@@ -16,7 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Finds after which there is enough to look at.
 const ENOUGH: usize = 40;
 
-/// What to do.
+/// Options of a run.
 pub struct Plan {
     minutes: Option<f64>,
     seed: u64,
@@ -26,7 +26,7 @@ pub struct Plan {
     finds: PathBuf,
 }
 
-/// What a part has done.
+/// Work of a part so far.
 #[derive(Default)]
 struct Tally {
     inputs: u64,

@@ -93,7 +93,7 @@ fn instance3(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
 #[derive(Clone, Copy)]
 pub struct Instance {
     version: Version,
-    /// What the importer holds.
+    /// State of the importer.
     pub pointer: *mut c_void,
 }
 

@@ -1,4 +1,4 @@
-//! What an input consists of, written while it happens when somebody asks, so that it survives the end of the process.
+//! Contents of an input, written on request while it happens, so that they survive the end of the process.
 
 use std::fs::File;
 use std::io::Write;

@@ -44,7 +44,8 @@ usage: cargo xtask TASK
   verify           solves the full set of verification problems and writes docs/verification.md
                    with its plots; fails when a value is missed that the report did not state
   compare          runs the comparison of the explicit with the implicit integrator
-  ratio            runs explicit and implicit steps of a continuum and writes docs/implicit_ratio.md
+  ratio            runs explicit and implicit steps of a continuum and writes the
+                   last section of docs/explicit_vs_implicit.md
   overhead         tells what a step costs through the C ABI and the FMUs above the engine's own
   schema           writes docs/case.schema.json
   reference        writes docs/book/reference.md, the reference of all keys of a case

@@ -58,7 +58,7 @@ pub enum Share {
 }
 
 impl Share {
-    /// What pytest takes to find it.
+    /// Arguments by which pytest finds it.
     fn arguments(self) -> Vec<&'static str> {
         match self {
             Self::Usual => USUAL.to_vec(),

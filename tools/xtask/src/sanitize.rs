@@ -55,7 +55,7 @@ pub fn run(repository: &Repository) -> Result<(), String> {
 /// The same with those that look at the hosts in C and need no build of their own.
 ///
 /// # Errors
-/// What was found.
+/// A finding of a tool.
 pub fn over_hosts(repository: &Repository) -> Result<(), String> {
     run_tools(repository, &TOOLS[..2])
 }

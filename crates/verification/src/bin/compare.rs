@@ -7,7 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm_verification::{Trouble, comparison, plot};
+use enmm_verification::comparison::{self, ratio};
+use enmm_verification::{Trouble, plot};
 
 /// Name of the document, and of the plots in the folder of the same name.
 const NAME: &str = "explicit_vs_implicit";
@@ -33,7 +34,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the comparison; returns the path of the document.
+/// Runs the comparison; returns the path of the document, the last section of which is that of `ratio`.
 fn write(directory: &Path, quick: bool) -> Result<PathBuf, Trouble> {
     let found = comparison::compare(quick)?;
     let folder = directory.join(NAME);
@@ -45,7 +46,9 @@ fn write(directory: &Path, quick: bool) -> Result<PathBuf, Trouble> {
         pictures.push(format!("{NAME}/{name}"));
     }
     let path = directory.join(format!("{NAME}.md"));
-    std::fs::write(&path, found.markdown(&pictures))?;
+    let before = std::fs::read_to_string(&path).unwrap_or_default();
+    let last = before.split_once(ratio::SECTION).map_or(String::new(), |(_, text)| ratio::SECTION.to_owned() + text);
+    std::fs::write(&path, found.markdown(&pictures) + &last)?;
     Ok(path)
 }
 

@@ -1,5 +1,5 @@
-//! Sets the cost of explicit and implicit steps on a continuum side by side and writes the document (default:
-//! `docs/implicit_ratio.md`); `--quick` takes the small model alone and only prints.
+//! Sets the cost of explicit and implicit steps on a continuum side by side and writes the last section of
+//! `docs/explicit_vs_implicit.md`; `--quick` takes the small model alone and only prints.
 //!
 //! Exit status: 2 when a run fails or the document cannot be written.
 
@@ -23,7 +23,10 @@ fn write(quick: bool) -> Result<(), Trouble> {
     let text = ratio::markdown(&ratio::ratios(quick)?);
     let _ = write!(std::io::stdout(), "{text}");
     if !quick {
-        std::fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/implicit_ratio.md"), text)?;
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/explicit_vs_implicit.md");
+        let document = std::fs::read_to_string(&path)?;
+        let others = document.split(ratio::SECTION).next().unwrap_or_default();
+        std::fs::write(path, others.to_owned() + &text)?;
     }
     Ok(())
 }

@@ -221,9 +221,9 @@ fn text(size: f64, solver: &str) -> String {
     )
 }
 
-/// The costs as a document.
+/// The costs as a section.
 pub fn markdown(costs: &[Cost]) -> String {
-    let mut text = format!("{HEAD}{}\n{TABLE}", super::origin());
+    let mut text = format!("{SECTION}{HEAD}{}\n{TABLE}", super::origin());
     let mut explicit = None;
     for cost in costs {
         let milliseconds = |seconds: f64| format!("{:.3}", 1e3 * seconds);
@@ -253,7 +253,9 @@ pub fn markdown(costs: &[Cost]) -> String {
     text
 }
 
-const HEAD: &str = "# What a step of each method costs on a continuum\n\n\
+/// Heading of the section, the last of the document of the comparison.
+pub const SECTION: &str = "\n## Cost of a step on a continuum\n";
+const HEAD: &str = "\n\
 Written by `cargo xtask ratio` (`--quick`: the small model alone); all methods in turn in one run, each on one \
 thread,\nprocessor time. Rock of 10 m by 10 m on a fixed base between smooth walls feels its weight at once; the error \
 is that of\nthe displacements against the exact motion, root mean square over rock and half a period. *Constant* is \

@@ -1,4 +1,4 @@
-//! What hosts read, in the structures of C.
+//! Values that hosts read, in the structures of C.
 
 use engine::contact::{ContactState, EdgeId};
 use engine::cosimulation::{EventKind, PortKind, Totals};

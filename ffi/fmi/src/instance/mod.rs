@@ -24,7 +24,7 @@ use crate::values::Values;
 /// Why a call failed; the text goes to the log.
 pub type Failure = String;
 
-/// What an importer gives to make an instance.
+/// Arguments of an importer that makes an instance.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan<'a> {
     /// Version of the standard.
@@ -76,7 +76,7 @@ impl Instance {
     /// Builds the model and checks the token.
     ///
     /// # Errors
-    /// What is missing, damaged or does not fit.
+    /// Data that are missing, damaged or do not fit.
     pub fn new(plan: Plan) -> Result<Self, Failure> {
         if plan.name.trim().is_empty() {
             return Err("the name of the instance is empty: give one".to_owned());

@@ -11,7 +11,7 @@ use crate::table::{Axis, Causality, Component, Motion, Quantity, Table, Total, T
 
 use super::{Failure, Instance};
 
-/// What has been computed since the model last moved.
+/// Values that have been computed since the model last moved.
 #[derive(Debug, Default)]
 pub(super) struct Cache {
     blocks: Option<Vec<BlockState>>,

@@ -37,7 +37,7 @@ impl Step {
     }
 }
 
-/// What the importer is told in between.
+/// Messages to the importer in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Update {
     /// Time that the model has reached (s).

@@ -53,7 +53,7 @@ fn started(model: &Model) -> Cosimulation {
     facade
 }
 
-/// What a host does in one call that is timed.
+/// Work of a host in one call that is timed.
 type Act = fn(&mut dyn Host, u32);
 
 const STEP: Act = |host, _| host.step();

@@ -435,7 +435,7 @@ fn sized(size: usize, count: usize, random: &mut Random) -> (Buffer, bool) {
     (buffer, told >= size && told <= size + 64)
 }
 
-/// What the last failed call of this thread said.
+/// Message of the last failed call of this thread.
 fn message() -> String {
     let text: *const c_char = library::enmm_last_error();
     // SAFETY: a text that stays until the next call.

@@ -23,7 +23,7 @@ const STEPS: usize = 4;
 /// Blocks up to which the limit analysis is tried as well.
 const BOUND_MAX: usize = 30;
 
-/// What numbers become.
+/// Replacements of numbers.
 const NUMBERS: [&str; 26] = [
     "0",
     "-0.0",

@@ -9,7 +9,7 @@ mod states;
 use crate::random::Random;
 use crate::trace::Trace;
 
-/// What came of an input that broke nothing.
+/// Outcome of an input that broke nothing.
 pub enum Outcome {
     /// It was tried, with so many calls.
     Done(u64),

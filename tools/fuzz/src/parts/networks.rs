@@ -20,7 +20,7 @@ const OUTLINES: [&[Place]; 5] = [
     &[[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]],
     &[[0.0, 0.0], [3.0, 0.0], [3.0, 1e-2], [4.0, 1e-2], [4.0, 2.0], [1.0, 2.0], [1.0, 2.5], [0.0, 2.5]],
 ];
-/// What every case ends with.
+/// End of every case.
 const REST: &str = r#"
 [rock.rock]
 density = 2600

@@ -188,7 +188,7 @@ impl Patient {
         }
     }
 
-    /// What a host can read.
+    /// All that a host can read.
     fn outputs(&mut self) -> Result<Vec<f64>, String> {
         match &self.subject {
             Subject::C(_, model) => read_c(*model),
