@@ -105,7 +105,7 @@ fn mdbook(repository: &Repository) -> Result<PathBuf, String> {
 /// # Errors
 /// When a key has no example, or the page cannot be written.
 pub fn write_reference(repository: &Repository) -> Result<(), String> {
-    let mut test = repository.cargo(&["test", "--release", "--test", "key_reference"]);
+    let mut test = repository.cargo(&["test", "--release", "-p", "enmm-io", "--test", "io", "key_reference"]);
     repository::run(test.env("ENMM_WRITE_REFERENCE", "1"))
 }
 
