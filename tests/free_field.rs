@@ -111,7 +111,7 @@ fn columns_stand_on_a_moving_base() {
     }
 }
 
-/// What the columns and the base carry away is in the ledger, which errs by ½(ω dt)² of the wave's strain energy
+/// Energy that columns and base carry away is in the ledger, which errs by ½(ω dt)² of the wave's strain energy
 /// (theory, Eq. 28): 1.2e-3 at the usual step, a quarter of it at half the step. After the wave has left nothing is.
 #[test]
 fn the_ledger_closes_between_columns() {
