@@ -1,4 +1,4 @@
-//! What a picture of a model shows beside its blocks.
+//! Annotations of a picture of a model beside its blocks.
 
 use enmm::contact::EdgeId;
 use enmm::geometry::{Point, Vector};
@@ -150,7 +150,7 @@ fn point_load(point: Point, force: Vector, moment: f64, named: &dyn Fn(String) -
     LoadMark::Point { point, force, moment, label: named(values.join(", ")) }
 }
 
-/// What acts at a port from the start.
+/// Load at a port from the start.
 fn load_of_port(port: &Port) -> Option<LoadMark> {
     let (force, traction) = (Vector::from(port.force), Vector::from(port.traction));
     let unnamed = |value: String| value;
@@ -171,7 +171,7 @@ fn load_of_port(port: &Port) -> Option<LoadMark> {
     }
 }
 
-/// What acts on all rock, in words.
+/// Actions on all rock, in words.
 fn facts(simulation: &Simulation) -> Vec<String> {
     let case = simulation.case();
     let vector = |x: f64, y: f64| format!("({}, {}) m/s²", number_text(x), number_text(y));

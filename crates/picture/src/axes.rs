@@ -82,7 +82,7 @@ impl Bounds {
 /// A part of the plane shown in a part of the picture, with equal axes.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
-    /// What is shown (m).
+    /// Bounds shown (m).
     pub world: Bounds,
     /// Where it is shown (px).
     pub area: Rect,

@@ -32,7 +32,7 @@ pub struct ChartSeries {
     pub marks: bool,
 }
 
-/// What a chart shows.
+/// Content of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chart {
     /// Title.

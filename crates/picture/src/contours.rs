@@ -22,7 +22,7 @@ const LEVELS: f64 = 12.0;
 struct Field {
     values: Vec<f64>,
     levels: Vec<f64>,
-    /// What the bar writes beside each level.
+    /// Labels of the bar beside each level.
     labels: Vec<String>,
 }
 

@@ -27,7 +27,7 @@ const FARTHEST: f64 = 1e300;
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// What it is, such as `displacement`; series of one quantity and unit share a frame.
+    /// Quantity, such as `displacement`; series of one quantity and unit share a frame.
     pub quantity: String,
     /// Unit, such as `m` or `J`.
     pub unit: String,

@@ -17,7 +17,7 @@ pub const COLUMN: f64 = 330.0;
 
 /// A column of explained signs.
 pub struct Legend {
-    /// What the signs have in common.
+    /// Common title of the signs.
     pub title: &'static str,
     /// Signs and texts.
     pub entries: Vec<Entry>,
@@ -27,7 +27,7 @@ pub struct Legend {
 pub struct Entry {
     /// The sign.
     pub sign: Sign,
-    /// What it stands for.
+    /// Meaning.
     pub text: String,
 }
 

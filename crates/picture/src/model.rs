@@ -29,7 +29,7 @@ const ARROWS: [f64; 2] = [64.0, 26.0];
 /// Distance (px) of the arrows of a traction.
 const ARROW_DISTANCE: f64 = 36.0;
 
-/// What a picture of the model shows besides its elements and blocks.
+/// Annotations of a picture of the model besides its elements and blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ModelAnnotations {
     /// Title of the picture.
@@ -44,7 +44,7 @@ pub struct ModelAnnotations {
     pub ports: Vec<PortMark>,
     /// Loads with a place.
     pub loads: Vec<LoadMark>,
-    /// What acts on all rock, in words.
+    /// Actions on all rock, in words.
     pub facts: Vec<String>,
     /// Lines of text about the size of the model.
     pub counts: Vec<String>,
@@ -141,7 +141,7 @@ pub struct BoltMark {
     pub ends: [Point; 2],
     /// Largest tension (N per metre of depth) along it.
     pub force: f64,
-    /// What it is.
+    /// Kind.
     pub condition: BoltCondition,
 }
 
@@ -187,12 +187,12 @@ pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Pic
 pub(super) struct Model<'a> {
     /// Its blocks and elements.
     pub snapshot: &'a Snapshot,
-    /// What decorates them.
+    /// Annotations.
     pub annotations: &'a ModelAnnotations,
 }
 
 impl Model<'_> {
-    /// What there is to see (m).
+    /// Bounds of all that is drawn (m).
     pub fn bounds(&self) -> Option<Bounds> {
         let traces = self.annotations.trace_segments.iter().flat_map(|(ends, _)| ends);
         let blocks = self.snapshot.boundaries.iter().flat_map(|boundary| &boundary.loops.points);

@@ -146,7 +146,7 @@ impl Chart {
     }
 }
 
-/// What the blocks of a trial do.
+/// Verb for the motion of the blocks of a trial.
 fn verb(trial: &Trial) -> &'static str {
     match (trial.verdict == Verdict::Caught, trial.failing.len() == 1) {
         (true, true) => "slides and is caught",

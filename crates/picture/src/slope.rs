@@ -1,4 +1,4 @@
-//! What pictures of a slope share: polygons in a view, block outlines, titles, labels that keep clear of each other.
+//! Helpers for pictures of a slope: polygons in a view, block outlines, titles, labels that keep clear of each other.
 
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable, number_text};
 use super::colour::{Colour, GREY, INK};

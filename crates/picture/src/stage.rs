@@ -37,7 +37,7 @@ const DECADES: f64 = 3.0;
 /// Share of the values that lie below the upper end of a scale of stress: corners carry a few that are far larger.
 pub const MOST: f64 = 0.98;
 
-/// What the pictures of a stage have in common.
+/// Common data of the pictures of a stage.
 #[derive(Debug, Clone)]
 pub struct StageEnd<'a> {
     /// Title of the case.
@@ -300,7 +300,7 @@ impl Principal {
 /// A picture of a stage under construction.
 pub struct StageSheet<'a> {
     stage: &'a StageEnd<'a>,
-    /// What is drawn so far.
+    /// Drawing so far.
     pub sheet: Sheet,
     /// Where the slope is drawn.
     pub view: View,

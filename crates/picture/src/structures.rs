@@ -1,4 +1,4 @@
-//! What acts on rock beside its joints at one instant: bolts, supports and water.
+//! Structures that act on rock at one instant: bolts, supports and water.
 
 use enmm::contact::{EdgeId, Resistance};
 use enmm::geometry::{Point, Vector};
@@ -17,7 +17,7 @@ pub struct BoltLine {
     pub condition: BoltCondition,
 }
 
-/// What a support is.
+/// Kind of a support.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum SupportKind {
     /// Part of a fixity.
@@ -36,7 +36,7 @@ pub struct SupportPoint {
     pub position: Point,
     /// Force (N/m) on the rock.
     pub reaction: Vector,
-    /// What supports it.
+    /// Kind of support.
     pub kind: SupportKind,
     /// Index of the fixity of the case, or of the boundary behind them: quiet boundaries first, then free-field sides.
     pub index: u32,

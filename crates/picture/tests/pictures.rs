@@ -79,7 +79,7 @@ fn the_end_of_a_stage_is_drawn() {
     check_stage(&nothing, &Snapshot::default(), "nothing");
 }
 
-/// What is open must be told from what slips by more than its colour.
+/// Open and slipping joints must differ by more than their colour.
 #[test]
 fn states_of_joints_differ_by_the_shape_of_their_lines() {
     let slope = sample(12.0, 6.0);

@@ -1,4 +1,4 @@
-//! What the FMI 2 and FMI 3 exports share: one table of variables, the resource inside an FMU, how an FMU is packed,
+//! Common parts of the FMI 2 and FMI 3 exports: one table of variables, the resource inside an FMU, how an FMU is packed,
 //! and the safe instance behind the C entry points.
 #![deny(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What `enmm bench --peers` tells a program about a slope, and what it wants to be told.
+//! Description of a slope by `enmm bench --peers` for a program, and its answer.
 
 use std::error::Error;
 use std::fs;
