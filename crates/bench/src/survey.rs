@@ -6,7 +6,7 @@ use super::Model;
 /// Where the figures come from.
 pub const SOURCE: &str = "Figures of others and goals are those of the project's performance survey, taken on one \
 core of the same kind\nof machine at another time: its clock drifts by a third, so that only ratios within one run \
-are exact. `cargo xtask bench\n--peers` times Rapier, Box2D and a Numba kernel in one run with enmm.";
+are exact.\n`cargo xtask bench --peers` times Rapier, Box2D and a Numba kernel in one run with enmm.";
 
 /// Head of the table of elements.
 pub const ELEMENT_HEAD: [&str; 8] = ["model", "enmm", "goal", "tight kernel", "Warp", "Akantu", "OpenSees", "Kratos"];
