@@ -205,22 +205,3 @@ impl BoltRow {
         trial.clamp(0.0, self.yield_force)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
-        let slack = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 0.0 };
-        let elastic = BoltState { force: 1e5, ..slack };
-        let yielded = BoltState { rest: 2.1, ..elastic };
-        let broken = BoltState { broken: true, force: 0.0, ..yielded };
-        let all = [slack, elastic, yielded, broken];
-        let conditions = all.map(|now| now.condition());
-        use BoltCondition::{Absent, Broken, Elastic, Slack, Yielded};
-        assert_eq!(conditions, [Slack, Elastic, Yielded, Broken]);
-        assert_eq!(conditions.map(BoltCondition::number), [1, 1, 2, 3]);
-        assert!(all.iter().all(|now| BoltState { active: false, ..*now }.condition() == Absent));
-    }
-}

@@ -1,6 +1,5 @@
 //! Parts of a film, as plain data. SI units, y up, tension positive, counter-clockwise angles.
 
-use enmm::model::BoltCondition;
 use serde::Serialize;
 
 /// Head of a film.
@@ -147,8 +146,8 @@ pub struct MonitorFrame {
 /// A free length of a bolt in a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BoltFrame {
-    /// Its condition.
-    pub condition: BoltCondition,
+    /// Number of its condition: 0 absent, 1 whole, 2 yielded, 3 broken.
+    pub condition: u8,
     /// Displacement of both ends (m).
     pub displacement: [[f64; 2]; 2],
     /// Tension (N per metre of depth).

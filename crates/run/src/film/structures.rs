@@ -34,7 +34,7 @@ impl Beside {
     /// With displacements (m) of both ends of each bolt.
     fn with(simulation: &Simulation, lines: &[BoltLine], ends: impl Iterator<Item = [Vector; 2]>) -> Self {
         let bolt = |(line, ends): (&BoltLine, [Vector; 2])| BoltFrame {
-            condition: line.condition,
+            condition: line.condition.number(),
             displacement: ends.map(|end| [end.x, end.y]),
             force: line.force,
         };
