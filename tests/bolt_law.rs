@@ -1,6 +1,6 @@
 //! Bolts yield, break and unload as their law says, worked out by hand.
 
-use enmm::contact::{BoltRow, BoltSegment, Pair};
+use enmm::contact::{BoltCondition, BoltRow, BoltSegment, BoltState, Pair};
 use enmm::cover::{BlockId, CoverId};
 use enmm::geometry::{Point, Vector};
 
@@ -56,4 +56,18 @@ fn the_answer_is_the_force_at_the_end_of_the_step() {
     let end = 1.0 + 4.0 * 0.3 / 1.3 * dt * (rate - 0.3 * dt * (force - 4.0));
     assert!((force - 100.0 * (end - 0.9)).abs() < 1e-12);
     assert_eq!([row.answer(-1e3, dt, dt, 4.0), row.answer(1e3, dt, dt, 4.0)], [0.0, 20.0]);
+}
+
+#[test]
+fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
+    let slack = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 0.0 };
+    let elastic = BoltState { force: 1e5, ..slack };
+    let yielded = BoltState { rest: 2.1, ..elastic };
+    let broken = BoltState { broken: true, force: 0.0, ..yielded };
+    let all = [slack, elastic, yielded, broken];
+    let conditions = all.map(|now| now.condition());
+    let expected = [BoltCondition::Slack, BoltCondition::Elastic, BoltCondition::Yielded, BoltCondition::Broken];
+    assert_eq!(conditions, expected);
+    assert_eq!(conditions.map(BoltCondition::number), [1, 1, 2, 3]);
+    assert!(all.iter().all(|now| BoltState { active: false, ..*now }.condition() == BoltCondition::Absent));
 }

@@ -49,6 +49,51 @@ pub struct BoltState {
     pub force: f64,
 }
 
+impl BoltState {
+    /// The condition now. A bar that has yielded or broken and lost its rock is absent.
+    pub fn condition(&self) -> BoltCondition {
+        match self {
+            now if !now.active => BoltCondition::Absent,
+            now if now.broken => BoltCondition::Broken,
+            now if now.rest > now.natural => BoltCondition::Yielded,
+            now if now.force > 0.0 => BoltCondition::Elastic,
+            _ => BoltCondition::Slack,
+        }
+    }
+}
+
+/// Condition of a bar segment at one instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BoltCondition {
+    /// A stage installs it later, or a block that held it is gone, whatever the bar did before.
+    #[default]
+    Absent,
+    /// It carries no force and has never yielded.
+    Slack,
+    /// It is in tension and has never yielded.
+    Elastic,
+    /// It has yielded.
+    Yielded,
+    /// It has broken.
+    Broken,
+}
+
+impl BoltCondition {
+    /// Names of the numbers in files.
+    pub const NAMES: [&str; 4] = ["absent", "whole", "yielded", "broken"];
+
+    /// Number in files of bolts and in films, where a slack bar and one in tension count as whole.
+    pub fn number(self) -> u8 {
+        match self {
+            Self::Absent => 0,
+            Self::Slack | Self::Elastic => 1,
+            Self::Yielded => 2,
+            Self::Broken => 3,
+        }
+    }
+}
+
 /// A bar segment during one step.
 #[derive(Debug, Clone, Copy)]
 pub struct BoltRow {

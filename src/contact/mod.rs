@@ -15,7 +15,7 @@ mod spring;
 mod support;
 mod vertex_edge;
 
-pub use bolt::{BoltRow, BoltSegment, BoltState, BoltView};
+pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use frame::Frames;

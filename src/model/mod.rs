@@ -16,7 +16,7 @@ pub use observe::{BLOCK_QUANTITIES, BlockState};
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;
 
-pub use crate::contact::{BoltSegment, BoltState, ContactState};
+pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::BytesError;
 pub use crate::state::{Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State};
 pub use crate::step::{StepError, StepReport};
