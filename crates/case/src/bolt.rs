@@ -1,10 +1,10 @@
 //! Rock bolts of a case.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a bolt is tied to the rock.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Anchorage {
     /// At its two ends; the bar between them is free.
@@ -15,7 +15,8 @@ pub enum Anchorage {
 }
 
 /// A row of equal elastic–plastic bars that carry tension across joints.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Bolt {
     /// Name, for stages that install it.
@@ -27,10 +28,10 @@ pub struct Bolt {
     #[serde(default)]
     pub anchorage: Anchorage,
     /// Young's modulus of the bar (Pa).
-    #[schemars(example = 200e9)]
+    #[cfg_attr(feature = "schema", schemars(example = 200e9))]
     pub young: f64,
     /// Cross-section of one bar (m²).
-    #[schemars(example = 4.9e-4)]
+    #[cfg_attr(feature = "schema", schemars(example = 4.9e-4))]
     pub area: f64,
     /// Distance between bars out of the plane (m).
     #[serde(default = "one")]
@@ -54,7 +55,8 @@ pub struct Bolt {
 
 /// A row of equal bolts whose heads lie on the face. Bolts of a pattern `rock` are named `rock_1`, `rock_2`, …; a stage
 /// installs all of them by `rock`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BoltPattern {
     /// Name, for stages that install it.
@@ -71,20 +73,20 @@ pub struct BoltPattern {
     #[serde(default)]
     pub distance: Option<f64>,
     /// Length of a bolt from its head (m).
-    #[schemars(example = 6.0)]
+    #[cfg_attr(feature = "schema", schemars(example = 6.0))]
     pub length: f64,
     /// Direction from the head into the rock, counter-clockwise from the x axis (degrees), at least -360 and at most
     /// 360: -15 dips to the right by 15°.
-    #[schemars(example = -15.0)]
+    #[cfg_attr(feature = "schema", schemars(example = -15.0))]
     pub angle_deg: f64,
     /// Ends or grouted.
     #[serde(default)]
     pub anchorage: Anchorage,
     /// Young's modulus of the bar (Pa).
-    #[schemars(example = 200e9)]
+    #[cfg_attr(feature = "schema", schemars(example = 200e9))]
     pub young: f64,
     /// Cross-section of one bar (m²).
-    #[schemars(example = 4.9e-4)]
+    #[cfg_attr(feature = "schema", schemars(example = 4.9e-4))]
     pub area: f64,
     /// Distance between bars out of the plane (m).
     #[serde(default = "one")]

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Axes, Case, StageKind, TimeTable};
 
 /// One direction of the plane.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// Horizontal.
@@ -19,7 +19,8 @@ pub enum Axis {
 }
 
 /// What the rows of a base motion give.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum BaseMotionKind {
     /// Acceleration (m/s²).
@@ -31,7 +32,8 @@ pub enum BaseMotionKind {
 
 /// Motion of the base that carries the model; the model lives in the frame of the base, so that its rock feels the
 /// opposite acceleration.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BaseMotion {
     /// What the rows give.
@@ -57,7 +59,8 @@ pub struct BaseMotion {
 
 /// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
 /// holds like a fixity; in dynamic stages the forces that it bore then stay on.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Quiet {
     /// The parts of the rock boundary on this segment (m).
@@ -85,7 +88,8 @@ pub struct Quiet {
 
 /// A column of rock beside a vertical side of the model that moves as the free field does; the side is coupled to it by
 /// a quiet boundary. Its foot moves as the boundary below it: with the base, or as a quiet boundary with its wave.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FreeField {
     /// The vertical side (m).

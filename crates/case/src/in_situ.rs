@@ -1,10 +1,10 @@
 //! Stress of a case before its first stage.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Stress before the first stage (Pa, tension positive): value + gradient·(y − y_reference), or `k0`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InSitu {
     /// Horizontal over vertical stress, at least 0 and at most 20. The vertical stress is then that of the rock above,

@@ -1,21 +1,22 @@
 //! Joint sets of a case, construction joints, and regions whose joints have another law.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::PointList;
 
 /// Where the section lies.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Section {
     /// Azimuth of the x axis, clockwise from north (degrees), at least -360 and at most 360.
-    #[schemars(example = 90.0)]
+    #[cfg_attr(feature = "schema", schemars(example = 90.0))]
     pub azimuth_deg: f64,
 }
 
 /// A side of the section.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Towards smaller x.
@@ -25,7 +26,8 @@ pub enum Side {
 }
 
 /// How spacings or trace lengths scatter about their mean.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Distribution {
     /// Normal by mean and standard deviation, cut off at 0.1 and 1.9 of the mean.
@@ -47,7 +49,8 @@ impl Distribution {
 }
 
 /// How directions scatter about their mean.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum AngleDistribution {
     /// Normal by the standard deviation `angle_sd_deg`, cut off at three of them.
@@ -68,7 +71,8 @@ impl AngleDistribution {
 }
 
 /// Straight parallel joints generated from statistics; the same seed gives the same joints.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JointSet {
     // `angle_deg` is written by its old name, so that the fingerprint of a case is the same by either.
@@ -144,7 +148,7 @@ pub struct JointSet {
     pub ends_on: Option<String>,
     /// Angle (degrees) of the mean pole out of the section, which follows from `dip_direction_deg`.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(skip)]
+    #[cfg_attr(feature = "schema", schemars(skip))]
     pub out_of_section_deg: f64,
 }
 
@@ -163,7 +167,8 @@ fn is_zero(value: &f64) -> bool {
 ///
 /// Its joints are of the law `cut`, which the case gets with the first cut: friction 35°, cohesion and tensile strength
 /// 1 GPa, none of both once it has broken. A case that has a law of this name keeps its own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Cut {
     /// At least two points (m).
@@ -171,7 +176,8 @@ pub struct Cut {
 }
 
 /// A region in which joints take another law, such as that of weathered rock; joints are divided at its border.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LawRegion {
     /// Polygon (m).

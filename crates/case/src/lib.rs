@@ -16,7 +16,6 @@ mod validate;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use bolt::{Anchorage, Bolt, BoltPattern};
@@ -34,7 +33,8 @@ pub type PointList = Vec<[f64; 2]>;
 pub type TimeTable = Vec<[f64; 2]>;
 
 /// One model, its loads, stages and outputs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// What the model is.
@@ -128,7 +128,8 @@ pub struct Case {
 }
 
 /// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FmuNotes {
     /// Who wrote the case: name and organisation.
@@ -143,7 +144,8 @@ pub struct FmuNotes {
 }
 
 /// Rock outline, holes, islands, and a file that may hold them.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Outer loop of the rock (m), either sense; this or `geometry_file` with an outline.
@@ -167,7 +169,8 @@ pub struct Domain {
 }
 
 /// Equilateral lattice: node(i, j) = origin + i·a1 + j·a2, a1 = size·(cos, sin)(angle), a2 = a1 turned by +60°.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mesh {
     /// Side of a triangle (m).
@@ -181,7 +184,8 @@ pub struct Mesh {
 }
 
 /// One joint: a polyline in the reference configuration.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JointTrace {
     /// At least two points (m).
@@ -192,7 +196,8 @@ pub struct JointTrace {
 }
 
 /// Plane strain or plane stress.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Plane {
     /// No strain out of the plane.
@@ -203,17 +208,18 @@ pub enum Plane {
 }
 
 /// An elastic rock; with `friction_deg` or `cohesion` it yields by Mohr–Coulomb.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rock {
     /// Density (kg/m³).
-    #[schemars(example = 2700.0)]
+    #[cfg_attr(feature = "schema", schemars(example = 2700.0))]
     pub density: f64,
     /// Young's modulus (Pa).
-    #[schemars(example = 10e9)]
+    #[cfg_attr(feature = "schema", schemars(example = 10e9))]
     pub young: f64,
     /// Poisson's ratio.
-    #[schemars(example = 0.25)]
+    #[cfg_attr(feature = "schema", schemars(example = 0.25))]
     pub poisson: f64,
     /// Plane strain or plane stress.
     #[serde(default)]
@@ -253,7 +259,8 @@ impl Rock {
 }
 
 /// Kind of a joint law.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum JointLawKind {
     /// |T| ≤ N·tan φ + c·l with tension cut-off, peak and residual values, dilation.
@@ -264,7 +271,8 @@ pub enum JointLawKind {
 }
 
 /// Strength and stiffness of a joint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JointLaw {
     /// Kind of law.
@@ -277,7 +285,7 @@ pub struct JointLaw {
     #[serde(default)]
     pub shear_stiffness: Option<f64>,
     /// Friction angle (degrees); of Barton–Bandis joints the residual angle φr.
-    #[schemars(example = 30.0)]
+    #[cfg_attr(feature = "schema", schemars(example = 30.0))]
     pub friction_deg: f64,
     /// Cohesion (Pa).
     #[serde(default)]
@@ -334,7 +342,8 @@ impl JointLaw {
 }
 
 /// Acceleration of gravity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Gravity {
     /// Horizontal part (m/s²).
@@ -356,7 +365,8 @@ impl Default for Gravity {
 }
 
 /// Axes that a fixity holds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Axes {
     /// Horizontal.
@@ -369,7 +379,8 @@ pub enum Axes {
 }
 
 /// Holds a part of the rock; exactly one of `point`, `edge`, `box`, `block`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Fix {
     /// Name, for stages that free or fix.
@@ -403,7 +414,8 @@ fn yes() -> bool {
 }
 
 /// What a load acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LoadKind {
     /// `force` (N/m) at the material point `point`.
@@ -421,7 +433,8 @@ pub enum LoadKind {
 }
 
 /// A load with an optional time table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Load {
     /// Name.
@@ -459,7 +472,8 @@ pub struct Load {
 }
 
 /// Velocity at the start of the first stage.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocity {
     /// The block that holds this point (m); default: all blocks.
@@ -474,7 +488,8 @@ pub struct InitialVelocity {
 }
 
 /// Water with a level or a sloping surface: hydrostatic pressure on the faces that it reaches, at their current places.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Water {
     /// Height y of the surface at the start (m); hosts may move it. This or `table`.
@@ -508,7 +523,8 @@ fn water_density() -> f64 {
 }
 
 /// A named place where hosts exchange values with the model; exactly one of `block`, `boundary`, `joint`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Port {
     /// Name: letters, digits and underscores.
@@ -537,7 +553,8 @@ pub struct Port {
 }
 
 /// How a stage treats time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum StageKind {
     /// Damped to equilibrium; time is a path, not physics.
@@ -547,7 +564,8 @@ pub enum StageKind {
 }
 
 /// One stage: changes at its start, then motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
     /// Name.
@@ -629,7 +647,8 @@ impl Stage {
 }
 
 /// New values of one joint law; what is not given stays.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LawChange {
     /// Joint law by name.
@@ -646,7 +665,8 @@ pub struct LawChange {
 }
 
 /// Joints of law `from` take law `to`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LawSwitch {
     /// Law to replace, by name.
@@ -656,7 +676,8 @@ pub struct LawSwitch {
 }
 
 /// A material point whose motion goes into the history.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Monitor {
     /// Name; heads the columns.
@@ -666,7 +687,8 @@ pub struct Monitor {
 }
 
 /// What to write and how often.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Simulated time between frames (s); default: a twentieth of the duration of a dynamic stage; in a static stage,
@@ -697,7 +719,8 @@ impl Default for Output {
 }
 
 /// Time integration.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
     /// Lumped mass, leapfrog, open–close iteration.
@@ -708,7 +731,8 @@ pub enum Integrator {
 }
 
 /// Newmark's rule of the implicit integrator.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Newmark {
     /// β = ½, γ = 1: constant acceleration as in discontinuous deformation analysis; damps fast motion.
@@ -720,7 +744,8 @@ pub enum Newmark {
 }
 
 /// Numerical choices; the defaults are those of `docs/theory.md`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Solver {
     /// Time integration.

@@ -1,11 +1,11 @@
 //! Random values of a case and the samples that `enmm sample` draws of them. Nothing of this acts on the model, so it
 //! is not part of the fingerprint.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Distribution of a random value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RandomDistribution {
     /// Normal by `mean` and `sd`.
@@ -48,7 +48,8 @@ impl RandomDistribution {
 }
 
 /// What a distribution is of.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RandomOf {
     /// The value of the key.
@@ -61,7 +62,8 @@ pub enum RandomOf {
 }
 
 /// A random value of `enmm sample`, which takes the place of the value of a key.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomVariable {
     /// Key of the case, such as `joint_law.plane.friction_deg` or `joint_set[0].seed`.
@@ -113,18 +115,20 @@ impl RandomVariable {
 }
 
 /// Correlation of the normal variables behind two random values (Gaussian copula).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomCorrelation {
     /// Keys of the two values.
     pub keys: [String; 2],
     /// Coefficient of correlation.
-    #[schemars(example = 0.5)]
+    #[cfg_attr(feature = "schema", schemars(example = 0.5))]
     pub value: f64,
 }
 
 /// How samples are drawn.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// Independent samples.
@@ -145,7 +149,8 @@ impl Sampling {
 }
 
 /// What is worked out of a sample.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum EnsembleOutput {
     /// Factor of safety by strength reduction, as `enmm fos` finds it.
@@ -169,7 +174,8 @@ impl EnsembleOutput {
 }
 
 /// How `enmm sample` draws the samples, and what it finds of each.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Ensemble {
     /// Number of samples.

@@ -1,6 +1,6 @@
 //! JSON Schema of the case file.
 
-use enmm::model::Case;
+use enmm_case::Case;
 
 /// Returns the JSON Schema of the case file; titles and descriptions are the doc comments of [`Case`].
 pub fn schema() -> serde_json::Value {
