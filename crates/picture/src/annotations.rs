@@ -196,7 +196,7 @@ pub fn bolt_marks(simulation: &Simulation) -> Vec<BoltMark> {
             name: bolt.name.clone(),
             ends: ends.unwrap_or(bolt.points.map(Point::from)),
             force: own.clone().map(|line| line.force).fold(0.0, f64::max),
-            kind: own.map(|line| line.kind).max().unwrap_or_default(),
+            condition: own.map(|line| line.condition).max().unwrap_or_default(),
         }
     };
     simulation.case().bolts.iter().enumerate().map(mark).collect()

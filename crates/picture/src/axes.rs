@@ -1,7 +1,7 @@
 //! From metres to pixels: bounds, views with equal axes, ticks and the numbers beside them.
 
 use super::colour::{GREY, INK, PALE};
-use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle, text_width};
+use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle, text_width};
 use enmm::geometry::{Point, Vector};
 
 /// Size (px) of numbers on axes.
@@ -112,13 +112,13 @@ impl View {
     }
 
     /// Draws the frame with ticks and coordinates in metres.
-    pub fn draw_axes(&self, sheet: &mut Svg) {
+    pub fn draw_axes(&self, sheet: &mut Sheet) {
         self.draw_horizontal_axis(sheet);
         self.draw_vertical_axis(sheet);
         sheet.rect(&self.area, Style::line(INK, 1.2));
     }
 
-    fn draw_horizontal_axis(&self, sheet: &mut Svg) {
+    fn draw_horizontal_axis(&self, sheet: &mut Sheet) {
         let bottom = self.area.bottom();
         let most = (self.area.width / TICK_DISTANCE[0]).max(2.0);
         let ticks = Ticks::new(self.world.min.x, self.world.max.x, most);
@@ -132,7 +132,7 @@ impl View {
         sheet.text([self.area.left + 0.5 * self.area.width, bottom + 45.0], "x [m]", style);
     }
 
-    fn draw_vertical_axis(&self, sheet: &mut Svg) {
+    fn draw_vertical_axis(&self, sheet: &mut Sheet) {
         let left = self.area.left;
         let most = (self.area.height / TICK_DISTANCE[1]).max(3.0);
         let ticks = Ticks::new(self.world.min.y, self.world.max.y, most);
@@ -149,13 +149,13 @@ impl View {
 }
 
 /// The number of a tick at the left side of a frame.
-pub fn draw_left_number(sheet: &mut Svg, [left, y]: Pixel, label: &str) {
+pub fn draw_left_number(sheet: &mut Sheet, [left, y]: Pixel, label: &str) {
     let style = TextStyle::new(TICK_SIZE).anchor(Anchor::End);
     sheet.text([left - TICK_LENGTH - 4.0, y + 0.36 * TICK_SIZE], label, style);
 }
 
 /// A pale line across a frame.
-pub fn draw_grid_line(sheet: &mut Svg, from: Pixel, to: Pixel) {
+pub fn draw_grid_line(sheet: &mut Sheet, from: Pixel, to: Pixel) {
     sheet.line(from, to, Style::line(PALE, 1.0));
 }
 

@@ -4,7 +4,7 @@ use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
 use super::colour::{GREY, INK, LINES, WHITE};
 use super::history::thinned;
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 
 /// Size of the picture (px).
 const SIZE: [f64; 2] = [860.0, 440.0];
@@ -47,7 +47,7 @@ pub struct Chart {
 
 /// Draws a chart.
 pub fn chart_picture(chart: &Chart) -> Picture {
-    let mut sheet = Svg::new(SIZE[0], SIZE[1]);
+    let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     let title = fitted(&chart.title, 20.0, SIZE[0] - FRAME.left - 16.0);
     sheet.text([FRAME.left, 32.0], &title, TextStyle::new(20.0));
     let scales = [0, 1].map(|axis| Scale::of(chart, axis));
@@ -144,7 +144,7 @@ fn pixel(x: &Scale, y: &Scale, point: &[f64; 2]) -> Pixel {
     [FRAME.left + x.fraction(point[0]) * FRAME.width, FRAME.bottom() - y.fraction(point[1]) * FRAME.height]
 }
 
-fn draw_ticks(sheet: &mut Svg, x: &Scale, y: &Scale) {
+fn draw_ticks(sheet: &mut Sheet, x: &Scale, y: &Scale) {
     for (value, label) in x.ticks(FRAME.width / TICK_DISTANCE[0]) {
         let at = FRAME.left + x.fraction(value) * FRAME.width;
         draw_grid_line(sheet, [at, FRAME.top], [at, FRAME.bottom()]);
@@ -158,13 +158,13 @@ fn draw_ticks(sheet: &mut Svg, x: &Scale, y: &Scale) {
     }
 }
 
-fn draw_names(sheet: &mut Svg, [x, y]: &[String; 2]) {
+fn draw_names(sheet: &mut Sheet, [x, y]: &[String; 2]) {
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
     sheet.text([middle()[0], FRAME.bottom() + 48.0], &fitted(x, LABEL_SIZE, FRAME.width), style);
     sheet.text([22.0, middle()[1]], &fitted(y, LABEL_SIZE, FRAME.height), style.upward());
 }
 
-fn draw_series(sheet: &mut Svg, chart: &Chart, x: &Scale, y: &Scale) {
+fn draw_series(sheet: &mut Sheet, chart: &Chart, x: &Scale, y: &Scale) {
     for (k, series) in chart.series.iter().enumerate() {
         let colour = LINES[k % LINES.len()];
         if series.marks {
@@ -177,11 +177,11 @@ fn draw_series(sheet: &mut Svg, chart: &Chart, x: &Scale, y: &Scale) {
         for run in series.points.split(|point| !is_drawable(chart, point)).filter(|run| !run.is_empty()) {
             path.line(thinned(run.iter().map(|point| pixel(x, y, point))));
         }
-        sheet.path(&path, Style::line(colour, 2.0));
+        sheet.path(path, Style::line(colour, 2.0));
     }
 }
 
-fn draw_legend(sheet: &mut Svg, series: &[ChartSeries]) {
+fn draw_legend(sheet: &mut Sheet, series: &[ChartSeries]) {
     let left = FRAME.right() + 18.0;
     let (text_left, text_size) = (left + 36.0, 14.0);
     let width = SIZE[0] - text_left - 8.0;

@@ -9,9 +9,9 @@ use super::Picture;
 use super::axes::{Ticks, View, is_drawable, number_text, si_text};
 use super::bar::{BAR_ROOM, draw_bands};
 use super::colour::{Colour, INK, SCALE_STEPS, scale};
+use super::sheet::{Path, Pixel, Style};
 use super::slope::{corners, draw_filled, visible};
-use super::stage::{FEW, MOST, Sheet, StageEnd, decades, quantile, unit_of};
-use super::svg::{Path, Pixel, Style};
+use super::stage::{FEW, MOST, StageEnd, StageSheet, decades, quantile, unit_of};
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Snapshot;
 
@@ -102,7 +102,7 @@ fn at_points(snapshot: &Snapshot, reference: &[Point], of: impl Fn([f64; 3]) -> 
 
 /// Draws bands, lines, outlines of blocks and the bar.
 fn draw(stage: &StageEnd, what: &str, title: &str, note: &str, field: &Field) -> Picture {
-    let mut sheet = Sheet::new(stage, BAR_ROOM, what);
+    let mut sheet = StageSheet::new(stage, BAR_ROOM, what);
     let (view, count) = (sheet.view, field.levels.len());
     let colour = |band: usize| scale((SCALE_STEPS - 1) * band / count.max(1));
     let colours: Vec<Colour> = (0..=count).map(colour).collect();
@@ -124,16 +124,16 @@ fn draw(stage: &StageEnd, what: &str, title: &str, note: &str, field: &Field) ->
             line.chunks_exact(2).for_each(|ends| lines.line(ends.iter().copied()));
         }
     }
-    sheet.svg.clipped(&view.area, |svg| {
-        draw_filled(svg, elements, &view, &colours, base);
-        for (band, colour) in bands.iter().zip(&colours[1..]) {
-            svg.path(band, Style::fill(*colour).crisp());
+    sheet.sheet.clipped(&view.area, |sheet| {
+        draw_filled(sheet, elements, &view, &colours, base);
+        for (band, colour) in bands.into_iter().zip(&colours[1..]) {
+            sheet.path(band, Style::fill(*colour).crisp());
         }
-        svg.path(&lines, Style::line(INK, 1.1).opacity(0.75));
+        sheet.path(lines, Style::line(INK, 1.1).opacity(0.75));
     });
     sheet.draw_outlines();
     sheet.decorate();
-    draw_bands(&mut sheet.svg, &view.area, title, &colours, &field.labels);
+    draw_bands(&mut sheet.sheet, &view.area, title, &colours, &field.labels);
     sheet.close(note)
 }
 
@@ -166,7 +166,7 @@ fn cut(places: &[Point], values: &[f64], level: f64, view: &View) -> (Vec<Pixel>
 #[cfg(test)]
 mod tests {
     use super::super::axes::Bounds;
-    use super::super::svg::Rect;
+    use super::super::sheet::Rect;
     use super::*;
 
     const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];

@@ -5,8 +5,8 @@ use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
 use super::colour::{ACCENT, COVERS, Colour, WHITE};
 use super::legend::{self, Entry, Legend, Sign};
 use super::model::{Model, ModelAnnotations};
+use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle};
 use super::slope::{BELOW_FRAME, LEFT, MARGIN, TOP, WIDTH, draw_absence, draw_title};
-use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle};
 use enmm::geometry::Point;
 use enmm::model::Snapshot;
 
@@ -29,7 +29,7 @@ pub fn covers_picture(snapshot: &Snapshot, annotations: &ModelAnnotations, stars
     let view = View::fit(covers.model.bounds(), area);
     let top = view.area.bottom().max(detail.map_or(0.0, |detail| detail.area.bottom())) + BELOW_FRAME + 30.0;
     let legends = [Legend { title: "Covers of a star", entries: covers.entries() }];
-    let mut sheet = Svg::new(WIDTH, top + legend::height_below(&legends) + MARGIN);
+    let mut sheet = Sheet::new(WIDTH, top + legend::height_below(&legends) + MARGIN);
     draw_title(&mut sheet, &annotations.title, "physical covers of the stars of the mesh");
     covers.draw(&mut sheet, &view);
     if let Some(detail) = detail {
@@ -55,7 +55,7 @@ impl Covers<'_> {
         (half_width > 0.0).then(|| View::exact(Bounds::square(centre, half_width), area))
     }
 
-    fn draw(&self, sheet: &mut Svg, view: &View) {
+    fn draw(&self, sheet: &mut Sheet, view: &View) {
         sheet.clipped(&view.area, |sheet| {
             self.model.draw_rock(sheet, view);
             if self.stars.len() <= STARS_MAX {
@@ -75,7 +75,7 @@ impl Covers<'_> {
     }
 
     /// The enlarged part, and in the main view the frame of what it enlarges.
-    fn draw_detail(&self, sheet: &mut Svg, main: &View, detail: &View) {
+    fn draw_detail(&self, sheet: &mut Sheet, main: &View, detail: &View) {
         let [left, top] = main.pixel(&Point::new(detail.world.min.x, detail.world.max.y));
         let side = detail.world.size().x * main.scale;
         let frame = Rect { left, top, width: side, height: side };
@@ -143,7 +143,7 @@ fn busiest(stars: &[(Point, u32)], half_width: f64) -> Option<Point> {
         .map(|(_, position)| position)
 }
 
-fn draw_star(sheet: &mut Svg, [x, y]: Pixel, covers: u32, radius: f64) {
+fn draw_star(sheet: &mut Sheet, [x, y]: Pixel, covers: u32, radius: f64) {
     sheet.circle([x, y], radius, Style::fill(cover_colour(covers)).edged(WHITE, 1.2));
     if radius >= 8.0 {
         let size = 1.35 * radius;

@@ -4,11 +4,11 @@ use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, round_above};
 use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
+use super::sheet::{Rect, Sheet, Style, TextStyle, text_width};
 use super::slope::{
     BELOW_FRAME, LEFT, Labels, TOP, WIDTH, corners, draw_absence, draw_block_outlines, draw_filled, draw_title,
     outlines, time_text,
 };
-use super::svg::{Rect, Style, Svg, TextStyle, text_width};
 use enmm::geometry::Vector;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::Polygons;
@@ -35,7 +35,7 @@ pub fn displacement_picture(snapshot: &Snapshot, title: &str, reference_outline:
     let bounds = Bounds::of(shown.elements.points.iter().chain(&reference_outline.points));
     let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - BAR_ROOM, height: HEIGHT_MAX };
     let view = View::fit(bounds, area);
-    let mut sheet = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES);
+    let mut sheet = Sheet::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES);
     draw_title(&mut sheet, title, &time_text(snapshot.time));
     sheet.clipped(&view.area, |sheet| draw_slope(sheet, &view, shown, &field, reference_outline));
     view.draw_axes(&mut sheet);
@@ -104,13 +104,13 @@ fn exaggerated(snapshot: &Snapshot, factor: f64) -> Snapshot {
     shown
 }
 
-fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, reference_outline: &Polygons) {
+fn draw_slope(sheet: &mut Sheet, view: &View, shown: &Snapshot, field: &Field, reference_outline: &Polygons) {
     let colours: Vec<_> = (0..SCALE_STEPS).map(scale).collect();
     let step = |k: usize| scale_step(field.of_elements[k] / field.largest);
     draw_filled(sheet, &shown.elements, view, &colours, step);
     draw_block_outlines(sheet, shown, view);
     draw_absence(sheet, view, &shown.elements);
-    sheet.path(&outlines(reference_outline, view), Style::line(GREY, 1.8).dashed());
+    sheet.path(outlines(reference_outline, view), Style::line(GREY, 1.8).dashed());
     let largest = field.largest_element.filter(|_| field.largest > 0.0);
     if let Some(corners) = largest.and_then(|k| corners(&shown.elements, k)) {
         let centre = view.pixel(&(corners.iter().sum::<Vector>() / corners.len() as f64));
@@ -121,7 +121,7 @@ fn draw_slope(sheet: &mut Svg, view: &View, shown: &Snapshot, field: &Field, ref
     }
 }
 
-fn draw_colour_bar(sheet: &mut Svg, frame: &Rect, field: &Field) {
+fn draw_colour_bar(sheet: &mut Sheet, frame: &Rect, field: &Field) {
     let (unit, size) = field.unit();
     let largest = field.largest / size;
     let ticks = Ticks::new(0.0, largest, (frame.height / 60.0).max(2.0));
@@ -133,7 +133,7 @@ fn draw_colour_bar(sheet: &mut Svg, frame: &Rect, field: &Field) {
 }
 
 /// Below the frame: a length, the dashed line explained, the largest value, the factor of deformation.
-fn draw_notes(sheet: &mut Svg, view: &View, field: &Field, factor: f64) {
+fn draw_notes(sheet: &mut Sheet, view: &View, field: &Field, factor: f64) {
     let y = view.area.bottom() + BELOW_FRAME + 24.0;
     let style = TextStyle::new(LABEL_SIZE);
     let mut x = draw_length(sheet, view, y);
@@ -153,7 +153,7 @@ fn draw_notes(sheet: &mut Svg, view: &View, field: &Field, factor: f64) {
 }
 
 /// Draws a bar of a round length; returns where the next note starts.
-pub fn draw_length(sheet: &mut Svg, view: &View, y: f64) -> f64 {
+pub fn draw_length(sheet: &mut Sheet, view: &View, y: f64) -> f64 {
     let length = round_above(LENGTH_MIN / view.scale);
     let (left, right) = (LEFT, LEFT + length * view.scale);
     let style = Style::line(INK, 2.5);

@@ -3,8 +3,8 @@
 use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, number_text};
 use super::colour::{ACCENT, GREY, INK, LINES};
+use super::sheet::{Anchor, Rect, Sheet, Style, TextStyle};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_title};
-use super::svg::{Anchor, Rect, Style, Svg, TextStyle};
 
 /// Height (px) of the frame.
 const HEIGHT: f64 = 560.0;
@@ -14,7 +14,7 @@ const BINS_MAX: f64 = 100.0;
 /// Draws how often outputs occur; those below `limit` in another colour. `name` stands at the axis. Outputs that are
 /// not finite are left out.
 pub fn histogram_picture(title: &str, caption: &str, name: &str, outputs: &[f64], limit: f64) -> Picture {
-    let mut sheet = Svg::new(WIDTH, TOP + HEIGHT + BELOW_FRAME + LINE_HEIGHT + MARGIN);
+    let mut sheet = Sheet::new(WIDTH, TOP + HEIGHT + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     draw_title(&mut sheet, title, caption);
     let frame = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - MARGIN, height: HEIGHT };
     let mut sorted: Vec<f64> = outputs.iter().copied().filter(|output| output.is_finite()).collect();
@@ -66,7 +66,7 @@ impl Bins {
         Some(Self { start, width, counts })
     }
 
-    fn draw(&self, sheet: &mut Svg, frame: &Rect, limit: f64) {
+    fn draw(&self, sheet: &mut Sheet, frame: &Rect, limit: f64) {
         let end = self.start + self.width * self.counts.len() as f64;
         let margin = 0.03 * (end - self.start);
         let (low, high) = (self.start - margin, end + margin);

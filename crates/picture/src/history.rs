@@ -3,8 +3,8 @@
 use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
 use super::colour::{Colour, GREY, INK, LINES};
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
@@ -49,7 +49,7 @@ pub fn history_picture(title: &str, series: &[Series], stages: &[StageStart]) ->
     let groups = by_quantity(series);
     let count = groups.len().max(1) as f64;
     let height = ((SHARED_HEIGHT - BETWEEN * (count - 1.0)) / count).clamp(LOWEST, HIGHEST);
-    let mut sheet = Svg::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
+    let mut sheet = Sheet::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
     draw_title(&mut sheet, title, "");
     let times = Range::of(series.iter().flat_map(drawable).map(|(time, _)| time));
     let width = WIDTH - LEFT - LEGEND_ROOM;
@@ -88,7 +88,7 @@ fn is_alike(a: &Series, b: &Series) -> bool {
     a.unit == b.unit && a.quantity == b.quantity
 }
 
-fn draw_time_title(sheet: &mut Svg, last: &Rect) {
+fn draw_time_title(sheet: &mut Sheet, last: &Rect) {
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
     sheet.text([last.left + 0.5 * last.width, last.bottom() + 45.0], "time [s]", style);
 }
@@ -146,7 +146,7 @@ struct Chart {
 }
 
 impl Chart {
-    fn draw(&self, sheet: &mut Svg, group: &[&Series]) {
+    fn draw(&self, sheet: &mut Sheet, group: &[&Series]) {
         let [quantity, unit] = group.first().map_or(["", ""], |series| [&series.quantity, &series.unit]);
         match (self.times, self.values) {
             (Some(times), Some(values)) => {
@@ -169,7 +169,7 @@ impl Chart {
         [x, self.frame.bottom() - values.fraction(value) * self.frame.height]
     }
 
-    fn draw_time_ticks(&self, sheet: &mut Svg, times: Range) {
+    fn draw_time_ticks(&self, sheet: &mut Sheet, times: Range) {
         let ticks = Ticks::new(times.min, times.max, 10.0);
         for &time in &ticks.values {
             let x = self.frame.left + times.fraction(time) * self.frame.width;
@@ -179,7 +179,7 @@ impl Chart {
         }
     }
 
-    fn draw_value_ticks(&self, sheet: &mut Svg, values: Range, quantity: &str, unit: &str) {
+    fn draw_value_ticks(&self, sheet: &mut Sheet, values: Range, quantity: &str, unit: &str) {
         let exponent = values.exponent();
         let divisor = 10.0_f64.powi(exponent);
         let ticks =
@@ -192,13 +192,13 @@ impl Chart {
         self.draw_value_title(sheet, &axis_title(quantity, unit, exponent));
     }
 
-    fn draw_value_title(&self, sheet: &mut Svg, title: &str) {
+    fn draw_value_title(&self, sheet: &mut Sheet, title: &str) {
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
         sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
     }
 
     /// Broken lines where stages begin, and their names above the first frame, or upwards in it where stages are short.
-    fn draw_stages(&self, sheet: &mut Svg, times: Range, stages: &[StageStart], with_names: bool) {
+    fn draw_stages(&self, sheet: &mut Sheet, times: Range, stages: &[StageStart], with_names: bool) {
         let frame = &self.frame;
         let place = |stage: &StageStart| frame.left + times.fraction(stage.time) * frame.width;
         for (k, stage) in stages.iter().enumerate().filter(|(_, stage)| stage.time.abs() < FARTHEST) {
@@ -217,20 +217,20 @@ impl Chart {
         }
     }
 
-    fn draw_lines(&self, sheet: &mut Svg, group: &[&Series], times: Range, values: Range) {
+    fn draw_lines(&self, sheet: &mut Sheet, group: &[&Series], times: Range, values: Range) {
         for (k, series) in group.iter().enumerate() {
             let mut path = Path::default();
             for run in series.points.split(|&point| !is_drawable(point)).filter(|run| !run.is_empty()) {
                 path.line(thinned(run.iter().map(|&point| self.pixel(times, values, point))));
             }
-            sheet.path(&path, Style::line(line_colour(k), 2.0));
+            sheet.path(path, Style::line(line_colour(k), 2.0));
             if let [only] = drawable(series).take(2).collect::<Vec<_>>()[..] {
                 sheet.circle(self.pixel(times, values, only), 4.0, Style::fill(line_colour(k)));
             }
         }
     }
 
-    fn draw_legend(&self, sheet: &mut Svg, group: &[&Series]) {
+    fn draw_legend(&self, sheet: &mut Sheet, group: &[&Series]) {
         let room = ((self.frame.height / LINE_HEIGHT) as usize).max(1);
         let shown = if group.len() > room { room - 1 } else { group.len() };
         let left = self.frame.right() + 22.0;

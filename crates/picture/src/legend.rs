@@ -2,9 +2,9 @@
 
 use super::axes::LABEL_SIZE;
 use super::colour::{ACCENT, Colour, GREY, INK, WATER, WHITE};
+use super::sheet::{Path, Pixel, Sheet, Style, TextStyle, fitted};
 use super::signs::{self, Held, draw_held};
 use super::slope::{LINE_HEIGHT, MARGIN, WIDTH};
-use super::svg::{Path, Pixel, Style, Svg, TextStyle, fitted};
 
 /// Width (px) kept for a sign.
 const SIGN_WIDTH: f64 = 44.0;
@@ -75,7 +75,7 @@ impl Legend {
         self.entries.len().min(LINES_MAX)
     }
 
-    fn draw(&self, sheet: &mut Svg, [left, top]: Pixel, width: f64) {
+    fn draw(&self, sheet: &mut Sheet, [left, top]: Pixel, width: f64) {
         sheet.text([left, top], self.title, TextStyle::new(LABEL_SIZE + 1.0).colour(GREY));
         let shown = if self.entries.len() > LINES_MAX { LINES_MAX - 1 } else { self.entries.len() };
         for (line, entry) in self.entries.iter().take(shown).enumerate() {
@@ -102,7 +102,7 @@ pub fn height_beside(legends: &[Legend]) -> f64 {
 }
 
 /// Draws the columns side by side from a height on.
-pub fn draw_below(sheet: &mut Svg, legends: &[Legend], left: f64, top: f64) {
+pub fn draw_below(sheet: &mut Sheet, legends: &[Legend], left: f64, top: f64) {
     let width = (WIDTH - left - MARGIN) / legends.len().max(1) as f64;
     for (k, legend) in legends.iter().enumerate() {
         legend.draw(sheet, [left + k as f64 * width, top], width);
@@ -110,7 +110,7 @@ pub fn draw_below(sheet: &mut Svg, legends: &[Legend], left: f64, top: f64) {
 }
 
 /// Draws the columns one below the other.
-pub fn draw_beside(sheet: &mut Svg, legends: &[Legend], [left, top]: Pixel) {
+pub fn draw_beside(sheet: &mut Sheet, legends: &[Legend], [left, top]: Pixel) {
     let mut y = top + LABEL_SIZE;
     for legend in legends {
         legend.draw(sheet, [left, y], WIDTH - MARGIN - left);
@@ -119,7 +119,7 @@ pub fn draw_beside(sheet: &mut Svg, legends: &[Legend], [left, top]: Pixel) {
 }
 
 /// Draws a sign centred on the height of `y`; returns the room it takes (px).
-fn draw_sign(sheet: &mut Svg, sign: Sign, [left, y]: Pixel) -> f64 {
+fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
     let (middle, right) = (left + 0.4 * SIGN_WIDTH, left + 0.8 * SIGN_WIDTH);
     let area = || {
         let mut path = Path::default();
@@ -134,14 +134,14 @@ fn draw_sign(sheet: &mut Svg, sign: Sign, [left, y]: Pixel) -> f64 {
             sheet.line([left, y], [right, y], Style::line(INK, signs::OPEN_WIDTH));
             sheet.line([left, y], [right, y], Style::line(WHITE, signs::OPEN_WIDTH - 2.6));
         }
-        Sign::Fill(colour) => sheet.path(&area(), Style::fill(colour).edged(INK, 0.9)),
+        Sign::Fill(colour) => sheet.path(area(), Style::fill(colour).edged(INK, 0.9)),
         Sign::Dot(colour) => sheet.circle([middle, y], 7.0, Style::fill(colour)),
         Sign::Monitor => signs::draw_monitor(sheet, [middle, y]),
         Sign::Port => signs::draw_port(sheet, [middle, y]),
         Sign::Held(held) => draw_held(sheet, held, [middle, y - 8.0], [0.0, 1.0]),
         Sign::Hatch => {
-            sheet.hatched(&area(), GREY);
-            sheet.path(&area(), Style::line(INK, 0.9));
+            sheet.hatched(area(), GREY);
+            sheet.path(area(), Style::line(INK, 0.9));
         }
         Sign::Water => {
             sheet.line([left, y + 4.0], [right, y + 4.0], Style::line(WATER, 2.4));

@@ -1,4 +1,4 @@
-//! Pictures of the model, of the deformed slope and of histories: SVG built by hand, rasterised to PNG.
+//! Pictures of the model, of the deformed slope and of histories, as PNG and as SVG.
 //!
 //! Knows snapshots and series only. The same input gives the same bytes on every machine: the font is embedded, and no
 //! font of the system is looked at. Coordinates that are not finite are left out.
@@ -12,12 +12,15 @@ mod colour;
 mod contours;
 mod covers;
 mod displacement;
+mod font;
 mod histogram;
 mod history;
 pub mod joints;
 mod legend;
 mod model;
+mod raster;
 mod reduction;
+mod sheet;
 mod signs;
 mod slope;
 mod stage;
@@ -26,9 +29,6 @@ mod svg;
 
 use std::io;
 use std::path::Path;
-use std::sync::{Arc, LazyLock};
-
-use resvg::{tiny_skia, usvg};
 
 use enmm_io::files::{at_path, write_atomic};
 
@@ -47,37 +47,27 @@ pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
 
-/// The embedded font (DejaVu Sans), read once.
-static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(dejavu::sans::regular())));
-    Arc::new(fonts)
-});
-
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    svg: String,
+    /// Width and height (px).
+    size: [f64; 2],
+    marks: Vec<sheet::Mark>,
 }
 
 impl Picture {
     /// The picture as SVG text.
-    pub fn svg(&self) -> &str {
-        &self.svg
+    pub fn svg(&self) -> String {
+        svg::svg_text(self.size, &self.marks)
     }
 
     /// The picture as the bytes of a PNG file, one pixel per SVG unit.
     ///
     /// # Errors
-    /// `Other` if the rasteriser refuses the picture.
+    /// `Other` if the picture is too large.
     pub fn png(&self) -> io::Result<Vec<u8>> {
-        let options =
-            usvg::Options { fontdb: FONTS.clone(), font_family: svg::FONT.to_owned(), ..usvg::Options::default() };
-        let tree = usvg::Tree::from_str(&self.svg, &options).map_err(io::Error::other)?;
-        let size = tree.size().to_int_size();
-        let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
-            .ok_or_else(|| io::Error::other("the picture is too large to rasterise"))?;
-        resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
+        let pixels = raster::pixels(self.size, &self.marks);
+        let pixels = pixels.ok_or_else(|| io::Error::other("the picture is too large to rasterise"))?;
         pixels.encode_png().map_err(io::Error::other)
     }
 

@@ -6,15 +6,15 @@ use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
 use super::colour::{ACCENT, BLOCKS, GREY, INK, LINES, POND, WATER, WHITE};
 use super::legend::{self, Entry, Legend, Sign};
+use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle, fitted};
 use super::signs::{self, Held, draw_held};
 use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines, draw_filled,
     draw_title, outlines, outlines_show, time_text,
 };
-use super::structures::{BoltKind, height_at};
-use super::svg::{Path, Pixel, Rect, Style, Svg, TextStyle, fitted};
+use super::structures::height_at;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
+use enmm::model::{BoltCondition, Snapshot};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 760.0;
@@ -142,7 +142,7 @@ pub struct BoltMark {
     /// Largest tension (N per metre of depth) along it.
     pub force: f64,
     /// What it is.
-    pub kind: BoltKind,
+    pub condition: BoltCondition,
 }
 
 /// A joint set of the case.
@@ -172,7 +172,7 @@ pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Pic
     } else {
         below + 30.0 + legend::height_below(&legends)
     };
-    let mut sheet = Svg::new(WIDTH, bottom + MARGIN);
+    let mut sheet = Sheet::new(WIDTH, bottom + MARGIN);
     draw_title(&mut sheet, &annotations.title, &time_text(snapshot.time));
     model.draw(&mut sheet, &view);
     if beside {
@@ -200,7 +200,7 @@ impl Model<'_> {
         Bounds::of(self.snapshot.elements.points.iter().chain(blocks).chain(traces).chain(bolts))
     }
 
-    fn draw(&self, sheet: &mut Svg, view: &View) {
+    fn draw(&self, sheet: &mut Sheet, view: &View) {
         sheet.clipped(&view.area, |sheet| {
             self.draw_pond(sheet, view);
             self.draw_rock(sheet, view);
@@ -218,7 +218,7 @@ impl Model<'_> {
     }
 
     /// Blocks, mesh and joints.
-    pub fn draw_rock(&self, sheet: &mut Svg, view: &View) {
+    pub fn draw_rock(&self, sheet: &mut Sheet, view: &View) {
         let elements = self.snapshot.elements.len().max(1) as f64;
         let element_area = view.area.width * view.area.height / elements;
         self.draw_blocks(sheet, view, element_area > MESH_AREA);
@@ -234,19 +234,19 @@ impl Model<'_> {
     }
 
     /// Fills, mesh, hatched held blocks, block outlines.
-    pub fn draw_blocks(&self, sheet: &mut Svg, view: &View, with_mesh: bool) {
+    pub fn draw_blocks(&self, sheet: &mut Sheet, view: &View, with_mesh: bool) {
         let snapshot = self.snapshot;
         let of = if self.has_rocks() { &snapshot.rock } else { &snapshot.block };
         draw_filled(sheet, &snapshot.elements, view, &BLOCKS, |k| of.get(k).map_or(0, |&number| number as usize));
         if with_mesh {
-            sheet.path(&outlines(&snapshot.elements, view), Style::line(WHITE, 0.8).opacity(0.9));
+            sheet.path(outlines(&snapshot.elements, view), Style::line(WHITE, 0.8).opacity(0.9));
         }
-        sheet.hatched(&block_outlines(snapshot, view, |boundary| boundary.fixed), GREY);
+        sheet.hatched(block_outlines(snapshot, view, |boundary| boundary.fixed), GREY);
         draw_block_outlines(sheet, snapshot, view);
     }
 
     /// Joints, coloured by law.
-    pub fn draw_traces(&self, sheet: &mut Svg, view: &View, width: f64) {
+    pub fn draw_traces(&self, sheet: &mut Sheet, view: &View, width: f64) {
         for (law, &colour) in LINES.iter().enumerate() {
             let mut path = Path::default();
             let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
@@ -254,12 +254,12 @@ impl Model<'_> {
             for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable) && shows(ends)) {
                 path.line(ends.iter().map(|end| view.pixel(end)));
             }
-            sheet.path(&path, Style::line(colour, width));
+            sheet.path(path, Style::line(colour, width));
         }
     }
 
     /// Water outside the rock, which is drawn over it afterwards.
-    fn draw_pond(&self, sheet: &mut Svg, view: &View) {
+    fn draw_pond(&self, sheet: &mut Sheet, view: &View) {
         let bounds = self.bounds().filter(|_| self.annotations.pond);
         if let (Some(bounds), false) = (bounds, self.annotations.water.is_empty()) {
             let mut corners = surface_between(&self.annotations.water, bounds.min.x, bounds.max.x);
@@ -267,16 +267,16 @@ impl Model<'_> {
             corners.extend([Point::new(bounds.max.x, bounds.min.y), bounds.min]);
             let mut path = Path::default();
             path.polygon(corners.iter().map(|corner| view.pixel(corner)));
-            sheet.path(&path, Style::fill(POND));
+            sheet.path(path, Style::fill(POND));
         }
     }
 
     /// The surface of the water with its triangle.
-    fn draw_water(&self, sheet: &mut Svg, view: &View) {
+    fn draw_water(&self, sheet: &mut Sheet, view: &View) {
         draw_water(sheet, view, &self.annotations.water);
     }
 
-    fn draw_boxes(&self, sheet: &mut Svg, view: &View) {
+    fn draw_boxes(&self, sheet: &mut Sheet, view: &View) {
         let mut path = Path::default();
         for [left, low, right, high] in &self.annotations.held_boxes {
             let corners = [[left, low], [right, low], [right, high], [left, high]];
@@ -285,11 +285,11 @@ impl Model<'_> {
                 path.polygon(corners.iter().map(|corner| view.pixel(corner)));
             }
         }
-        sheet.path(&path, Style::line(INK, 1.6).dashed());
+        sheet.path(path, Style::line(INK, 1.6).dashed());
     }
 
     /// Signs along held edges, evenly where there are supports.
-    fn draw_held(&self, sheet: &mut Svg, view: &View) {
+    fn draw_held(&self, sheet: &mut Sheet, view: &View) {
         for row in &self.annotations.held {
             let out = [row.outward.x, -row.outward.y];
             for tip in spread(row, view) {
@@ -298,7 +298,7 @@ impl Model<'_> {
         }
     }
 
-    fn draw_loads(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+    fn draw_loads(&self, sheet: &mut Sheet, view: &View, labels: &mut Labels) {
         let forces = self.annotations.loads.iter().filter_map(|load| match load {
             LoadMark::Point { force, .. } => Some(force.norm()),
             _ => None,
@@ -343,7 +343,7 @@ impl Model<'_> {
     }
 
     /// Marks of ports and monitors with their names; one name where both share name and place.
-    fn draw_ports_and_monitors(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+    fn draw_ports_and_monitors(&self, sheet: &mut Sheet, view: &View, labels: &mut Labels) {
         let mut named: Vec<(&String, Pixel)> = Vec::new();
         for port in &self.annotations.ports {
             let mark = match port.place {
@@ -378,7 +378,7 @@ impl Model<'_> {
         }
     }
 
-    fn draw_sets(&self, sheet: &mut Svg, view: &View, labels: &mut Labels) {
+    fn draw_sets(&self, sheet: &mut Sheet, view: &View, labels: &mut Labels) {
         for set in &self.annotations.sets {
             if let Some(place) = set.place.filter(is_drawable) {
                 let [x, y] = view.pixel(&place);
@@ -419,7 +419,8 @@ impl Model<'_> {
         let annotations = self.annotations;
         let held = |held: Held| annotations.held.iter().any(|row| row.held == held);
         let place = |is: fn(&PortPlace) -> bool| annotations.ports.iter().any(|port| is(&port.place));
-        let bolt = |later: bool| annotations.bolts.iter().any(|bolt| (bolt.kind == BoltKind::Absent) == later);
+        let bolt =
+            |later: bool| annotations.bolts.iter().any(|bolt| (bolt.condition == BoltCondition::Absent) == later);
         let joints = annotations.loads.iter().any(|load| matches!(load, LoadMark::Joint { .. }));
         let forces = annotations.loads.iter().any(|load| !matches!(load, LoadMark::Joint { .. }));
         let all = [
@@ -444,7 +445,7 @@ impl Model<'_> {
 }
 
 /// A text in a white rim near a position, unless there is no room.
-pub fn draw_label(sheet: &mut Svg, labels: &mut Labels, at: Pixel, text: &str) {
+pub fn draw_label(sheet: &mut Sheet, labels: &mut Labels, at: Pixel, text: &str) {
     let text = fitted(text, LABEL_SIZE, 260.0);
     if let Some(position) = labels.position(at, &text).filter(|_| !text.is_empty()) {
         sheet.text(position, &text, TextStyle::new(LABEL_SIZE).halo());
@@ -452,23 +453,23 @@ pub fn draw_label(sheet: &mut Svg, labels: &mut Labels, at: Pixel, text: &str) {
 }
 
 /// Bolts with their plates; those that a stage installs later are broken lines.
-pub fn draw_bolts(sheet: &mut Svg, view: &View, bolts: &[BoltMark]) {
+pub fn draw_bolts(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) {
     for bolt in bolts.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
         let style = Style::line(ACCENT, 2.6);
-        let style = if bolt.kind == BoltKind::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
+        let style = if bolt.condition == BoltCondition::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
         signs::draw_bolt(sheet, bolt.ends.map(|end| view.pixel(&end)), style);
     }
 }
 
 /// The surface of water across a view, with its triangle.
-pub fn draw_water(sheet: &mut Svg, view: &View, surface: &[Point]) {
+pub fn draw_water(sheet: &mut Sheet, view: &View, surface: &[Point]) {
     if surface.is_empty() || !surface.iter().all(is_drawable) {
         return;
     }
     let line = surface_between(surface, view.world.min.x, view.world.max.x);
     let mut path = Path::default();
     path.line(line.iter().map(|point| view.pixel(point)));
-    sheet.path(&path, Style::line(WATER, 2.4));
+    sheet.path(path, Style::line(WATER, 2.4));
     let x = view.world.min.x + 0.06 * view.world.size().x;
     signs::draw_water_mark(sheet, view.pixel(&Point::new(x, height_at(surface, x))));
 }
@@ -487,7 +488,7 @@ fn tail(tip: Pixel, force: Vector, length: f64) -> Pixel {
 }
 
 /// Arrows onto an edge with a line through their tails; returns the middle of that line.
-fn draw_row_of_arrows(sheet: &mut Svg, view: &View, edge: &[Point; 2], force: Vector, style: Style) -> Pixel {
+fn draw_row_of_arrows(sheet: &mut Sheet, view: &View, edge: &[Point; 2], force: Vector, style: Style) -> Pixel {
     let [a, b] = edge.map(|end| view.pixel(&end));
     let at = |share: f64| [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
     let count = (libm::hypot(b[0] - a[0], b[1] - a[1]) / ARROW_DISTANCE).clamp(1.0, 60.0).round();
@@ -497,7 +498,7 @@ fn draw_row_of_arrows(sheet: &mut Svg, view: &View, edge: &[Point; 2], force: Ve
         signs::push_arrow(&mut path, tail(tip, force, ARROWS[1]), tip, 7.0);
     }
     path.line([0.0, 1.0].map(|share| tail(at(share), force, ARROWS[1])));
-    sheet.path(&path, style);
+    sheet.path(path, style);
     // A label beside the middle keeps off the arrows.
     tail(at(0.5), force, ARROWS[1] + LABEL_SIZE)
 }

@@ -4,10 +4,10 @@ use super::Picture;
 use super::annotations::counted;
 use super::axes::{Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, superscript};
 use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE};
+use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle};
 use super::slope::{
     BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title,
 };
-use super::svg::{Anchor, Pixel, Rect, Style, Svg, TextStyle};
 use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
 
 /// Name of a quantity of a trial, and its value.
@@ -26,7 +26,7 @@ const DECADES_MAX: f64 = 12.0;
 
 /// Draws displacement and kinetic energy at the end of each trial against F, with the bracket.
 pub fn trials_picture(title: &str, reduction: &Reduction) -> Picture {
-    let mut sheet = Svg::new(WIDTH, TOP + 2.0 * FRAME + BETWEEN + BELOW_FRAME + LINE_HEIGHT + MARGIN);
+    let mut sheet = Sheet::new(WIDTH, TOP + 2.0 * FRAME + BETWEEN + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     draw_title(&mut sheet, title, &caption(reduction));
     let quantities: [Quantity; 2] =
         [("largest displacement [m]", |t| t.displacement), ("kinetic energy [J/m]", |t| t.kinetic)];
@@ -66,7 +66,7 @@ fn verdict_colour(verdict: Verdict) -> Colour {
     }
 }
 
-fn draw_legend(sheet: &mut Svg, y: f64) {
+fn draw_legend(sheet: &mut Sheet, y: f64) {
     let entries = [
         (Some(verdict_colour(Verdict::Stable)), "stable"),
         (Some(verdict_colour(Verdict::Caught)), "caught"),
@@ -115,7 +115,7 @@ impl Chart {
         self.frame.bottom() - (decade - low) / (high - low) * self.frame.height
     }
 
-    fn draw(&self, sheet: &mut Svg, reduction: &Reduction, name: &str, of: fn(&Trial) -> f64) {
+    fn draw(&self, sheet: &mut Sheet, reduction: &Reduction, name: &str, of: fn(&Trial) -> f64) {
         if let (Some(low), Some(high)) = (reduction.low, reduction.high) {
             let (left, right) = (self.x(low), self.x(high));
             sheet.rect(&Rect { left, width: (right - left).max(2.0), ..self.frame }, Style::fill(PALE));
@@ -130,7 +130,7 @@ impl Chart {
         sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], name, style);
     }
 
-    fn draw_ticks(&self, sheet: &mut Svg) {
+    fn draw_ticks(&self, sheet: &mut Sheet) {
         let (top, bottom) = (self.frame.top, self.frame.bottom());
         let ticks = Ticks::new(self.factors[0], self.factors[1], 10.0);
         for &factor in &ticks.values {
@@ -164,7 +164,7 @@ pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
     trial.iter().flat_map(|t| &t.failing).for_each(|block| fails[block.block as usize] = true);
     let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - MARGIN, height: HEIGHT_MAX };
     let view = View::fit(Bounds::of(&snapshot.elements.points), area);
-    let mut sheet = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + LINE_HEIGHT + MARGIN);
+    let mut sheet = Sheet::new(WIDTH, view.area.bottom() + BELOW_FRAME + LINE_HEIGHT + MARGIN);
     let caption = match trial {
         Some(trial) => format!(
             "{} {} at F = {:.4}: {:.4} m², {:.1} % of the free rock",

@@ -1,7 +1,7 @@
 //! Signs of the engineer: supports, arrows, bolts, water, monitors, crosses of principal stress. They know pixels only.
 
 use super::colour::{ACCENT, Colour, INK, SLIP, WATER, WHITE};
-use super::svg::{Path, Pixel, Style, Svg};
+use super::sheet::{Path, Pixel, Sheet, Style};
 
 /// Width (px) of the two lines of an open joint.
 pub const OPEN_WIDTH: f64 = 5.0;
@@ -22,7 +22,7 @@ pub enum Held {
 }
 
 /// Draws a sign whose tip touches the rock at `tip`, on its outer side along the unit vector `out` (px, y down).
-pub fn draw_held(sheet: &mut Svg, held: Held, tip: Pixel, out: [f64; 2]) {
+pub fn draw_held(sheet: &mut Sheet, held: Held, tip: Pixel, out: [f64; 2]) {
     let side = [-out[1], out[0]];
     // `along` the outer side, `away` from the rock.
     let at = |along: f64, away: f64| [0, 1].map(|k| tip[k] + along * side[k] + away * out[k]);
@@ -48,7 +48,7 @@ pub fn draw_held(sheet: &mut Svg, held: Held, tip: Pixel, out: [f64; 2]) {
             lines.line([at(-4.0, 8.0), at(4.0, 8.0)]);
             lines.line([at(-6.0, 4.5), at(-6.0, 12.0), at(6.0, 12.0), at(6.0, 4.5)]);
             lines.line([at(0.0, 12.0), at(0.0, 16.0)]);
-            sheet.path(&lines, ink);
+            sheet.path(lines, ink);
             return;
         }
         Held::FreeField => {
@@ -58,19 +58,19 @@ pub fn draw_held(sheet: &mut Svg, held: Held, tip: Pixel, out: [f64; 2]) {
             lines.line([tip, at(0.0, 5.0)]);
             lines.line([at(-4.0, 3.0), at(-4.0, 8.0), at(4.0, 8.0), at(4.0, 3.0)]);
             lines.line([at(0.0, 8.0), at(0.0, 14.0)]);
-            sheet.path(&lines, ink);
+            sheet.path(lines, ink);
             return;
         }
     }
-    sheet.path(&solid, Style::fill(WHITE).edged(INK, 1.3));
-    sheet.path(&lines, ink);
+    sheet.path(solid, Style::fill(WHITE).edged(INK, 1.3));
+    sheet.path(lines, ink);
 }
 
 /// Draws an arrow with its head at `to`.
-pub fn draw_arrow(sheet: &mut Svg, from: Pixel, to: Pixel, style: Style) {
+pub fn draw_arrow(sheet: &mut Sheet, from: Pixel, to: Pixel, style: Style) {
     let mut path = Path::default();
     push_arrow(&mut path, from, to, 8.0);
-    sheet.path(&path, style);
+    sheet.path(path, style);
 }
 
 /// Adds an arrow with its head, at most `head` px long, at `to`.
@@ -92,7 +92,7 @@ pub fn push_arrow(path: &mut Path, from: Pixel, to: Pixel, head: f64) {
 }
 
 /// Draws an arrow round a point, counter-clockwise or clockwise.
-pub fn draw_moment(sheet: &mut Svg, centre: Pixel, counter_clockwise: bool, style: Style) {
+pub fn draw_moment(sheet: &mut Sheet, centre: Pixel, counter_clockwise: bool, style: Style) {
     let turn = if counter_clockwise { -1.0 } else { 1.0 };
     let at = |k: i32| {
         let angle = turn * f64::from(k) * 15f64.to_radians();
@@ -101,42 +101,42 @@ pub fn draw_moment(sheet: &mut Svg, centre: Pixel, counter_clockwise: bool, styl
     let mut path = Path::default();
     path.line((0..=17).map(at));
     push_arrow(&mut path, at(17), at(19), 8.0);
-    sheet.path(&path, style);
+    sheet.path(path, style);
 }
 
 /// Draws a bolt with a plate at its head, the first end.
-pub fn draw_bolt(sheet: &mut Svg, [[x, y], [u, v]]: [Pixel; 2], style: Style) {
+pub fn draw_bolt(sheet: &mut Sheet, [[x, y], [u, v]]: [Pixel; 2], style: Style) {
     let length = libm::hypot(u - x, v - y).max(f64::MIN_POSITIVE);
     let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
     let mut path = Path::default();
     path.line([[x, y], [u, v]]);
     path.line([[x + plate[0], y + plate[1]], [x - plate[0], y - plate[1]]]);
-    sheet.path(&path, style);
+    sheet.path(path, style);
 }
 
 /// Draws the triangle that stands on the surface of water.
-pub fn draw_water_mark(sheet: &mut Svg, [x, y]: Pixel) {
+pub fn draw_water_mark(sheet: &mut Sheet, [x, y]: Pixel) {
     let mut path = Path::default();
     path.polygon([[x, y - 1.0], [x - 6.0, y - 11.0], [x + 6.0, y - 11.0]]);
-    sheet.path(&path, Style::fill(WHITE).edged(WATER, 1.8));
+    sheet.path(path, Style::fill(WHITE).edged(WATER, 1.8));
 }
 
 /// Draws the mark of a monitor.
-pub fn draw_monitor(sheet: &mut Svg, position: Pixel) {
+pub fn draw_monitor(sheet: &mut Sheet, position: Pixel) {
     sheet.circle(position, 6.0, Style::fill(WHITE).edged(ACCENT, 2.2));
     sheet.circle(position, 2.0, Style::fill(ACCENT));
 }
 
 /// Draws the mark of a port.
-pub fn draw_port(sheet: &mut Svg, [x, y]: Pixel) {
+pub fn draw_port(sheet: &mut Sheet, [x, y]: Pixel) {
     let mut path = Path::default();
     path.polygon([[x, y - 8.0], [x + 8.0, y], [x, y + 8.0], [x - 8.0, y]]);
-    sheet.path(&path, Style::fill(WHITE).edged(ACCENT, 2.2));
+    sheet.path(path, Style::fill(WHITE).edged(ACCENT, 2.2));
 }
 
 /// Draws two principal stresses as lines through `centre`: half of each is `half` (px); tension has heads that point
 /// outwards.
-pub fn draw_cross(sheet: &mut Svg, centre: Pixel, half: [[f64; 2]; 2], tension: [bool; 2]) {
+pub fn draw_cross(sheet: &mut Sheet, centre: Pixel, half: [[f64; 2]; 2], tension: [bool; 2]) {
     for ([x, y], tension) in half.into_iter().zip(tension) {
         let ends = [[centre[0] - x, centre[1] - y], [centre[0] + x, centre[1] + y]];
         let mut path = Path::default();
@@ -146,6 +146,6 @@ pub fn draw_cross(sheet: &mut Svg, centre: Pixel, half: [[f64; 2]; 2], tension: 
         } else {
             path.line(ends);
         }
-        sheet.path(&path, Style::line(if tension { SLIP } else { INK }, 1.5));
+        sheet.path(path, Style::line(if tension { SLIP } else { INK }, 1.5));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable, number_text};
 use super::colour::{Colour, GREY, INK};
-use super::svg::{Anchor, Path, Pixel, Rect, Style, Svg, TextStyle, fitted, text_width};
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use enmm::geometry::Point;
 use enmm::model::Snapshot;
 use enmm::model::snapshot::Polygons;
@@ -27,14 +27,14 @@ const OUTLINE_AREA: f64 = 12.0;
 const ROUNDING: f64 = 0.1;
 
 /// Draws the title and, below it, a caption.
-pub fn draw_title(sheet: &mut Svg, title: &str, caption: &str) {
+pub fn draw_title(sheet: &mut Sheet, title: &str, caption: &str) {
     let width = WIDTH - LEFT - MARGIN;
     sheet.text([LEFT, 46.0], &fitted(title, 27.0, width), TextStyle::new(27.0));
     sheet.text([LEFT, 78.0], &fitted(caption, 18.0, width), TextStyle::new(18.0).colour(GREY));
 }
 
 /// Says so if there is no element.
-pub fn draw_absence(sheet: &mut Svg, view: &View, elements: &Polygons) {
+pub fn draw_absence(sheet: &mut Sheet, view: &View, elements: &Polygons) {
     if elements.is_empty() {
         let middle = [view.area.left + 0.5 * view.area.width, view.area.top + 0.5 * view.area.height];
         sheet.text(middle, "no elements", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
@@ -72,7 +72,7 @@ pub fn outlines(polygons: &Polygons, view: &View) -> Path {
 
 /// Fills the polygons, those of one colour as one shape: `choice` gives the index into `colours`.
 pub fn draw_filled(
-    sheet: &mut Svg,
+    sheet: &mut Sheet,
     polygons: &Polygons,
     view: &View,
     colours: &[Colour],
@@ -85,7 +85,7 @@ pub fn draw_filled(
             paths[choice(k) % colours.len()].polygon(pixels());
         }
     }
-    for (path, &colour) in paths.iter().zip(colours) {
+    for (path, &colour) in paths.into_iter().zip(colours) {
         sheet.path(path, Style::fill(colour).crisp());
     }
 }
@@ -120,12 +120,12 @@ pub fn outlines_show(snapshot: &Snapshot, view: &View) -> bool {
 }
 
 /// Draws the outlines of all blocks as thin dark lines, unless they would only blacken the picture.
-pub fn draw_block_outlines(sheet: &mut Svg, snapshot: &Snapshot, view: &View) {
+pub fn draw_block_outlines(sheet: &mut Sheet, snapshot: &Snapshot, view: &View) {
     if !outlines_show(snapshot, view) {
         return;
     }
     let width = if snapshot.boundaries.len() > 3000 { 0.5 } else { 0.9 };
-    sheet.path(&block_outlines(snapshot, view, |_| true), Style::line(INK, width));
+    sheet.path(block_outlines(snapshot, view, |_| true), Style::line(INK, width));
 }
 
 /// Texts placed so far, and where they may go.

@@ -10,16 +10,15 @@ use super::displacement::draw_length;
 use super::joints::JointPiece;
 use super::legend::{self, Entry, Legend, Sign};
 use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
+use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle};
 use super::signs::{OPEN_WIDTH, draw_cross, push_arrow};
 use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines,
     draw_filled, draw_title,
 };
-use super::structures::BoltKind;
-use super::svg::{Path, Pixel, Rect, Style, Svg, TextStyle};
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
+use enmm::model::{BoltCondition, Snapshot};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 780.0;
@@ -70,7 +69,7 @@ pub fn stress_picture(stage: &StageEnd) -> Picture {
     let principal: Vec<Principal> = stage.snapshot.stress.iter().map(Principal::of).collect();
     let compression: Vec<f64> = principal.iter().map(|p| -p.values[1]).collect();
     let range = [quantile(&compression, 1.0 - MOST), quantile(&compression, MOST)];
-    let mut sheet = Sheet::new(stage, BAR_ROOM, "principal stresses");
+    let mut sheet = StageSheet::new(stage, BAR_ROOM, "principal stresses");
     let span = (range[1] - range[0]).max(f64::MIN_POSITIVE);
     sheet.fill(|k| scale_step((compression.get(k).copied().unwrap_or(0.0) - range[0]) / span));
     sheet.draw_outlines();
@@ -83,7 +82,7 @@ pub fn stress_picture(stage: &StageEnd) -> Picture {
         let [x, y] = [direction.x, -direction.y];
         let arms = [[x * length(values[0]), y * length(values[0])], [y * length(values[1]), -x * length(values[1])]];
         if values.iter().any(|&value| length(value) >= SHORTEST) {
-            draw_cross(&mut sheet.svg, centre, arms, values.map(|value| value > 0.0));
+            draw_cross(&mut sheet.sheet, centre, arms, values.map(|value| value > 0.0));
         }
     }
     sheet.decorate();
@@ -92,7 +91,7 @@ pub fn stress_picture(stage: &StageEnd) -> Picture {
     let ticks = Ticks::new(range[0] / size, range[1] / size, 10.0);
     let tick = |&value: &f64| ((value * size - range[0]) / span, ticks.label(value));
     let title = format!("greatest compression [{unit}]");
-    draw_bar(&mut sheet.svg, &view.area, &title, &ticks.values.iter().map(tick).collect::<Vec<_>>());
+    draw_bar(&mut sheet.sheet, &view.area, &title, &ticks.values.iter().map(tick).collect::<Vec<_>>());
     let note = format!(
         "crosses: principal stresses, tension with heads; the longest arms are {} or more",
         si_text(longest, "Pa")
@@ -102,7 +101,7 @@ pub fn stress_picture(stage: &StageEnd) -> Picture {
 
 /// Draws which joints are open, slip or lock.
 pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
-    let mut sheet = Sheet::new(stage, MARGIN, "states of joints");
+    let mut sheet = StageSheet::new(stage, MARGIN, "states of joints");
     sheet.draw_rock();
     let view = sheet.view;
     let mut paths = BTreeMap::new();
@@ -114,11 +113,11 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
     }
     let path = |state: ContactState| paths.get(&(state as usize)).cloned().unwrap_or_default();
     let fine = if joints.len() > 6000 { 0.6 } else { 1.0 };
-    sheet.svg.clipped(&view.area, |svg| {
-        svg.path(&path(ContactState::Lock), Style::line(LOCK, 1.8 * fine));
-        svg.path(&path(ContactState::Open), Style::line(INK, OPEN_WIDTH * fine));
-        svg.path(&path(ContactState::Open), Style::line(WHITE, (OPEN_WIDTH - 2.6) * fine));
-        svg.path(&path(ContactState::Slip), Style::line(SLIP, 3.6 * fine));
+    sheet.sheet.clipped(&view.area, |sheet| {
+        sheet.path(path(ContactState::Lock), Style::line(LOCK, 1.8 * fine));
+        sheet.path(path(ContactState::Open), Style::line(INK, OPEN_WIDTH * fine));
+        sheet.path(path(ContactState::Open), Style::line(WHITE, (OPEN_WIDTH - 2.6) * fine));
+        sheet.path(path(ContactState::Slip), Style::line(SLIP, 3.6 * fine));
     });
     sheet.decorate();
     let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
@@ -155,7 +154,7 @@ fn joint_stress_picture(
     name: &str,
     of: &dyn Fn(&JointPiece) -> f64,
 ) -> Picture {
-    let mut sheet = Sheet::new(stage, BAR_ROOM, &format!("{name}, averaged over faces"));
+    let mut sheet = StageSheet::new(stage, BAR_ROOM, &format!("{name}, averaged over faces"));
     sheet.draw_rock();
     let view = sheet.view;
     let closed: Vec<f64> = joints.iter().filter(|joint| joint.state != ContactState::Open).map(of).collect();
@@ -167,16 +166,16 @@ fn joint_stress_picture(
         let path = if joint.state == ContactState::Open { &mut open } else { &mut paths[step] };
         path.line(joint.ends.map(|end| view.pixel(&end)));
     }
-    sheet.svg.clipped(&view.area, |svg| {
-        svg.path(&open, Style::line(PALE, 2.0));
-        for (step, path) in paths.iter().enumerate() {
-            svg.path(path, Style::line(scale(step), 4.6));
+    sheet.sheet.clipped(&view.area, |sheet| {
+        sheet.path(open, Style::line(PALE, 2.0));
+        for (step, path) in paths.into_iter().enumerate() {
+            sheet.path(path, Style::line(scale(step), 4.6));
         }
     });
     sheet.decorate();
     let (unit, size) = unit_of(largest, &[("MPa", 1e6, 1e5), ("kPa", 1e3, 1e2), ("Pa", 1.0, 0.0)]);
     let ticks = linear_ticks(largest / size);
-    draw_bar(&mut sheet.svg, &view.area, &format!("{name} [{unit}]"), &ticks);
+    draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let greatest = closed.iter().copied().fold(0.0, f64::max);
     sheet.close(&format!("greatest {}; open joints pale", si_text(greatest, "Pa")))
 }
@@ -204,7 +203,7 @@ fn vectors_picture(
         (true, false) => size / largest,
         (true, true) => 1.0 + libm::log10(size / largest).max(-DECADES) / DECADES,
     };
-    let mut sheet = Sheet::new(stage, BAR_ROOM, what);
+    let mut sheet = StageSheet::new(stage, BAR_ROOM, what);
     sheet.fill(|k| scale_step(fraction(sizes[k])));
     sheet.draw_outlines();
     let view = sheet.view;
@@ -216,14 +215,14 @@ fn vectors_picture(
             push_arrow(&mut arrows, centre, [centre[0] + way.x, centre[1] - way.y], 8.0);
         }
     }
-    sheet.svg.clipped(&view.area, |svg| {
-        svg.path(&arrows, Style::line(WHITE, 3.4).opacity(0.8));
-        svg.path(&arrows, Style::line(INK, 1.5));
+    sheet.sheet.clipped(&view.area, |sheet| {
+        sheet.path(arrows.clone(), Style::line(WHITE, 3.4).opacity(0.8));
+        sheet.path(arrows, Style::line(INK, 1.5));
     });
     sheet.decorate();
     let (unit, size) = unit_of(largest, units);
     let ticks = if logarithmic { decade_ticks(largest / size) } else { linear_ticks(largest / size) };
-    draw_bar(&mut sheet.svg, &view.area, &format!("{name} [{unit}]"), &ticks);
+    draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let scale = if logarithmic { ", logarithmic scale" } else { "" };
     sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", number_text(largest / size)))
 }
@@ -299,77 +298,78 @@ impl Principal {
 }
 
 /// A picture of a stage under construction.
-pub struct Sheet<'a> {
+pub struct StageSheet<'a> {
     stage: &'a StageEnd<'a>,
     /// What is drawn so far.
-    pub svg: Svg,
+    pub sheet: Sheet,
     /// Where the slope is drawn.
     pub view: View,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> StageSheet<'a> {
     /// A sheet with its titles, and so much room (px) at the right of the slope.
     pub fn new(stage: &'a StageEnd, room: f64, what: &str) -> Self {
         let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - room, height: HEIGHT_MAX };
         let view = View::fit(Bounds::of(&stage.snapshot.elements.points), area);
-        let mut svg = Svg::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES + 5.0 * 25.0);
-        draw_title(&mut svg, stage.title, &format!("{}: {what}", stage.caption));
-        Self { stage, svg, view }
+        let mut sheet = Sheet::new(WIDTH, view.area.bottom() + BELOW_FRAME + NOTES + 5.0 * 25.0);
+        draw_title(&mut sheet, stage.title, &format!("{}: {what}", stage.caption));
+        Self { stage, sheet, view }
     }
 
     /// Fills the elements by steps of the scale.
     fn fill(&mut self, step: impl Fn(usize) -> usize) {
         let colours: Vec<_> = (0..SCALE_STEPS).map(scale).collect();
         let (snapshot, view) = (self.stage.snapshot, self.view);
-        self.svg.clipped(&view.area, |svg| draw_filled(svg, &snapshot.elements, &view, &colours, step));
+        self.sheet.clipped(&view.area, |sheet| draw_filled(sheet, &snapshot.elements, &view, &colours, step));
     }
 
     /// Draws the outlines of blocks.
     pub fn draw_outlines(&mut self) {
         let (snapshot, view) = (self.stage.snapshot, self.view);
-        self.svg.clipped(&view.area, |svg| draw_block_outlines(svg, snapshot, &view));
+        self.sheet.clipped(&view.area, |sheet| draw_block_outlines(sheet, snapshot, &view));
     }
 
     /// Rock behind joints.
     fn draw_rock(&mut self) {
         let (snapshot, view) = (self.stage.snapshot, self.view);
-        self.svg.clipped(&view.area, |svg| {
-            draw_filled(svg, &snapshot.elements, &view, &[ROCK], |_| 0);
-            svg.path(&block_outlines(snapshot, &view, |_| true), Style::line(GREY, 0.7));
+        self.sheet.clipped(&view.area, |sheet| {
+            draw_filled(sheet, &snapshot.elements, &view, &[ROCK], |_| 0);
+            sheet.path(block_outlines(snapshot, &view, |_| true), Style::line(GREY, 0.7));
         });
     }
 
     /// Water, bolts with their tension, and axes.
     pub fn decorate(&mut self) {
         let (stage, view) = (self.stage, self.view);
-        draw_absence(&mut self.svg, &view, &stage.snapshot.elements);
-        self.svg.clipped(&view.area, |svg| draw_water(svg, &view, stage.water));
-        let there: Vec<BoltMark> = stage.bolts.iter().filter(|bolt| bolt.kind != BoltKind::Absent).cloned().collect();
-        draw_bolts(&mut self.svg, &view, &there);
+        draw_absence(&mut self.sheet, &view, &stage.snapshot.elements);
+        self.sheet.clipped(&view.area, |sheet| draw_water(sheet, &view, stage.water));
+        let there: Vec<BoltMark> =
+            stage.bolts.iter().filter(|bolt| bolt.condition != BoltCondition::Absent).cloned().collect();
+        draw_bolts(&mut self.sheet, &view, &there);
         let mut labels = Labels::new(view.area);
         for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            let state = match bolt.kind {
-                BoltKind::Broken => " broken",
-                BoltKind::Yielded => " yields",
+            let state = match bolt.condition {
+                BoltCondition::Broken => " broken",
+                BoltCondition::Yielded => " yields",
                 _ => "",
             };
-            draw_label(&mut self.svg, &mut labels, view.pixel(&bolt.ends[1]), &(si_text(bolt.force, "N/m") + state));
+            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &(si_text(bolt.force, "N/m") + state));
         }
-        view.draw_axes(&mut self.svg);
+        view.draw_axes(&mut self.sheet);
     }
 
     /// Ends with a length bar and a note.
     pub fn close(mut self, note: &str) -> Picture {
         let y = self.view.area.bottom() + BELOW_FRAME + 24.0;
-        let x = draw_length(&mut self.svg, &self.view, y);
-        self.svg.text([x, y], note, TextStyle::new(LABEL_SIZE));
-        self.svg.cut(y + MARGIN).finish()
+        let x = draw_length(&mut self.sheet, &self.view, y);
+        self.sheet.text([x, y], note, TextStyle::new(LABEL_SIZE));
+        self.sheet.cut(y + MARGIN).finish()
     }
 
     /// Ends with legends.
     fn close_with(mut self, legends: &[Legend]) -> Picture {
         let top = self.view.area.bottom() + BELOW_FRAME + 24.0;
-        legend::draw_below(&mut self.svg, legends, LEFT, top);
-        self.svg.cut(top + legend::height_below(legends) + MARGIN).finish()
+        legend::draw_below(&mut self.sheet, legends, LEFT, top);
+        self.sheet.cut(top + legend::height_below(legends) + MARGIN).finish()
     }
 }

@@ -2,33 +2,7 @@
 
 use enmm::contact::{EdgeId, Resistance};
 use enmm::geometry::{Point, Vector};
-use enmm::model::{BoltSegment, BoltState, Simulation};
-
-/// What a bolt is at one instant.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum BoltKind {
-    /// A stage installs it later, or its rock is gone.
-    #[default]
-    Absent,
-    /// It bears, or it is slack.
-    Whole,
-    /// It has yielded.
-    Yielded,
-    /// It has broken.
-    Broken,
-}
-
-impl BoltKind {
-    /// What a bolt is now. One that has yielded or broken and lost its rock is absent.
-    pub fn of(now: &BoltState) -> Self {
-        match now {
-            now if !now.active => Self::Absent,
-            now if now.broken => Self::Broken,
-            now if now.rest > now.natural => Self::Yielded,
-            _ => Self::Whole,
-        }
-    }
-}
+use enmm::model::{BoltCondition, BoltSegment, BoltState, Simulation};
 
 /// A free length of a bolt between two material points now.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -39,8 +13,8 @@ pub struct BoltLine {
     pub bolt: u32,
     /// Tension (N per metre of depth).
     pub force: f64,
-    /// What it is.
-    pub kind: BoltKind,
+    /// Its condition.
+    pub condition: BoltCondition,
 }
 
 /// What a support is.
@@ -92,7 +66,7 @@ pub fn bolts(simulation: &Simulation) -> Vec<BoltLine> {
             };
             sample(stars) + sample(&state.displacement)
         };
-        BoltLine { ends: [end(0), end(1)], bolt: segment.bolt, force: now.force, kind: BoltKind::of(now) }
+        BoltLine { ends: [end(0), end(1)], bolt: segment.bolt, force: now.force, condition: now.condition() }
     };
     model.bolts.iter().zip(&state.bolts).map(line).collect()
 }
@@ -171,22 +145,5 @@ pub fn height_at(line: &[Point], x: f64) -> f64 {
         (Some(p), None) => p.y,
         (None, Some(q)) => q.y,
         (None, None) => f64::NEG_INFINITY,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
-        let whole = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 1e5 };
-        let yielded = BoltState { rest: 2.1, ..whole };
-        let broken = BoltState { broken: true, force: 0.0, ..yielded };
-        let kinds = [whole, yielded, broken].map(|now| BoltKind::of(&now));
-        assert_eq!(kinds, [BoltKind::Whole, BoltKind::Yielded, BoltKind::Broken]);
-        for now in [whole, yielded, broken] {
-            assert_eq!(BoltKind::of(&BoltState { active: false, ..now }), BoltKind::Absent);
-        }
     }
 }

@@ -1,5 +1,7 @@
-//! Pictures are PNG files of the promised size for every input, also one that makes no sense.
+//! Pictures show what they should where they should, and are PNG files of the promised size for every input, also one
+//! that makes no sense.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -13,6 +15,9 @@ use enmm_picture::{
     displacement_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,
     stage_displacement_picture, stress_picture, velocity_picture,
 };
+use quick_xml::events::Event;
+use quick_xml::reader::Reader;
+use tiny_skia::Pixmap;
 
 /// Where a person can look at the pictures.
 fn shown(name: &str) -> std::path::PathBuf {
@@ -22,7 +27,7 @@ fn shown(name: &str) -> std::path::PathBuf {
 /// Rasterises, checks the frame of the PNG and keeps it.
 fn check(picture: &Picture, name: &str) {
     picture.write_png(&shown(name)).unwrap();
-    let pixels = resvg::tiny_skia::Pixmap::load_png(shown(name)).unwrap();
+    let pixels = Pixmap::load_png(shown(name)).unwrap();
     assert_eq!(pixels.width(), 1600);
     assert!((300..=1400).contains(&pixels.height()), "{name} is {} px high", pixels.height());
     let inked = pixels.pixels().iter().filter(|pixel| pixel.red() < 250).count();
@@ -32,6 +37,148 @@ fn check(picture: &Picture, name: &str) {
 fn series(name: &str, unit: &str, value: impl Fn(f64) -> f64) -> Series {
     let points = (0..=2000).map(|k| f64::from(k) * 1e-3).map(|time| (time, value(time))).collect();
     Series { name: name.to_owned(), quantity: "amount".to_owned(), unit: unit.to_owned(), points }
+}
+
+/// Shapes and texts of SVG text: the name of the tag, attributes and text.
+struct Drawn {
+    tag: String,
+    attributes: BTreeMap<String, String>,
+    text: String,
+}
+
+impl Drawn {
+    fn all(svg: &str) -> Vec<Self> {
+        let mut reader = Reader::from_str(svg);
+        let mut drawn: Vec<Self> = Vec::new();
+        loop {
+            match reader.read_event().unwrap() {
+                Event::Start(tag) | Event::Empty(tag) => drawn.push(Self {
+                    tag: tag.name().0.to_owned(),
+                    attributes: tag
+                        .attributes()
+                        .map(|attribute| attribute.unwrap())
+                        .map(|attribute| (attribute.key.0.to_owned(), attribute.value.into_owned()))
+                        .collect(),
+                    text: String::new(),
+                }),
+                Event::Text(text) => drawn.iter_mut().rev().take(1).for_each(|last| last.text.push_str(&text)),
+                Event::Eof => return drawn,
+                _ => {}
+            }
+        }
+    }
+
+    fn is(&self, key: &str, value: &str) -> bool {
+        self.attributes.get(key).is_some_and(|own| own == value)
+    }
+
+    fn number(&self, key: &str) -> f64 {
+        self.attributes[key].parse().unwrap()
+    }
+
+    /// The mean of the corners of the first outline (px).
+    fn middle(&self) -> [f64; 2] {
+        let first = self.attributes["d"][1..].split(['M', 'Z']).next().unwrap();
+        let corners: Vec<[f64; 2]> = first
+            .split('L')
+            .map(|corner| corner.split_once(' ').unwrap())
+            .map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()])
+            .collect();
+        [0, 1].map(|k| corners.iter().map(|corner| corner[k]).sum::<f64>() / corners.len() as f64)
+    }
+}
+
+fn pixels(picture: &Picture) -> Pixmap {
+    Pixmap::decode_png(&picture.png().unwrap()).unwrap()
+}
+
+fn colour_at(pixels: &Pixmap, [x, y]: [f64; 2]) -> String {
+    let pixel = pixels.pixel(x as u32, y as u32).unwrap();
+    format!("#{:02x}{:02x}{:02x}", pixel.red(), pixel.green(), pixel.blue())
+}
+
+/// Left, right, top and bottom of what is dark in a box of pixels.
+fn ink(pixels: &Pixmap, [left, right, top, bottom]: [f64; 4]) -> [f64; 4] {
+    let places = (top as u32..bottom as u32).flat_map(|y| (left as u32..right as u32).map(move |x| (x, y)));
+    let dark = places.filter(|&(x, y)| pixels.pixel(x, y).unwrap().red() < 140);
+    dark.fold([f64::INFINITY, 0.0, f64::INFINITY, 0.0], |[left, right, top, bottom], (x, y)| {
+        let [x, y] = [f64::from(x), f64::from(y)];
+        [left.min(x), right.max(x + 1.0), top.min(y), bottom.max(y + 1.0)]
+    })
+}
+
+/// A free and a held block with a joint between them.
+fn two_blocks() -> Picture {
+    let square = |left: f64| [[left, 0.0], [left + 10.0, 0.0], [left + 10.0, 10.0], [left, 10.0]].map(Point::from);
+    let both = Polygons { start: vec![0, 4, 8], points: [square(0.0), square(10.0)].concat() };
+    let boundary = |block: u32| Boundary {
+        block,
+        fixed: block == 1,
+        loops: Polygons { start: vec![0, 4], points: square(10.0 * f64::from(block)).to_vec() },
+        ..Boundary::default()
+    };
+    let snapshot = Snapshot {
+        elements: both,
+        block: vec![0, 1],
+        boundaries: vec![boundary(0), boundary(1)],
+        joint_laws: vec!["bedding".to_owned()],
+        ..Snapshot::default()
+    };
+    let joint = [Point::new(10.0, 0.0), Point::new(10.0, 10.0)];
+    let title = "Two blocks".to_owned();
+    model_picture(&snapshot, &ModelAnnotations { title, trace_segments: vec![(joint, 0)], ..Default::default() })
+}
+
+#[test]
+fn blocks_and_joints_have_their_colours_where_the_svg_has_them() {
+    let picture = two_blocks();
+    let (drawn, pixels) = (Drawn::all(&picture.svg()), pixels(&picture));
+    let [free, held] =
+        ["#cde0f0", "#f6e0c4"].map(|fill| drawn.iter().find(|shape| shape.is("fill", fill)).unwrap().middle());
+    assert_eq!(colour_at(&pixels, free), "#cde0f0");
+    // Slanting lines, 1.4 px wide every 9 px, cross the held block.
+    let near = (0..8100).map(|k| [held[0] + f64::from(k % 90), held[1] + f64::from(k / 90)]);
+    let plain = near.filter(|at| colour_at(&pixels, *at) == "#f6e0c4").count();
+    assert!((4000..8100).contains(&plain), "{plain}");
+    // On the joint, and in the legend.
+    let joints: Vec<_> = drawn.iter().filter(|shape| shape.is("stroke", "#1f57a0")).map(Drawn::middle).collect();
+    assert_eq!(joints.len(), 2);
+    for [x, y] in joints {
+        let near = (0..9).map(|k| [x + f64::from(k % 3) - 1.0, y + f64::from(k / 3) - 1.0]);
+        assert!(near.map(|at| colour_at(&pixels, at)).any(|colour| colour == "#1f57a0"), "{x} {y}");
+    }
+}
+
+#[test]
+fn texts_stand_where_the_svg_has_them() {
+    let picture = two_blocks();
+    let (drawn, pixels) = (Drawn::all(&picture.svg()), pixels(&picture));
+    let find = |text: &str| drawn.iter().find(|shape| shape.tag == "text" && shape.text.trim_end() == text).unwrap();
+    let place = |text: &str| ["x", "y", "font-size"].map(|key| find(text).number(key));
+    let [x, y, size] = place("Two blocks");
+    let [left, right, top, bottom] = ink(&pixels, [x - 50.0, x + 300.0, y - size, y + 0.4 * size]);
+    // 5.3 times as wide as the font is large, letters 0.76 times as high, no letter below the base line.
+    assert!((left - x).abs() < 2.0 && (right - x - 5.3 * size).abs() < 4.0, "{left} to {right}");
+    assert!((y - top - 0.76 * size).abs() < 2.0 && (bottom - y).abs() < 2.0, "{top} to {bottom}");
+    let [x, y, size] = place("x [m]");
+    let [left, right, ..] = ink(&pixels, [x - 100.0, x + 100.0, y - size, y]);
+    assert!((0.5 * (left + right) - x).abs() < 2.0 && right - left > 2.0 * size, "{left} to {right}");
+    let [x, y, size] = place("y [m]");
+    let [.., top, bottom] = ink(&pixels, [x - size, x, y - 100.0, y + 100.0]);
+    assert!((0.5 * (top + bottom) - y).abs() < 2.0 && bottom - top > 2.0 * size, "{top} to {bottom}");
+}
+
+#[test]
+fn the_colours_of_a_bar_are_those_of_the_svg() {
+    let picture = displacement_picture(&sample(12.0, 6.0).moved(1.0, 2.0), "slide", &profile());
+    let (drawn, pixels) = (Drawn::all(&picture.svg()), pixels(&picture));
+    let steps: Vec<_> = drawn.iter().filter(|shape| shape.tag == "rect" && shape.is("width", "26.00")).collect();
+    let filled: Vec<_> = steps.iter().filter(|step| !step.is("fill", "none")).collect();
+    assert_eq!(filled.len(), 64);
+    for step in filled {
+        let [left, top, width, height] = ["x", "y", "width", "height"].map(|key| step.number(key));
+        assert!(step.is("fill", &colour_at(&pixels, [left + 0.5 * width, top + 0.5 * height])));
+    }
 }
 
 #[test]
@@ -202,7 +349,8 @@ fn names_with_markup_stay_text() {
     slope.annotations.monitors[1].0 = "岩盤 \u{1f3d4}".to_owned();
     let picture = model_picture(&slope.reference, &slope.annotations);
     check(&picture, "markup.png");
-    roxmltree::Document::parse(picture.svg()).unwrap();
+    let drawn = Drawn::all(&picture.svg());
+    assert!(drawn.iter().all(|shape| shape.tag != "script"));
 }
 
 #[test]

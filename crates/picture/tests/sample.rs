@@ -4,10 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
 use enmm::model::snapshot::{Boundary, Polygons};
+use enmm::model::{BoltCondition, Snapshot};
 use enmm_picture::joints::JointPiece;
-use enmm_picture::structures::BoltKind;
 use enmm_picture::{BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Slope profile (m), counter-clockwise.
@@ -115,12 +114,12 @@ fn annotations() -> ModelAnnotations {
             direction: Vector::new(0.8, 0.6),
             place: Some(Point::new(60.0, 40.0)),
         }],
-        bolts: [(BoltKind::Whole, 45.0), (BoltKind::Absent, 38.0)]
-            .map(|(kind, y)| BoltMark {
+        bolts: [(BoltCondition::Elastic, 45.0), (BoltCondition::Absent, 38.0)]
+            .map(|(condition, y)| BoltMark {
                 name: None,
                 ends: [Point::new(48.0, y), Point::new(62.0, y - 4.0)],
                 force: 2.1e5,
-                kind,
+                condition,
             })
             .to_vec(),
         water: [[0.0, 17.0], [33.0, 17.0], [100.0, 40.0]].map(Point::from).to_vec(),

@@ -143,25 +143,11 @@ pub struct MonitorFrame {
     pub velocity: [f64; 2],
 }
 
-/// What a free length of a bolt does in a frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum BoltState {
-    /// It is installed later, or its rock is gone.
-    #[default]
-    Absent,
-    /// It bears, or it is slack.
-    Whole,
-    /// It has yielded.
-    Yielded,
-    /// It has broken.
-    Broken,
-}
-
 /// A free length of a bolt in a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BoltFrame {
-    /// What it does.
-    pub state: BoltState,
+    /// Number of its condition: 0 absent, 1 whole, 2 yielded, 3 broken.
+    pub condition: u8,
     /// Displacement of both ends (m).
     pub displacement: [[f64; 2]; 2],
     /// Tension (N per metre of depth).

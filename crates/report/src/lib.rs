@@ -18,8 +18,8 @@ mod writer;
 
 pub use block::QUANTUM;
 pub use data::{
-    Axis, BlockFrame, BoltFrame, BoltPlace, BoltState, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
-    MonitorPlace, Note, Outline, Quantity, Structures, SupportFrame, Trial, TrialTable,
+    Axis, BlockFrame, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame, MonitorPlace,
+    Note, Outline, Quantity, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
 pub use page::{live_page, write_page};

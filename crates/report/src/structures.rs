@@ -40,7 +40,7 @@ fn push_supports(supports: &[SupportFrame], time: f64, origin: [f64; 2], bytes: 
 }
 
 fn push_bolts(bolts: &[BoltFrame], time: f64, bytes: &mut Vec<u8>) -> Result<(), FilmError> {
-    bytes.extend(bolts.iter().map(|bolt| bolt.state as u8));
+    bytes.extend(bolts.iter().map(|bolt| bolt.condition));
     type Getter = fn(&BoltFrame) -> f64;
     let quantities: [(Width, Getter); 5] = [
         (Width::Full, |bolt| bolt.displacement[0][0]),

@@ -6,14 +6,13 @@ use std::path::Path;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
-use enmm::contact::{BoltSegment, BoltState};
+use enmm::contact::{BoltCondition, BoltSegment, BoltState};
 use enmm::engine_version;
 use enmm::model::Simulation;
 use enmm::model::case::StageKind;
 use enmm::state::{ENERGIES, Ledger, Seconds};
 use enmm::step::StepError;
 use enmm_io::files::{at_path, write_atomic};
-use enmm_picture::structures::BoltKind;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -176,22 +175,6 @@ pub struct StageRecord {
     pub penetration_max: f64,
 }
 
-/// What a bar segment does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BarState {
-    /// It is not installed, or a block that held it is gone, whatever the bar did before.
-    Absent,
-    /// It bears no force.
-    Slack,
-    /// It is in tension and has never yielded.
-    Elastic,
-    /// It has yielded.
-    Yielded,
-    /// It has broken.
-    Broken,
-}
-
 /// A free length of a bolt at the end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BoltRecord {
@@ -205,8 +188,8 @@ pub struct BoltRecord {
     pub force: f64,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
-    /// What it does.
-    pub state: BarState,
+    /// Its condition.
+    pub state: BoltCondition,
 }
 
 impl BoltRecord {
@@ -215,20 +198,13 @@ impl BoltRecord {
         let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
             let case = &simulation.case().bolts[segment.bolt as usize];
             let middle = (segment.points[0] + segment.points[1]) * 0.5;
-            let state = match BoltKind::of(bolt) {
-                BoltKind::Absent => BarState::Absent,
-                BoltKind::Whole if bolt.force > 0.0 => BarState::Elastic,
-                BoltKind::Whole => BarState::Slack,
-                BoltKind::Yielded => BarState::Yielded,
-                BoltKind::Broken => BarState::Broken,
-            };
             Self {
                 name: case.name.clone(),
                 bolt: segment.bolt,
                 place: [middle.x, middle.y],
                 force: bolt.force * case.spacing,
                 plastic_elongation: bolt.rest - bolt.natural,
-                state,
+                state: bolt.condition(),
             }
         };
         segments.map(record).collect()

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use crate::sample::{Sample, sample};
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
+use enmm::model::{BoltCondition, Snapshot};
 use enmm_picture::joints::JointPiece;
-use enmm_picture::structures::{BoltKind, BoltLine, SupportKind, SupportPoint, WetEdge};
+use enmm_picture::structures::{BoltLine, SupportKind, SupportPoint, WetEdge};
 use enmm_run::vtu::{
     Part, PvdWriter, Structures, write_bolts_vtu, write_joints_vtu, write_supports_vtu, write_vtu, write_water_vtu,
 };
@@ -194,12 +194,8 @@ fn joints_come_back_as_they_were() {
 fn bolts_supports_and_water_come_back_as_they_were() {
     let directory = directory("vtu_structures");
     let ends = [Point::new(1.0, 2.0), Point::new(3.0, 4.0)];
-    let bolts = [BoltKind::Absent, BoltKind::Whole, BoltKind::Yielded, BoltKind::Broken].map(|kind| BoltLine {
-        ends,
-        bolt: 1,
-        force: 2.5e5,
-        kind,
-    });
+    let conditions = [BoltCondition::Absent, BoltCondition::Elastic, BoltCondition::Yielded, BoltCondition::Broken];
+    let bolts = conditions.map(|condition| BoltLine { ends, bolt: 1, force: 2.5e5, condition });
     let supports = [SupportKind::Fixity, SupportKind::Spring, SupportKind::Dashpot].map(|kind| SupportPoint {
         position: ends[1],
         reaction: Vector::new(-3.0, 5.0),

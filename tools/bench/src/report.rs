@@ -28,8 +28,8 @@ pub fn write_report(report: &BenchReport, origin: &Origin, directory: &Path) -> 
     let write = |name: &str, text: &str| write_atomic(&directory.join(name), text.as_bytes());
     write("results.json", &format!("{json:#}\n"))?;
     write("results.md", &markdown(report, origin))?;
-    write("step.svg", chart_picture(&step_chart(report)).svg())?;
-    write("slope.svg", chart_picture(&slope_chart(report)).svg())
+    write("step.svg", &chart_picture(&step_chart(report)).svg())?;
+    write("slope.svg", &chart_picture(&slope_chart(report)).svg())
 }
 
 /// The results as a page.

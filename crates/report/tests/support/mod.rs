@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use enmm_report::{
-    Axis, BlockFrame, BoltFrame, BoltPlace, BoltState, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame,
-    MonitorPlace, Outline, Quantity, Structures, SupportFrame,
+    Axis, BlockFrame, BoltFrame, BoltPlace, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace,
+    Outline, Quantity, Structures, SupportFrame,
 };
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
@@ -147,8 +147,7 @@ pub struct Moment {
 
 /// Surface of the water (m).
 pub const SURFACE: [[f64; 2]; 2] = [[0.0, 4.0], [20.0, 9.0]];
-pub const BOLT: BoltFrame =
-    BoltFrame { state: BoltState::Yielded, displacement: [[0.5, -0.25], [0.125, -1.0]], force: 112_345.0 };
+pub const BOLT: BoltFrame = BoltFrame { condition: 2, displacement: [[0.5, -0.25], [0.125, -1.0]], force: 112_345.0 };
 
 pub const MONITOR: MonitorFrame = MonitorFrame { displacement: [0.25, -0.5], velocity: [1.5, 2.5] };
 

@@ -1,11 +1,11 @@
 //! Bolts, supports and water of a model as its film has them.
 
-use enmm_report::{BoltFrame, BoltPlace, BoltState, Structures, SupportFrame};
+use enmm_report::{BoltFrame, BoltPlace, Structures, SupportFrame};
 
 use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm_picture::structures::{BoltKind, BoltLine, SupportKind, bolts, supports, water_surface};
+use enmm_picture::structures::{BoltLine, SupportKind, bolts, supports, water_surface};
 
 /// What acts on the rock at one instant beside its joints.
 #[derive(Debug)]
@@ -34,12 +34,7 @@ impl Beside {
     /// With displacements (m) of both ends of each bolt.
     fn with(simulation: &Simulation, lines: &[BoltLine], ends: impl Iterator<Item = [Vector; 2]>) -> Self {
         let bolt = |(line, ends): (&BoltLine, [Vector; 2])| BoltFrame {
-            state: match line.kind {
-                BoltKind::Absent => BoltState::Absent,
-                BoltKind::Whole => BoltState::Whole,
-                BoltKind::Yielded => BoltState::Yielded,
-                BoltKind::Broken => BoltState::Broken,
-            },
+            condition: line.condition.number(),
             displacement: ends.map(|end| [end.x, end.y]),
             force: line.force,
         };

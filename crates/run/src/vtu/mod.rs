@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 use array::Array;
 use enmm::contact::ContactState;
 use enmm::geometry::Point;
-use enmm::model::{Simulation, Snapshot};
+use enmm::model::{BoltCondition, Simulation, Snapshot};
 use enmm_io::files::{at_path, write_atomic, write_atomic_by};
 use enmm_picture::joints::{JointPiece, Joints};
-use enmm_picture::structures::{self, BoltKind, BoltLine, SupportKind, SupportPoint, WetEdge};
+use enmm_picture::structures::{self, BoltLine, SupportKind, SupportPoint, WetEdge};
 
 /// Cell types of VTK.
 const VERTEX: u8 = 1;
@@ -110,18 +110,12 @@ pub fn write_joints_vtu(joints: &[JointPiece], laws: &[String], time: f64, path:
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn write_bolts_vtu(bolts: &[BoltLine], names: &[String], time: f64, path: &Path) -> io::Result<()> {
-    let code = |kind| match kind {
-        BoltKind::Absent => 0,
-        BoltKind::Whole => 1,
-        BoltKind::Yielded => 2,
-        BoltKind::Broken => 3,
-    };
     let cell_data = vec![
         Array::numbers("force", bolts.iter().map(|bolt| bolt.force)),
         Array::integers("bolt", bolts.iter().map(|bolt| bolt.bolt as usize)),
-        Array::bytes("state", bolts.iter().map(move |bolt| code(bolt.kind))),
+        Array::bytes("state", bolts.iter().map(|bolt| bolt.condition.number())),
     ];
-    let states = Array::names("state_names", &["absent", "whole", "yielded", "broken"]);
+    let states = Array::names("state_names", &BoltCondition::NAMES);
     let ends: Vec<Point> = bolts.iter().flat_map(|bolt| bolt.ends).collect();
     lines(time, vec![Array::names("bolt_names", names), states], &ends, Vec::new(), cell_data).write(path)
 }
