@@ -28,14 +28,13 @@ const FMU_STEPS: &str = "50";
 /// Settings of a build that takes a quarter of the time. They move no bit.
 const QUICK: [&str; 3] = ["profile.release.opt-level=1", "profile.release.debug=false", "profile.release.lto=\"off\""];
 /// Packages that take long to optimize, and do little or nothing in quick results.
-const COLD: [&str; 19] = [
+const COLD: [&str; 14] = [
     "clap_builder",
     "faer",
     "gemm-c32",
     "gemm-c64",
     "gemm-f32",
     "gemm-f64",
-    "harfrust",
     "libsqlite3-sys",
     "nano-gemm-c32",
     "nano-gemm-c64",
@@ -43,10 +42,6 @@ const COLD: [&str; 19] = [
     "nano-gemm-f64",
     "object",
     "private-gemm-x86",
-    "read-fonts",
-    "skrifa",
-    "svgtypes",
-    "usvg",
     "zip",
 ];
 
