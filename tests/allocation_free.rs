@@ -26,7 +26,7 @@ fn count(simulation: &mut Simulation, warm: usize) -> u64 {
 }
 
 #[test]
-fn full_steps_of_a_failing_slope_allocate_nothing() {
+fn long_steps_of_a_failing_slope_allocate_nothing() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
     let case = enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));

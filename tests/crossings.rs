@@ -177,7 +177,7 @@ fn a_joint_more_never_bears_more() {
 
 /// Half or twice any constant of contact: blocks slide over crossings and level tops, and steps hold them.
 #[test]
-fn full_no_constant_decides_what_holds() {
+fn long_no_constant_decides_what_holds() {
     let base = "[[0, -1], [6, -1], [6, 0]";
     for (name, rule) in varied_rules() {
         let angles = by_extent([&[135.0][..], &[60.0, 90.0, 135.0], &[60.0, 90.0, 135.0]]);

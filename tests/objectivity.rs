@@ -189,7 +189,7 @@ fn angles() -> &'static [f64] {
 }
 
 #[test]
-fn full_blocks_settle_alike_however_they_lie() {
+fn long_blocks_settle_alike_however_they_lie() {
     for &angle_deg in angles() {
         for (name, law) in [("glued", GLUED), ("rough", ROUGH)] {
             block(law, angle_deg).settles_alike(&format!("block, {name}"), FINE, 1e-6);
@@ -201,7 +201,7 @@ fn full_blocks_settle_alike_however_they_lie() {
 
 /// Friction keeps what the order of the sweeps left at the default tolerance.
 #[test]
-fn full_slopes_settle_alike_however_they_lie() {
+fn long_slopes_settle_alike_however_they_lie() {
     for &angle_deg in angles() {
         wall(ROUGH, angle_deg).settles_alike("wall, rough", COARSE, 1e-4);
         for (name, law) in [("glued", GLUED), ("rough", ROUGH)] {

@@ -29,7 +29,7 @@ fn prefix() -> &'static Path {
     PREFIX.get_or_init(|| {
         let [first, moved] = ["installed", "installed-and-moved"].map(empty);
         let mut install = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        install.args(["run", "--quiet", "--release", "--package", "xtask", "--", "install", "--prefix"]);
+        install.args(["run", "--quiet", "--package", "xtask", "--", "install", "--debug", "--prefix"]);
         succeed(install.arg(&first));
         std::fs::rename(&first, &moved).expect("a directory that can be moved");
         moved

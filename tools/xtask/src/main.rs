@@ -51,14 +51,15 @@ usage: cargo xtask TASK
   reference        writes docs/book/reference.md, the reference of all keys of a case
   book             builds the site of the documents by mdBook, which it installs in the target folder
   header           writes include/enmm.h and its layouts for Python
-  install --prefix DIR
+  install [--debug] --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
   windows [--test | --quick]
                    builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
                    folder; --test runs them under Wine and compares their bits with the golden table; --quick
                    does so with a build that is hardly optimized, as test does
-  aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
+  aarch64 [--test | --quick]
+                   the same for Linux on ARM by Debian's cross compiler, run by qemu
   ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes tools/bench/; options of enmm bench
                    such as --models all; with --peers builds other programs, times them turn by turn with
@@ -76,6 +77,7 @@ usage: cargo xtask TASK
 /// The profile by which a task builds.
 fn profile(words: &[&str]) -> Profile {
     match words {
+        ["install", "--debug", ..] => Profile::Tested,
         ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults", ..] => Profile::Tested,
         _ => Profile::Shipped,
     }
@@ -97,7 +99,9 @@ fn main() -> ExitCode {
         ["overhead"] => tasks::overhead(&repository).map(|()| ExitCode::SUCCESS),
         ["ratio"] => tasks::verification(&repository, "ratio").map(|()| ExitCode::SUCCESS),
         ["header"] => tasks::write_header(&repository).map(|()| ExitCode::SUCCESS),
-        ["install", "--prefix", prefix] => install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS),
+        ["install", "--prefix", prefix] | ["install", "--debug", "--prefix", prefix] => {
+            install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS)
+        }
         ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),

@@ -52,7 +52,7 @@ fn take_usual(repository: &Repository, steps: &mut Steps) -> bool {
         if !steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
             return false;
         }
-        steps.take("tests", || cargo_test(repository, &[], None));
+        steps.take("tests", || cargo_test(repository, None, None));
         steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
         steps.take("bits", || bits::quick(repository));
         steps.take("python", || python::test(repository, Share::Usual));
@@ -71,7 +71,7 @@ fn take_others(repository: &Repository, steps: &mut Steps) {
     });
     steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
     steps.take("other python", || python::test(repository, Share::Others));
-    steps.take("full tests", || cargo_test(repository, &["full_", "long_"], Some(("ENMM_FULL", "1"))));
+    steps.take("full tests", || cargo_test(repository, Some("long_"), Some(("ENMM_FULL", "1"))));
     steps.take("faults", || faults::rounds_of(repository, 1));
     steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
     steps.take("sanitizers", || sanitize::over_hosts(repository).map(|()| Counts::default()));
@@ -84,7 +84,7 @@ fn take_others(repository: &Repository, steps: &mut Steps) {
 /// Runs the long campaigns; it fails when one failed, or there is none.
 pub fn long(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    steps.take("long campaigns", || cargo_test(repository, &["long_"], Some(("ENMM_LONG", "1"))));
+    steps.take("long campaigns", || cargo_test(repository, Some("long_"), Some(("ENMM_LONG", "1"))));
     steps.close()
 }
 
@@ -121,10 +121,10 @@ fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository::run(fuzz.arg("--finds").arg(repository.target.join("fuzz")).args(words))
 }
 
-/// Runs the tests whose names contain one of `names`; all where none is given.
-fn cargo_test(repository: &Repository, names: &[&str], extent: Option<(&str, &str)>) -> Result<Counts, String> {
-    let mut test = repository.cargo(&["test", "--workspace", "--no-fail-fast", "--"]);
-    let (lines, good) = repository::run_and_listen(test.args(names).envs(extent))?;
+/// Runs the tests whose names contain `name`; all where none is given.
+fn cargo_test(repository: &Repository, name: Option<&str>, extent: Option<(&str, &str)>) -> Result<Counts, String> {
+    let mut test = repository.cargo(&["test", "--workspace", "--no-fail-fast"]);
+    let (lines, good) = repository::run_and_listen(test.args(name).envs(extent))?;
     let counts = counts::of_cargo(&lines);
     if !good && counts.failed == 0 {
         return Err("cargo test failed without a failed test: see above".to_owned());
