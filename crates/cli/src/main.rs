@@ -5,6 +5,7 @@ mod bench;
 mod bound;
 mod case;
 mod check;
+mod draw;
 mod fmu;
 mod fos;
 mod new;
@@ -62,6 +63,9 @@ enum Command {
     Fos(fos::Arguments),
     /// Finds the probability of failure of a case with random values from many samples.
     Sample(sample::Arguments),
+    /// Draws the samples that standard input describes; how the Python package calls the program.
+    #[command(hide = true)]
+    Draw,
     /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
     Bound(bound::Arguments),
     /// Shows a run in a browser while it goes on.
@@ -88,6 +92,7 @@ fn execute(command: Command) -> ExitCode {
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
         Command::Sample(arguments) => sample::sample(&arguments),
+        Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use enmm_case::key::Key;
-use enmm_case::{Case, Invalid, RandomCorrelation, RandomVariable, Sampling};
+use enmm_case::{Case, Ensemble, Invalid, RandomCorrelation, RandomVariable, Sampling};
 
 use crate::variable::{Distribution, Variable};
 use crate::{normal, philox};
@@ -51,23 +51,34 @@ impl Samples {
 /// # Errors
 /// No random value, bounds that leave hardly any of a distribution, or correlations that no variables can have at once.
 pub fn draw(case: &Case) -> Result<Samples, Invalid> {
-    if case.random.is_empty() {
+    draw_from(&case.random, &case.random_correlations, &case.ensemble)
+}
+
+/// The samples of these tables of a case.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_from(
+    rows: &[RandomVariable],
+    correlations: &[RandomCorrelation],
+    ensemble: &Ensemble,
+) -> Result<Samples, Invalid> {
+    if rows.is_empty() {
         let message = "the case has no random value; add `[[random]]` with `key`, `distribution` and its parameters";
         return Err(Invalid { key: "random".to_owned(), message: message.to_owned() });
     }
-    let rows = &case.random;
     let variables =
         rows.iter().enumerate().map(|(i, row)| Variable::of(row, i)).collect::<Result<Vec<Variable>, _>>()?;
-    let n = usize::try_from(case.ensemble.samples).unwrap_or(usize::MAX);
+    let n = usize::try_from(ensemble.samples).unwrap_or(usize::MAX);
     let mut columns: Vec<Column> = Vec::new();
     for (row, variable) in rows.iter().zip(&variables) {
         if let Variable::Continuous(distribution) = variable {
-            columns.push(Column::new(row, *distribution, case.ensemble.seed, n));
+            columns.push(Column::new(row, *distribution, ensemble.seed, n));
         }
     }
-    let stratified = case.ensemble.sampling == Sampling::LatinHypercube;
-    if !case.random_correlations.is_empty() {
-        let factor = cholesky(rows, &columns, &case.random_correlations)?;
+    let stratified = ensemble.sampling == Sampling::LatinHypercube;
+    if !correlations.is_empty() {
+        let factor = cholesky(rows, &columns, correlations)?;
         correlate(&mut columns, &factor, stratified, n);
     }
     if stratified {

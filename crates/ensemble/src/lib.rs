@@ -1,8 +1,8 @@
 //! Ensembles of a case: samples of its random values, the store of what was worked out of them, and what follows from
 //! all of them. What is worked out of a sample is up to the caller.
 //!
-//! Samples, keys and the store are those of the Python package `enmm.ensemble`, to the bit; `docs/ensembles.md`
-//! describes them for both.
+//! The Python package `enmm.ensemble` has its samples and keys from here, by `enmm draw`, and shares the store;
+//! `docs/ensembles.md` describes them for both.
 #![forbid(unsafe_code)]
 
 mod draw;
@@ -14,7 +14,7 @@ mod statistics;
 mod store;
 mod variable;
 
-pub use draw::{Samples, Value, draw, medians};
+pub use draw::{Samples, Value, draw, draw_from, medians};
 pub use driver::{Lost, work};
 pub use identity::{Identity, sample_key};
 pub use statistics::{Interval, beta, mean, quantile, spearman, wilson};

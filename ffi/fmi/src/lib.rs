@@ -1,5 +1,5 @@
-//! Common parts of the FMI 2 and FMI 3 exports: one table of variables, the resource inside an FMU, how an FMU is packed,
-//! and the safe instance behind the C entry points.
+//! Common parts of the FMI 2 and FMI 3 exports: one table of variables, the resource inside an FMU, how an FMU is
+//! packed, and the safe instance behind the C entry points.
 #![deny(unsafe_code)]
 
 mod description;

@@ -61,13 +61,17 @@ def case_file(case: CaseLike) -> Iterator[Path]:
         yield path
 
 
-def call(words: Sequence[object], *, show: bool = False) -> tuple[int, str, str]:
-    """Runs the program; returns its exit status, standard output and error. An interrupt is passed on to it."""
+def call(words: Sequence[object], *, show: bool = False, given: str | None = None) -> tuple[int, str, str]:
+    """Runs the program; returns its exit status, standard output and error. An interrupt is passed on to it.
+
+    `given` is its standard input.
+    """
     stream = None if show else subprocess.PIPE
     command = [str(program()), *map(str, words)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=stream, encoding="utf-8") as process:
+    source = subprocess.PIPE if given is not None else None
+    with subprocess.Popen(command, stdin=source, stdout=subprocess.PIPE, stderr=stream, encoding="utf-8") as process:
         try:
-            out, error = process.communicate()
+            out, error = process.communicate(given)
         except KeyboardInterrupt:
             if sys.platform != "win32":
                 process.send_signal(signal.SIGINT)  # The program then writes its checkpoint.

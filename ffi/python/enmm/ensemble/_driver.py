@@ -1,8 +1,6 @@
 """The driver: gives samples to workers, stores every answer at once, and returns the table of all."""
 
-import hashlib
 import os
-import struct
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import (
@@ -22,7 +20,7 @@ from .._errors import invalid
 from .._library import load_library
 from .._program import CaseLike
 from ._outputs import NAMES, Answer, Output, evaluate
-from ._sampling import draw
+from ._sampling import Identity, draw_with_keys
 from ._store import Row, Store
 from ._summary import Ensemble
 from ._variables import Distribution, Seeds, Variable
@@ -81,10 +79,9 @@ def run(
         raise invalid(
             "output: is a function without a name of its own, by which a store could find it; define one by def"
         )
-    samples = draw(variables, n, seed, method, correlations or {})
     version = load_library().version
-    digest = base.digest
-    keys = [_key(digest, values, output, options or {}, version) for values in samples]
+    identity = Identity(base.digest, _name(output), {name: float(value) for name, value in (options or {}).items()})
+    samples, keys = draw_with_keys(variables, n, seed, method, correlations or {}, identity)
     with ExitStack() as stack:
         kept = stack.enter_context(Store(store))
         rows = kept.find(keys)
@@ -125,19 +122,6 @@ def _check(case: Case, variables: Mapping[str, Variable], output: Output) -> Non
         _ = case.with_values({key: variable.first if isinstance(variable, Seeds) else variable.value(0.5)})
     if isinstance(output, str) and output not in NAMES:
         raise invalid(f"output: is {output!r}, must be one of {', '.join(NAMES)}, or a function of a case")
-
-
-def _key(digest: str, values: dict[str, Any], output: Output, options: Mapping[str, Any], version: str) -> str:
-    """Hash of all that a sample depends on; the program has the same (`crates/ensemble/src/identity.rs`)."""
-    lines = ["enmm sample 1", f"case {digest}", f"version {version}", f"output {_name(output)}"]
-    lines += [f"option {name} {_bits(float(value))}" for name, value in sorted(options.items())]
-    lines += [f"value {key} {_bits(value)}" for key, value in sorted(values.items())]
-    return hashlib.sha256("".join(f"{line}\n" for line in lines).encode()).hexdigest()
-
-
-def _bits(value: float) -> str:
-    """The bits of a number in hexadecimal digits; a seed in decimal digits."""
-    return str(value) if isinstance(value, int) else struct.pack(">d", value).hex()
 
 
 def _name(output: Output) -> str:

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 from .._case import Case
 from .._errors import invalid
 from .._program import CaseLike
-from ._normal import probability
 
 _STANDARD = NormalDist()
 OF = ("value", "tangent", "log10")
@@ -98,7 +97,7 @@ class Normal(Distribution):
         self._need(self.sd > 0, f"sd is {self.sd}, must be above 0; write a fixed value into the case")
 
     def cdf(self, x: float) -> float:
-        return probability((x - self.mean) / self.sd)
+        return _STANDARD.cdf((x - self.mean) / self.sd)
 
     def ppf(self, p: float) -> float:
         return self.mean + self.sd * _STANDARD.inv_cdf(p)
@@ -123,7 +122,7 @@ class LogNormal(Distribution):
 
     def cdf(self, x: float) -> float:
         mean, sd = self._log()
-        return 0.0 if x <= 0 else probability((math.log(x) - mean) / sd)
+        return 0.0 if x <= 0 else _STANDARD.cdf((math.log(x) - mean) / sd)
 
     def ppf(self, p: float) -> float:
         mean, sd = self._log()

@@ -1,0 +1,51 @@
+//! `enmm draw`: the samples of an ensemble, for hosts that work them out themselves, such as the Python package.
+
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+
+use enmm::engine_version;
+use enmm::model::case::{Ensemble, RandomCorrelation, RandomVariable};
+use enmm_ensemble::{Identity, Value, draw_from, sample_key};
+use serde_json::{Value as Json, from_value, json};
+
+use crate::{BAD_INPUT, fail, print_line};
+
+/// Reads a request from standard input; prints the samples, and the key of each in a store.
+pub fn draw() -> ExitCode {
+    match std::io::read_to_string(std::io::stdin()).map_err(|error| error.to_string()).and_then(|text| answer(&text)) {
+        Ok(answer) => {
+            print_line(&answer);
+            ExitCode::SUCCESS
+        }
+        Err(message) => fail(&message, BAD_INPUT),
+    }
+}
+
+/// The answer to a request: an object with the tables `random`, `random_correlation` and `ensemble` of a case, its
+/// fingerprint `case`, and `output` and `options`, on which stored samples depend as well.
+fn answer(text: &str) -> Result<String, String> {
+    let [random, correlations, ensemble, case, output, options] =
+        parts(text, ["random", "random_correlation", "ensemble", "case", "output", "options"])?;
+    let wrong = |error: serde_json::Error| error.to_string();
+    let random: Vec<RandomVariable> = from_value(random).map_err(wrong)?;
+    let correlations: Vec<RandomCorrelation> = from_value(correlations).map_err(wrong)?;
+    let ensemble: Ensemble = from_value(ensemble).map_err(wrong)?;
+    let options: BTreeMap<String, f64> = from_value(options).map_err(wrong)?;
+    let [case, output]: [String; 2] = from_value(json!([case, output])).map_err(wrong)?;
+    let samples = draw_from(&random, &correlations, &ensemble)
+        .map_err(|invalid| format!("{}: {}", invalid.key, invalid.message))?;
+    let identity = Identity { case, version: engine_version().to_owned(), output, options };
+    let value = |value: &Value| match *value {
+        Value::Number(number) => json!(number),
+        Value::Seed(seed) => json!(seed),
+    };
+    let rows: Vec<Vec<Json>> = samples.rows.iter().map(|row| row.iter().map(value).collect()).collect();
+    let keys: Vec<_> = samples.rows.iter().map(|row| sample_key(&identity, &samples.keys, row)).collect();
+    Ok(json!({ "samples": rows, "keys": keys }).to_string())
+}
+
+/// The members of these names of a JSON object.
+fn parts<const N: usize>(text: &str, names: [&str; N]) -> Result<[Json; N], String> {
+    let mut object: Json = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    Ok(names.map(|name| object.get_mut(name).map(Json::take).unwrap_or_default()))
+}
