@@ -239,7 +239,7 @@ fn fingerprint_changes_with_any_value() {
 /// Found by `cargo xtask fuzz --part cases --seed 7 --from 5850`: the kinetic energy of the first step was no number.
 #[test]
 fn rock_too_light_for_numbers_is_refused_and_the_lightest_and_softest_moves() {
-    let loaded = load_case(Path::new("examples/cases/block_on_incline.toml")).unwrap();
+    let loaded = load_case(&crate::common::root().join("examples/cases/block_on_incline.toml")).unwrap();
     let with = |density: f64, young: f64| {
         let mut case = loaded.case.clone();
         case.rocks.values_mut().for_each(|rock| (rock.density, rock.young) = (density, young));

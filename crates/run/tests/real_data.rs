@@ -4,6 +4,8 @@
 //! The data stay outside the repository. Without them the tests are counted as ignored, which a test function cannot do
 //! for itself; so this file has a harness of its own.
 
+#[path = "../../../tests/common/extent.rs"]
+mod extent;
 #[path = "../../../tests/common/shared.rs"]
 mod shared;
 
@@ -11,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use enmm::model::Simulation;
 use enmm_run::check::Check;
+use extent::by_extent;
 use libtest_mimic::{Arguments, Trial};
 use serde_json::Value;
 
@@ -144,12 +147,12 @@ fn settles(data: &Path, file: &str, size: f64, held_below: f64, friction: f64, s
     assert!(counters.penetration_max < 0.01 * size, "penetration {}", counters.penetration_max);
 }
 
-fn kb11_settles_under_gravity(data: &Path) {
-    settles(data, "traces/kb11.json", 1.0, -16.0, 40.0, 3000);
+fn long_kb11_settles_under_gravity(data: &Path) {
+    settles(data, "traces/kb11.json", 1.0, -16.0, 40.0, by_extent([150, 3000, 3000]));
 }
 
-fn tyrol_gar_slope_medium_settles_under_gravity(data: &Path) {
-    settles(data, "slopes/tyrol_gar_slope_medium.json", 8.0, -25.0, 45.0, 1300);
+fn long_tyrol_gar_slope_medium_settles_under_gravity(data: &Path) {
+    settles(data, "slopes/tyrol_gar_slope_medium.json", 8.0, -25.0, 45.0, by_extent([50, 1300, 1300]));
 }
 
 fn main() {
@@ -166,8 +169,8 @@ fn main() {
         trial("geometry_is_read_whole", geometry_is_read_whole),
         trial("cover_cases_are_counted_as_expected", cover_cases_are_counted_as_expected),
         trial("traces_and_slopes_give_the_expected_blocks", traces_and_slopes_give_the_blocks_on_which_noders_agree),
-        trial("kb11_settles_under_gravity", kb11_settles_under_gravity),
-        trial("tyrol_gar_slope_medium_settles_under_gravity", tyrol_gar_slope_medium_settles_under_gravity),
+        trial("long_kb11_settles_under_gravity", long_kb11_settles_under_gravity),
+        trial("long_tyrol_gar_slope_medium_settles_under_gravity", long_tyrol_gar_slope_medium_settles_under_gravity),
     ];
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }

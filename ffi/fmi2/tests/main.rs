@@ -1,4 +1,5 @@
-//! Tests of the entry points of FMI 2.
+//! Tests of the entry points of FMI 2: exports, and calls that each state allows. `python_tests/test_fmu_*.py` test how
+//! instances behave, for both versions at once.
 
 mod common;
 mod fmu;

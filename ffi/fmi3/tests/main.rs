@@ -1,8 +1,7 @@
-//! Tests of the entry points of FMI 3.
+//! Tests of the entry points of FMI 3: exports, calls that each state allows, calls from callbacks and other threads.
+//! `python_tests/test_fmu_*.py` test how instances behave, for both versions at once.
 
 mod common;
 mod instances;
 mod meddling;
-mod saved;
-mod steps;
 mod symbols;
