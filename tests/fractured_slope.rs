@@ -42,7 +42,7 @@ fn rests_and_then_fails(change: f64) {
     let overlaps = Audit::new(&simulation);
     let every = by_extent([25, 25, 5]);
     // The quick form follows the blocks until they move, and no further.
-    let (steps, way) = by_extent([(1_500, 1e-3), (u64::MAX, 2.0), (u64::MAX, 2.0)]);
+    let (steps, way) = by_extent([(400, 1e-5), (u64::MAX, 2.0), (u64::MAX, 2.0)]);
     let (mut worst, mut k, mut heat) = ([0.0; 3], 0u64, rest.ledger.friction);
     while k < steps && !simulation.stage_is_over(None) {
         let audit = k.is_multiple_of(every);

@@ -1,5 +1,7 @@
 //! Tests of what a run writes.
 
+#[path = "../../../tests/common/extent.rs"]
+mod extent;
 mod history;
 mod issue_a_slide_before_the_trials_passed_as_rest;
 mod issue_history_did_not_sum_to_its_residual;

@@ -29,15 +29,17 @@ fn solve(id: &str, quick: bool, changes: &[(&str, f64)]) -> Vec<String> {
     failing
 }
 
+/// Solves a problem with sets of values; its quick form takes two of them.
 fn assert_all(id: &str, sets: &[&[(&str, f64)]]) {
-    let failing: Vec<String> = sets.iter().flat_map(|set| solve(id, true, set)).collect();
+    let taken = sets.iter().take(by_extent([2, usize::MAX, usize::MAX]));
+    let failing: Vec<String> = taken.flat_map(|set| solve(id, true, set)).collect();
     assert!(failing.is_empty(), "{failing:#?}");
 }
 
 /// A block as high as long slides upright up to 45° of friction, and tips over beyond: C1 offers no such friction, and
 /// C2 no block that topples.
 #[test]
-fn c1_and_c2_offer_no_block_that_topples() {
+fn long_c1_and_c2_offer_no_block_that_topples() {
     assert_all("C1", &[&[("phi_brake_deg", 40.0)], &[("a_deg", 42.0), ("phi_deg", 40.0), ("phi_rest_deg", 60.0)]]);
     let problem = |id: &str| problems::ALL.iter().find(|p| p.id == id).expect("the problem is registered");
     assert!(Values::of(problem("C1")).set(problem("C1"), "phi_brake_deg", 45.0).is_err());
@@ -49,7 +51,7 @@ fn c1_and_c2_offer_no_block_that_topples() {
 }
 
 #[test]
-fn a1_meshes_and_turns() {
+fn long_a1_meshes_and_turns() {
     assert_all(
         "A1",
         &[
@@ -81,7 +83,7 @@ fn a2_gravity_and_damping() {
 
 /// A block that is no convex polygon, one of about a mesh size, and one with a joint that ends inside it.
 #[test]
-fn a3_shapes() {
+fn long_a3_shapes() {
     assert_all(
         "A3",
         &[
@@ -93,7 +95,7 @@ fn a3_shapes() {
 }
 
 #[test]
-fn a4_friction_damping_and_steps() {
+fn long_a4_friction_damping_and_steps() {
     assert_all(
         "A4",
         &[
@@ -112,14 +114,14 @@ fn a4_without_damping() {
 }
 
 #[test]
-fn b1_and_b3_rocks() {
+fn long_b1_and_b3_rocks() {
     assert_all("B1", &[&[("poisson", 0.1)]]);
     assert_all("B3", &[&[("young", 5e9), ("poisson", 0.35), ("gamma", 22e3)]]);
 }
 
 /// Friction just below the dip, steep planes, a level one, and rock so soft that a block takes up shear for long.
 #[test]
-fn c1_planes_and_rocks() {
+fn long_c1_planes_and_rocks() {
     assert_all(
         "C1",
         &[
@@ -133,7 +135,7 @@ fn c1_planes_and_rocks() {
 }
 
 #[test]
-fn c2_blocks() {
+fn long_c2_blocks() {
     assert_all(
         "C2",
         &[
@@ -144,7 +146,7 @@ fn c2_blocks() {
 }
 
 #[test]
-fn c3_two_blocks() {
+fn long_c3_two_blocks() {
     assert_all(
         "C3",
         &[
@@ -178,12 +180,12 @@ fn c9_wedge() {
 }
 
 #[test]
-fn c12_bolts() {
+fn long_c12_bolts() {
     assert_all("C12", &[&[], &[("a_deg", 35.0), ("phi_deg", 20.0), ("weight", 750.0), ("spacing", 2.0)]]);
 }
 
 #[test]
-fn d3_direct_shear() {
+fn long_d3_direct_shear() {
     assert_all(
         "D3",
         &[
@@ -203,7 +205,7 @@ fn d3_direct_shear() {
 }
 
 #[test]
-fn d5_drop_of_less_on_a_softer_spring() {
+fn long_d5_drop_of_less_on_a_softer_spring() {
     assert_all("D5", &[&[("m", 2000.0), ("k", 4e8), ("H", 0.2)]]);
 }
 
@@ -216,7 +218,7 @@ fn long_e2_a_wall_rests_for_a_minute() {
 }
 
 #[test]
-fn d6_roof_wedge() {
+fn long_d6_roof_wedge() {
     assert_all(
         "D6",
         &[

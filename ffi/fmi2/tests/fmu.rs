@@ -1,11 +1,8 @@
-//! FMI 2: the bits of the façade, legal calls, refused values, discarded steps, saved states, all spellings of
-//! resources.
+//! FMI 2: the calls that each state allows, and a warning of the log.
 
 use std::ffi::c_void;
-use std::ptr::{null, null_mut};
 
-use crate::common::{ERROR, Fmu, OK, write_resources};
-use enmm::geometry::Vector;
+use crate::common::{ERROR, Fmu, OK};
 use enmm_fmi2::*;
 
 #[test]

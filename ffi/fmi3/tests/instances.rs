@@ -1,17 +1,9 @@
-//! FMI 3 instances: what is refused at birth, which calls are legal when, what setters refuse, what the log says.
+//! FMI 3: the calls that each state allows, getters that fail, and warnings of the log.
 
 use std::ffi::c_void;
-use std::ptr::{null, null_mut};
 
-use crate::common::{ERROR, Fmu, OK, Options, write_resources};
+use crate::common::{ERROR, Fmu, OK, Options};
 use enmm_fmi3::*;
-
-fn refusal(fmu: &Fmu, options: &Options) -> String {
-    let lines = fmu.instantiate(options).err().expect("refused");
-    assert_eq!(lines.len(), 1, "{lines:?}");
-    assert_eq!((lines[0].0, lines[0].1.as_str()), (ERROR, "logStatusError"));
-    lines[0].2.clone()
-}
 
 /// Every call that takes a value of an instance, by name.
 type Calls = Vec<(&'static str, Box<dyn Fn(*mut c_void) -> Status>)>;

@@ -1,22 +1,18 @@
 //! An importer of FMI 2 that calls the C functions.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::ffi::{CStr, CString, c_void};
 use std::path::Path;
-use std::ptr::null_mut;
 use std::sync::Mutex;
 
-use enmm::cosimulation::Cosimulation;
 use enmm_fmi::table::{Table, Version};
 use enmm_fmi2::*;
-use enmm_io::{LoadedCase, load_case, parse_case};
+use enmm_io::{LoadedCase, parse_case};
 
 pub const OK: Status = Status::Ok;
 pub const ERROR: Status = Status::Error;
 
-/// Case, resources and table of an FMU.
+/// Resources and table of an FMU.
 pub struct Fmu {
-    pub loaded: LoadedCase,
     pub folder: tempfile::TempDir,
     pub table: Table,
 }
@@ -28,12 +24,7 @@ impl Fmu {
         write_resources(&loaded, &resources);
         let blocks = loaded.cosimulation().unwrap().block_states().len();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, Version::Two);
-        Self { loaded, folder, table }
-    }
-
-    pub fn incline() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        Self::of(load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap())
+        Self { folder, table }
     }
 
     pub fn boxed() -> Self {
@@ -48,10 +39,6 @@ impl Fmu {
         Self::of(parse_case(&text, "soft.toml", Path::new(".")).unwrap())
     }
 
-    pub fn model(&self) -> Cosimulation {
-        self.loaded.cosimulation().unwrap()
-    }
-
     pub fn reference(&self, name: &str) -> u32 {
         let found = self.table.variables.iter().find(|v| v.name == name);
         found.unwrap_or_else(|| panic!("no variable {name}")).reference
@@ -63,12 +50,6 @@ impl Fmu {
 
     pub fn instance(&self) -> Instance<'_> {
         self.instantiate(&self.table.token, &self.uri(), 1, false).unwrap()
-    }
-
-    pub fn started(&self) -> Instance<'_> {
-        let instance = self.instance();
-        instance.start();
-        instance
     }
 
     pub fn instantiate(&self, token: &str, uri: &str, kind: i32, logging: bool) -> Result<Instance<'_>, Vec<Line>> {
@@ -145,62 +126,11 @@ impl Instance<'_> {
         self.log.lines.lock().unwrap().clone()
     }
 
-    pub fn last_line(&self) -> String {
-        self.lines().last().map(|line| line.2.clone()).unwrap_or_default()
-    }
-
-    pub fn get(&self, name: &str) -> f64 {
-        let mut value = f64::NAN;
-        let status = unsafe { fmi2GetReal(self.component, &self.fmu.reference(name), 1, &mut value) };
-        assert_eq!(status, OK, "{name}: {}", self.last_line());
-        value
-    }
-
-    /// All outputs of type Real.
-    pub fn outputs(&self) -> Vec<f64> {
-        use enmm_fmi::table::{Causality, Type};
-        let variables = self.fmu.table.variables.iter();
-        let wanted = variables.filter(|v| v.causality == Causality::Output && v.kind == Type::Real);
-        let references: Vec<u32> = wanted.map(|v| v.reference).collect();
-        let mut values = vec![f64::NAN; references.len()];
-        let (n, out) = (references.len(), values.as_mut_ptr());
-        assert_eq!(unsafe { fmi2GetReal(self.component, references.as_ptr(), n, out) }, OK);
-        values
-    }
-
     pub fn set(&self, name: &str, value: f64) -> Status {
         unsafe { fmi2SetReal(self.component, &self.fmu.reference(name), 1, &value) }
     }
 
     pub fn step(&self, t: f64, h: f64) -> Status {
         fmi2DoStep(self.component, t, h, 1)
-    }
-
-    pub fn run(&self, mut t: f64, h: f64, end: f64) {
-        while t < end - 0.5 * h {
-            assert_eq!(self.step(t, h), OK, "{}", self.last_line());
-            t += h;
-        }
-    }
-
-    pub fn save(&self) -> *mut c_void {
-        let mut state = null_mut();
-        assert_eq!(unsafe { fmi2GetFMUstate(self.component, &mut state) }, OK);
-        state
-    }
-
-    pub fn bytes(&self, state: *mut c_void) -> Vec<i8> {
-        let mut size = 0;
-        assert_eq!(unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) }, OK);
-        let mut bytes = vec![0_i8; size];
-        assert_eq!(unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr().cast(), size) }, OK);
-        bytes
-    }
-
-    pub fn unpack(&self, bytes: &[i8]) -> (Status, *mut c_void) {
-        let mut state = null_mut();
-        let (n, start) = (bytes.len(), bytes.as_ptr().cast());
-        let status = unsafe { fmi2DeSerializeFMUstate(self.component, start, n, &mut state) };
-        (status, state)
     }
 }

@@ -1,22 +1,19 @@
 //! An importer of FMI 3 that calls the C functions.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::ffi::{CStr, CString, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::null_mut;
 use std::sync::Mutex;
 
-use enmm::cosimulation::Cosimulation;
 use enmm_fmi::table::{Table, Version};
 use enmm_fmi3::*;
-use enmm_io::{LoadedCase, load_case, parse_case};
+use enmm_io::{LoadedCase, parse_case};
 
 pub const OK: Status = Status::Ok;
 pub const ERROR: Status = Status::Error;
 
-/// Case, resources and table of an FMU.
+/// Resources and table of an FMU.
 pub struct Fmu {
-    pub loaded: LoadedCase,
     pub folder: tempfile::TempDir,
     pub table: Table,
 }
@@ -27,12 +24,7 @@ impl Fmu {
         write_resources(&loaded, folder.path());
         let blocks = loaded.cosimulation().unwrap().block_states().len();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, Version::Three);
-        Self { loaded, folder, table }
-    }
-
-    pub fn incline() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        Self::of(load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap())
+        Self { folder, table }
     }
 
     pub fn boxed() -> Self {
@@ -45,10 +37,6 @@ impl Fmu {
         let text = text.replace("duration = 1.0", "duration = 5.0").replace("duration = 0.5", "duration = 50.0");
         let text = text.replace("communication_step = 0.01", "");
         Self::of(parse_case(&text, "soft.toml", Path::new(".")).unwrap())
-    }
-
-    pub fn model(&self) -> Cosimulation {
-        self.loaded.cosimulation().unwrap()
     }
 
     pub fn reference(&self, name: &str) -> u32 {
@@ -220,12 +208,6 @@ impl Instance<'_> {
         unsafe { fmi3SetFloat64(self.pointer, &self.fmu.reference(name), 1, values.as_ptr(), values.len()) }
     }
 
-    pub fn integer(&self, name: &str) -> i32 {
-        let mut value = 0;
-        assert_eq!(unsafe { fmi3GetInt32(self.pointer, &self.fmu.reference(name), 1, &mut value, 1) }, OK);
-        value
-    }
-
     pub fn snapshot(&self) -> Vec<u8> {
         let (mut size, mut bytes) = (0, std::ptr::null());
         let reference = self.fmu.reference("snapshot");
@@ -242,42 +224,10 @@ impl Instance<'_> {
         (status, early, last)
     }
 
-    /// Steps of `h` from 0 to `end`.
-    pub fn run(&self, h: f64, end: f64) {
-        self.run_from(0.0, h, end);
-    }
-
-    pub fn run_from(&self, mut t: f64, h: f64, end: f64) {
-        while t < end - 0.5 * h {
-            let (status, early, last) = self.step(t, h);
-            assert_eq!((status, early), (OK, false), "{}", self.last_line());
-            assert_eq!(last, t + h);
-            t += h;
-        }
-    }
-
     pub fn save(&self) -> *mut c_void {
         let mut state = null_mut();
         assert_eq!(unsafe { fmi3GetFMUState(self.pointer, &mut state) }, OK);
         assert!(!state.is_null());
         state
-    }
-
-    pub fn restore(&self, state: *mut c_void) -> Status {
-        fmi3SetFMUState(self.pointer, state)
-    }
-
-    pub fn bytes(&self, state: *mut c_void) -> Vec<u8> {
-        let mut size = 0;
-        assert_eq!(unsafe { fmi3SerializedFMUStateSize(self.pointer, state, &mut size) }, OK);
-        let mut bytes = vec![0; size];
-        assert_eq!(unsafe { fmi3SerializeFMUState(self.pointer, state, bytes.as_mut_ptr(), size) }, OK);
-        bytes
-    }
-
-    pub fn unpack(&self, bytes: &[u8]) -> (Status, *mut c_void) {
-        let mut state = null_mut();
-        let status = unsafe { fmi3DeserializeFMUState(self.pointer, bytes.as_ptr(), bytes.len(), &mut state) };
-        (status, state)
     }
 }
