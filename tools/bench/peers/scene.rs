@@ -1,4 +1,4 @@
-//! Description of a slope by `enmm bench --peers` for a program, and its answer.
+//! Description of a slope by `cargo xtask bench --peers` for a program, and its answer.
 
 use std::error::Error;
 use std::fs;

@@ -1,4 +1,4 @@
-"""Element updates of a Numba kernel, which `enmm bench --peers` times beside those of enmm on one thread.
+"""Element updates of a Numba kernel, which `cargo xtask bench --peers` times beside those of enmm on one thread.
 
     VENV/bin/pip install -r tools/bench/peers/numba/requirements.txt
     VENV/bin/python tools/bench/peers/numba/elements.py 10000
