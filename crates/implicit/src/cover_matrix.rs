@@ -97,7 +97,7 @@ impl CoverMatrix {
         self.symbolic = None;
     }
 
-    /// Slot of the block of a pair of covers, row not before column; [`UNCOUPLED`] when the pattern lacks it.
+    /// Slot of the block of a pair of covers, row not before column; `UNCOUPLED` when the pattern lacks it.
     pub fn slot(&self, row: CoverId, column: CoverId) -> u32 {
         let column = column.index();
         let rows = &self.block_row[self.block_start[column] as usize..self.block_start[column + 1] as usize];

@@ -58,7 +58,7 @@ pub fn write_schema(repository: &Repository) -> Result<(), String> {
 /// When the program does not build or run.
 pub fn write_benchmark(repository: &Repository, options: &[&str]) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli", "--package", "enmm-peers"])?;
-    let beside_others = options.contains(&"--peers");
+    let beside_others = options.iter().any(|option| option.starts_with("--peers"));
     let mut bench = repository.command(repository.program(if beside_others { "enmm-peers" } else { "enmm" }));
     let threads: &[&str] = if options.contains(&"--threads") { &[] } else { &["--threads", "1"] };
     bench.args(if beside_others { vec![] } else { [&["bench"], threads].concat() });

@@ -43,6 +43,10 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
     for name in platform.binaries() {
         supply::no_build_paths(&shipped.join(name), &repository.build_folders())?;
     }
+    let size = size_of(&wheel)?;
+    if size > SIZE_MAX {
+        return Err(format!("{}: has {size} bytes, must have at most {SIZE_MAX}", wheel.display()));
+    }
     Ok(wheel)
 }
 
@@ -68,12 +72,12 @@ pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, Str
     let wheel =
         entries.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|end| end == "whl"));
     let wheel = wheel.ok_or_else(|| format!("{}: pip left no wheel", wheels.display()))?;
-    let size = wheel.metadata().map_err(|error| format!("{}: {error}", wheel.display()))?.len();
-    if size > SIZE_MAX {
-        return Err(format!("{}: has {size} bytes, must have at most {SIZE_MAX}", wheel.display()));
-    }
-    println!("wrote {} ({:.1} MB)", wheel.display(), size as f64 / 1e6);
+    println!("wrote {} ({:.1} MB)", wheel.display(), size_of(&wheel)? as f64 / 1e6);
     Ok(wheel)
+}
+
+fn size_of(file: &Path) -> Result<u64, String> {
+    file.metadata().map(|data| data.len()).map_err(|error| format!("{}: {error}", file.display()))
 }
 
 /// Writes the licences of all crates in the binaries, and the list of these crates, beside them.
