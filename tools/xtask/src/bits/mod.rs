@@ -6,6 +6,7 @@ mod platform;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::Instant;
 
 use crate::counts::Counts;
@@ -132,20 +133,23 @@ fn own<'a>(repository: &'a Repository, program: &'a Path, folder: PathBuf, emula
     Maker { repository, platform: &HERE, emulator, host: None, program, writer: program, folder }
 }
 
+/// Two items at a time: most of an item keeps one processor busy.
 fn beside_golden<'a>(golden: &Golden, maker: &Maker, items: impl Iterator<Item = &'a Item>) -> Result<Counts, String> {
-    let mut counts = Counts::default();
-    for item in items {
-        let start = Instant::now();
-        let found = golden::hashes(&maker.make(item)?);
-        maker.forget(item)?;
-        let seconds = start.elapsed().as_secs_f64();
-        let problems = golden.problems(item.name, &found);
-        let differ = if problems.is_empty() { "as they were" } else { "OTHER BITS" };
-        println!("{:<24} {:>2} results {seconds:>6.1} s  {differ}", item.name, found.len());
-        problems.iter().for_each(|problem| println!("  {problem}"));
-        counts.failed += problems.len() as u64;
-        counts.passed += (found.len() as u64).saturating_sub(problems.len() as u64);
-    }
+    let items = Mutex::new(items.collect::<Vec<_>>().into_iter());
+    let next = || items.lock().ok().and_then(|mut items| items.next());
+    let work = || {
+        let mut counts = Counts::default();
+        while let Some(item) = next() {
+            counts += item_beside_golden(golden, maker, item)?;
+        }
+        Ok(counts)
+    };
+    let [first, second]: [Result<Counts, String>; 2] = std::thread::scope(|scope| {
+        let other = scope.spawn(work);
+        [work(), other.join().unwrap_or_else(|_| Err("a comparison panicked".to_owned()))]
+    });
+    let mut counts = first?;
+    counts += second?;
     if counts.failed > 0 {
         println!(
             "results have changed: `cargo xtask bits OLD NEW` names the first difference between two builds; where it \
@@ -153,6 +157,20 @@ fn beside_golden<'a>(golden: &Golden, maker: &Maker, items: impl Iterator<Item =
         );
     }
     Ok(counts)
+}
+
+fn item_beside_golden(golden: &Golden, maker: &Maker, item: &Item) -> Result<Counts, String> {
+    let start = Instant::now();
+    let found = golden::hashes(&maker.make(item)?);
+    maker.forget(item)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let problems = golden.problems(item.name, &found);
+    let differ = if problems.is_empty() { "as they were" } else { "OTHER BITS" };
+    let mut lines = format!("{:<24} {:>2} results {seconds:>6.1} s  {differ}", item.name, found.len());
+    problems.iter().for_each(|problem| lines += &format!("\n  {problem}"));
+    println!("{lines}");
+    let failed = problems.len() as u64;
+    Ok(Counts { passed: (found.len() as u64).saturating_sub(failed), failed, ..Counts::default() })
 }
 
 /// Renews the golden table.
