@@ -17,10 +17,10 @@ joint_law = "joint"
 size = 0.3
 angle_deg = 7
 [[joint_set]]
-dip_deg = 40
+angle_deg = 40
 spacing = 1.7
 [[joint_set]]
-dip_deg = 115
+angle_deg = 115
 spacing = 2.1
 [rock.any]
 density = 2600

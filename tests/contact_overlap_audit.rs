@@ -12,8 +12,8 @@ fn slope() -> String {
         "title = \"small slope\"\n[domain]\noutline = [[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], \
          [24.0, 20.0], [14.0, 5.0], \
          [0.0, 5.0]]\n[mesh]\nsize = {SIZE}\nangle_deg = 7.0\n[[joint]]\npoints = [[12.0, 4.0], [39.0, 21.0]]\n\
-         [[joint_set]]\ndip_deg = 36.0\ndip_sd_deg = 1.5\nspacing = 1.5\nspacing_sd = 0.3\nseed = 11\n\
-         region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n[[joint_set]]\ndip_deg = 118.0\ndip_sd_deg = 3.0\n\
+         [[joint_set]]\nangle_deg = 36.0\ndip_sd_deg = 1.5\nspacing = 1.5\nspacing_sd = 0.3\nseed = 11\n\
+         region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n[[joint_set]]\nangle_deg = 118.0\ndip_sd_deg = 3.0\n\
          spacing = 1.5\nspacing_sd = 0.3\nseed = 12\nregion = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n\
          [joint_law.joint]\nfriction_deg = 45.0\n[[fix]]\nedge = [[0.0, 0.0], [40.0, 0.0]]\n{}\
          [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 6.0\n{}\

@@ -23,13 +23,13 @@ angle_deg = 7.0
 points = [[15, 8], [62, 37]]
 law = "master"
 [[joint_set]]
-dip_deg = 33.0
+angle_deg = 33.0
 spacing = 6.1
 spacing_sd = 0.5
 seed = 11
 region = [[15, 9], [33, 41], [58, 41]]
 [[joint_set]]
-dip_deg = 118.0
+angle_deg = 118.0
 spacing = 6.3
 spacing_sd = 0.6
 seed = 12

@@ -149,7 +149,7 @@ fn slope(seed: u64) -> String {
     let spacings = [1.2 + 0.05 * (seed % 5) as f64, 1.1 + 0.07 * (seed % 4) as f64];
     let set = |k: usize| {
         format!(
-            "[[joint_set]]\ndip_deg = {}\ndip_sd_deg = {}\nspacing = {}\nspacing_sd = 0.3\nseed = {}\n\
+            "[[joint_set]]\nangle_deg = {}\ndip_sd_deg = {}\nspacing = {}\nspacing_sd = 0.3\nseed = {}\n\
              region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n",
             dips[k],
             [1.5, 3.0][k],

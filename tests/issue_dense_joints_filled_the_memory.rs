@@ -41,7 +41,7 @@ fn refused(text: &str, parts: &[&str]) {
 #[test]
 fn a_joint_set_of_a_tenth_of_a_millimetre_is_refused_before_it_is_made() {
     let clock = Instant::now();
-    let set = |dip: f64| format!("[[joint_set]]\ndip_deg = {dip}\nspacing = 1e-4\n");
+    let set = |dip: f64| format!("[[joint_set]]\nangle_deg = {dip}\nspacing = 1e-4\n");
     refused(&case(&set(30.0), 8 << 30), &["joint_set[0].spacing: 1e-4 m", "raise the spacing"]);
     let many: String = (0..1700).map(|k| set(0.1 * f64::from(k))).collect();
     refused(&case(&many, 8 << 30), &["joint_set[", "spacing"]);

@@ -25,6 +25,8 @@ fn each_slip_is_told_with_its_key_value_and_range() {
     assert_eq!(warnings(CASE), [""; 0]);
     let outline = "outline = [[0, 0], [10, 0], [10, 6], [0, 6]]";
     let millimetres = CASE.replace(outline, "outline = [[0, 0], [30000, 0], [30000, 15000], [0, 15000]]");
+    let slip = |from: &str, to: &str| CASE.replace(from, to);
+    let set = "[[joint_set]]\nangle_deg = 0\nspacing = 0.1\nregion = [[-1, 2], [11, 2], [11, 2.5], [-1, 2.5]]\n";
     let millimetres = millimetres.replace("size = 1.5", "size = 3000").replace("[10, 0]]", "[30000, 0]]");
     for (text, parts) in [
         (CASE.replace("50e9", "9e4"), ["rock.granite.young: is 90000 Pa", "1e5 to 5e11 Pa"]),
@@ -34,6 +36,21 @@ fn each_slip_is_told_with_its_key_value_and_range() {
         (CASE.replace("size = 1.5", "size = 11"), ["mesh.size: is 11 m", "the whole model"]),
         (CASE.replace("[[fix]]", "[in_situ]\nsxx = 1e6\nsyy = -1e6\n[[fix]]"), ["in_situ: pulls", "by 1.000e6 Pa"]),
         (CASE.replace("edge = [[0, 0], [10, 0]]", "edge = [[-45, 0], [55, 0]]"), ["fix[0].edge: is 100", "only 10"]),
+        (slip("friction_deg = 30", "friction_deg = 30\ncohesion = 20"), ["joint_law.j.cohesion: is 20 Pa", "20e3"]),
+        (CASE.replace("friction_deg = 30", "friction_deg = 0.7"), ["joint_law.j.friction_deg: is 0.7", "35.0 degrees"]),
+        (
+            CASE.replace("[[fix]]", "[water]\nlevel = 430\n[[fix]]"),
+            ["water.level: reaches y = 430 m", "0.000000 and 6"],
+        ),
+        (
+            CASE.replace("[[fix]]", "[water]\ntable = [[0, 7], [10, 5]]\n[[fix]]"),
+            ["water.table: reaches y = 7 m", "holds it"],
+        ),
+        (CASE.replace("[[fix]]", &format!("{set}[[fix]]")), ["joint_set[0].spacing: is 0.1 m", "0.15"]),
+        (
+            CASE.replace("[[fix]]", "[[bolt]]\npoints = [[2, 2], [4, 2]]\nyoung = 2e11\narea = 5e-4\n[[fix]]"),
+            ["bolt[0].points: both ends lie in one block", "both sides of a joint"],
+        ),
         (millimetres, ["domain.outline: the rock is 30000", "4.500e8 m²"]),
     ] {
         let told = warnings(&text);

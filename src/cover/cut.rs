@@ -1,7 +1,5 @@
 //! Cuts mathematical covers into physical covers, manifold elements and blocks.
 
-use std::ops::IndexMut;
-
 use crate::geometry::{Arrangement, FaceId, HalfEdgeId, Point, Vector, id, polygon};
 
 use super::covers::Covers;
@@ -9,6 +7,7 @@ use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::{self, hilbert};
 use super::outlines::{Outlines, mesh_only};
+use super::union_find::UnionFind;
 use super::{BlockId, CoverId, ElementId};
 
 /// Cuts the covers of `mesh` by the outlines and joints that are arranged with its edges; the loops round the blocks
@@ -175,33 +174,6 @@ fn triangles_of_faces(mesh: &RegularMesh, arrangement: &Arrangement) -> Vec<Tria
     triangles
 }
 
-/// Disjoint sets of ids.
-struct UnionFind<I>(Vec<I>);
-
-impl<I: Copy + Ord> UnionFind<I>
-where
-    Vec<I>: IndexMut<I, Output = I>,
-{
-    fn root(&mut self, mut k: I) -> I {
-        while self.0[k] != k {
-            let parent = self.0[k];
-            self.0[k] = self.0[parent];
-            k = self.0[k];
-        }
-        k
-    }
-
-    fn join(&mut self, a: I, b: I) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
-    }
-
-    fn roots(mut self) -> Vec<I> {
-        let parents = self.0.clone();
-        parents.into_iter().map(|k| self.root(k)).collect()
-    }
-}
-
 /// Which elements form a block, and which corners of elements share a physical cover.
 struct Joined {
     block_root: Vec<RawId>,
@@ -211,8 +183,8 @@ struct Joined {
 impl Joined {
     /// Joins across every edge that is a mesh edge and nothing else: it is a spoke of both its stars.
     fn new(arrangement: &Arrangement, raw: &RawElements) -> Self {
-        let mut blocks = UnionFind(RawId::all(raw.face.len()).collect());
-        let mut slots = UnionFind(SlotId::all(3 * raw.face.len()).collect());
+        let mut blocks = UnionFind::new(RawId::all(raw.face.len()));
+        let mut slots = UnionFind::new(SlotId::all(3 * raw.face.len()));
         for (e, edge) in arrangement.edges.iter().enumerate() {
             let [a, b] = HalfEdgeId::both(e).map(|h| raw.of_face[arrangement.face[h]]);
             let (true, Some(a), Some(b)) = (mesh_only(&edge.label), a, b) else { continue };

@@ -2,13 +2,16 @@
 //! Knows nothing of stress or time.
 
 mod covers;
+mod crumbs;
 mod cut;
 mod host;
 mod mesh;
 mod order;
 mod outlines;
+mod union_find;
 
 pub use covers::Covers;
+pub use crumbs::{Crumb, join_crumbs};
 pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};

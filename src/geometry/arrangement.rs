@@ -12,6 +12,19 @@ use super::{GeometryError, Point, faces};
 const EDGES_MAX: usize = 1 << 30;
 
 impl Arrangement {
+    /// The arrangement without the traces along some edges; faces that nothing else parts become one.
+    ///
+    /// # Errors
+    /// Those of the walk round the faces.
+    pub fn without_traces(self, along: &[bool]) -> Result<Self, GeometryError> {
+        let Self { points, mut edges, mut report, .. } = self;
+        edges.iter_mut().zip(along).filter(|(_, along)| **along).for_each(|(edge, _)| edge.label.trace = None);
+        edges.retain(|edge| !edge.label.is_empty());
+        let kept = prune(&points, &edges, &mut report);
+        let (points, edges) = compact(&points, &edges, &kept);
+        faces::build(points, edges, report)
+    }
+
     /// Adds up what became of each trace and which traces coincide; `edges` are those before pruning.
     fn report_traces(&mut self, points: &[Point], edges: &[Edge], kept: &[bool], members: &[Member], copies: &Copies) {
         let mut overlaps = Vec::new();

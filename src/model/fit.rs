@@ -119,6 +119,7 @@ impl Simulation {
             stage: _,
             stage_start: _,
             stage_starts: _,
+            most_rest_since: _,
             stage_step: _,
             step: _,
             part: _,
@@ -167,6 +168,7 @@ impl Simulation {
             between(format_args!("stage_starts[{k}]"), start, 0.0, TIME)?;
         }
         between("stage_start", state.stage_start, 0.0, TIME)?;
+        state.most_rest_since.map_or(Ok(()), |since| between("most_rest_since", since, 0.0, TIME))?;
         at_most("step", state.step, COUNT)?;
         at_most("stage_step", state.stage_step, state.step)?;
         if state.part >= dt {

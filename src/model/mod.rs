@@ -3,6 +3,7 @@
 pub mod assemble;
 pub mod fit;
 mod observe;
+mod restless;
 pub mod settle;
 mod simulation;
 pub mod snapshot;
@@ -13,6 +14,7 @@ pub use enmm_case::Case;
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use fit::Unfit;
 pub use observe::{BLOCK_QUANTITIES, BlockState};
+pub use restless::Restless;
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;
 

@@ -15,10 +15,17 @@ use super::case::{Case, Invalid, Stage, StageKind};
 const CONVERGENCE: f64 = 1e-4;
 /// Kinetic over potential or strain energy below which a static stage counts as at rest.
 const REST: f64 = 1e-8;
+/// Displacement, relative to the height of the model, within the time of a fall from it, of rock that is at rest.
+const STILL: f64 = 1e-6;
 /// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
 const RESIDUAL_MAX: f64 = 0.9;
 /// Displacement over the mesh size below which nothing has moved, and the ledger holds round-off.
 const MOVED_MIN: f64 = 1e-9;
+
+/// Energy (J/m) that a static stage has turned over.
+fn energy(report: &StepReport) -> f64 {
+    report.ledger.potential.abs().max(report.ledger.strain.abs())
+}
 
 /// A model in time.
 #[derive(Debug, Clone)]
@@ -187,7 +194,14 @@ impl Simulation {
     /// A numerical failure; the state is then invalid and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
         self.report.take();
-        step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)
+        let is_due = report && self.rest_due();
+        let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)?;
+        if is_due {
+            let rests = self.most_rests(&made);
+            let since = self.state().most_rest_since.unwrap_or(made.time);
+            self.built.state.most_rest_since = rests.then_some(since);
+        }
+        Ok(made)
     }
 
     /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.
@@ -251,13 +265,34 @@ impl Simulation {
         Some((ramp, self.stage().convergence.unwrap_or(CONVERGENCE)))
     }
 
-    /// Whether a static stage has converged: ramp over, forces balanced, motion died out.
+    /// Whether a static stage has converged: ramp over, forces balanced, motion died out. A few blocks that rattle or
+    /// fall do not hold it up ([`step::mass_of_few`]): it has converged, too, when the motion of all others has died
+    /// out for as long as it took to do so, and as waves take to pass.
     pub fn at_rest(&self, report: &StepReport) -> bool {
-        let Some((ramp, unbalanced)) = self.rest_target() else { return false };
-        let energy = report.ledger.potential.abs().max(report.ledger.strain.abs());
-        report.time >= self.state().stage_start + 1.5 * ramp
-            && report.unbalanced <= unbalanced
-            && report.ledger.kinetic <= REST * energy
+        let start = self.state().stage_start;
+        let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());
+        let for_long = self.state().most_rest_since.is_some_and(is_long);
+        self.all_rests(report) || for_long && self.most_rests(report)
+    }
+
+    /// Whether all rock is at rest by a report of a static stage.
+    pub(super) fn all_rests(&self, report: &StepReport) -> bool {
+        let balanced = self.rest_target().is_some_and(|(_, unbalanced)| report.unbalanced <= unbalanced);
+        balanced && self.ramp_is_over(report) && report.ledger.kinetic <= REST * energy(report)
+    }
+
+    /// Whether a few blocks have more kinetic energy than all others, whose motion has died out, or is so slow that
+    /// they would move by [`STILL`] of the height in the time of a fall from there.
+    pub(super) fn most_rests(&self, report: &StepReport) -> bool {
+        let (low, high) = polygon::bounds(&self.model().covers.star_position);
+        let mass: f64 = self.model().mass_matrix.total.iter().sum();
+        let still = 0.5 * mass * STILL * STILL * self.model().gravity.norm() * (high - low).y;
+        let [most, few] = [report.kinetic_of_most, report.ledger.kinetic - report.kinetic_of_most];
+        self.ramp_is_over(report) && few > most && most <= still.max(REST * energy(report))
+    }
+
+    fn ramp_is_over(&self, report: &StepReport) -> bool {
+        self.rest_target().is_some_and(|(ramp, _)| report.time >= self.state().stage_start + 1.5 * ramp)
     }
 
     /// Why a motion with this ledger is worthless, when energy has come from nowhere.
@@ -285,11 +320,13 @@ impl Simulation {
         }
     }
 
-    /// Four times the way of a shear wave through the height of the model (s); none under in-situ stress.
+    /// The time of waves; none under in-situ stress.
     fn default_ramp(&self) -> f64 {
-        if self.case.in_situ.is_some() {
-            return 0.0;
-        }
+        if self.case.in_situ.is_some() { 0.0 } else { self.wave_time() }
+    }
+
+    /// Four times the way of a shear wave through the height of the model (s).
+    fn wave_time(&self) -> f64 {
         let (low, high) = polygon::bounds(&self.model().covers.star_position);
         let slowest = self.model().rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
         4.0 * (high - low).y / slowest

@@ -80,6 +80,7 @@ impl State {
             laws: _,
             law_switch: _,
             stage_starts: _,
+            most_rest_since: _,
             stage: _,
             stage_start: _,
             stage_step: _,

@@ -38,6 +38,8 @@ pub struct State {
     pub stage_start: f64,
     /// Start of each stage up to this one (s): ground motion counts its time from there.
     pub stage_starts: Vec<f64>,
+    /// Time (s) since which most of the rock has been at rest in a static stage; none while it moves.
+    pub most_rest_since: Option<f64>,
     /// Internal steps done in the stage.
     pub stage_step: u64,
     /// Internal steps done in all stages.
@@ -104,6 +106,7 @@ impl State {
             stage,
             stage_start,
             stage_starts,
+            most_rest_since,
             stage_step,
             step,
             part,
@@ -132,6 +135,7 @@ impl State {
         } = other;
         (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
         (self.part, self.dt_last, self.static_stretch) = (*part, *dt_last, *static_stretch);
+        self.most_rest_since = *most_rest_since;
         (self.ledger, self.counters) = (*ledger, *counters);
         self.stage_starts.clone_from(stage_starts);
         self.displacement.clone_from(displacement);

@@ -20,7 +20,9 @@ pub use guard::{Failure, StepError};
 pub use integrator::Integrator;
 pub use prepare::{begin_stage, prepare};
 pub use records::base_motion;
-pub use report::{StepReport, block_motion, energies, momentum, potential, speed_max, stored, strain, unbalanced};
+pub use report::{
+    StepReport, block_motion, energies, mass_of_few, momentum, potential, speed_max, stored, strain, unbalanced,
+};
 pub use times::{StepTimes, Window};
 
 use crate::contact::VertexEdge;

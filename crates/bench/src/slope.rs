@@ -50,8 +50,8 @@ pub fn slope_case(blocks: usize, elements_a_block: usize) -> String {
         [along(-RUN_OUT, size), along(length, size), top.clone(), rim.clone(), toe.clone(), along(-RUN_OUT, 0.0)];
     let mut text = format!(
         "title = \"slope of {blocks} blocks, {elements_a_block} elements a block\"\n\
-        [domain]\noutline = [{}]\njoint_law = \"joint\"\n\
-        [mesh]\nsize = {size:.6}\nangle_deg = 7\n[[joint]]\npoints = [{toe}, {top}]\n",
+        [domain]\noutline = [{}]\njoint_law = \"joint\"\nextend_ends = 0\n\
+        [mesh]\nsize = {size:.6}\nangle_deg = 7\nleast_block = 0\n[[joint]]\npoints = [{toe}, {top}]\n",
         corners.join(", "),
     );
     for (seed, dip) in [(11, DIP_DEG), (12, DIP_DEG + 90.0)] {

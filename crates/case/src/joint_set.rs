@@ -75,13 +75,11 @@ impl AngleDistribution {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JointSet {
-    // `angle_deg` is written by its old name, so that the fingerprint of a case is the same by either.
     /// Direction of the traces, counter-clockwise from the x axis (degrees), at least -360 and at most 360; this, or
     /// `dip_deg` with `dips` or `dip_direction_deg`.
-    #[serde(default, rename(serialize = "dip_deg"), skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
-    /// Dip below the horizontal (degrees), 0 to 90, with `dips` or `dip_direction_deg`. Without both it is the old name
-    /// of `angle_deg`.
+    /// Dip below the horizontal (degrees), 0 to 90, with `dips` or `dip_direction_deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dip_deg: Option<f64>,
     /// Side towards which traces with `dip_deg` descend.

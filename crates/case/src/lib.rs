@@ -166,6 +166,10 @@ pub struct Domain {
     /// Distance (m) within which points and edges become one; default 1e-6 of the bounding-box diagonal.
     #[serde(default)]
     pub snap_tolerance: Option<f64>,
+    /// Distance (m) within which an end of a trace that almost meets the outline or another trace is extended or
+    /// trimmed to it; default a tenth of the mesh size, 0 keeps what is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extend_ends: Option<f64>,
 }
 
 /// Equilateral lattice: node(i, j) = origin + i·a1 + j·a2, a1 = size·(cos, sin)(angle), a2 = a1 turned by +60°.
@@ -181,6 +185,10 @@ pub struct Mesh {
     /// Node (0, 0) (m).
     #[serde(default)]
     pub origin: [f64; 2],
+    /// Area (m²) below which a block joins the neighbour with which it shares the longest face; default (size/20)², 0
+    /// keeps all blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_block: Option<f64>,
 }
 
 /// One joint: a polyline in the reference configuration.

@@ -75,6 +75,7 @@ fn text(bound: &Bound) -> String {
         "{:<21} {} blocks, {} free; {} interfaces, {} points, {} pairs of facing corners; {} linear programs",
         "model", bound.blocks[0], bound.blocks[1], bound.interfaces, bound.points, bound.corners, bound.programs
     ));
+    lines.extend(bound.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(bound.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")
 }

@@ -89,6 +89,7 @@ fn table(found: &Check) -> String {
         ("memory (MB)", memory(found)),
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<21} {value}")).collect();
+    lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")
 }

@@ -190,6 +190,7 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
         let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.position.x, b.position.y);
         tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
+    lines.extend(reduction.simulation.built().notes.iter().map(|note| format!("note: {note}")));
     let warnings = reduction.warnings.iter().filter(|&warning| told != Some(warning));
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"

@@ -105,12 +105,20 @@ impl Observer for Screen {
         }
     }
 
+    fn note(&mut self, message: &str) {
+        self.tell(&format!("note: {message}"));
+    }
+
     fn warn(&mut self, message: &str) {
-        if self.quiet {
-            return;
-        }
-        let line = format!("warning: {message}");
+        self.tell(&format!("warning: {message}"));
+    }
+}
+
+impl Screen {
+    /// Writes a line above the bar.
+    fn tell(&self, line: &str) {
         match &self.bar {
+            _ if self.quiet => {}
             Some(bar) => bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}"))),
             None => drop(writeln!(std::io::stderr(), "{line}")),
         }

@@ -123,6 +123,8 @@ impl Substep<'_, '_> {
             dt,
             ledger,
             unbalanced,
+            // Its matrix brings all blocks to rest together.
+            kinetic_of_most: ledger.kinetic,
             locked: self.count_contacts(ContactState::Lock),
             slipping: self.count_contacts(ContactState::Slip),
             penetration_max: workspace.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),

@@ -44,10 +44,7 @@ fn a_dip_has_a_side_and_an_angle_none() {
     let plain = set("angle_deg = 40");
     assert_same(&set("dip_deg = 40\ndips = \"left\""), &plain);
     assert_same(&set("dip_deg = 40\ndips = \"right\""), &set("angle_deg = -40"));
-    assert_same(&set("dip_deg = 40"), &plain);
     assert_eq!(loaded(&plain).warnings, [""; 0]);
-    let notes = loaded(&set("dip_deg = 40")).warnings;
-    assert!(notes.len() == 1 && notes[0].starts_with("joint_set[0].dip_deg: without `dips`"), "{notes:?}");
     assert_same(&set("angle_deg = 40\nangle_sd_deg = 3"), &set("angle_deg = 40\ndip_sd_deg = 3"));
     for (keys, message) in [
         ("", "joint_set[0]: has no direction; add `angle_deg`"),
@@ -55,7 +52,8 @@ fn a_dip_has_a_side_and_an_angle_none() {
         ("angle_deg = 40\ndips = \"left\"", "joint_set[0].dips: belongs to `dip_deg`, which is not given"),
         ("dip_deg = 112\ndips = \"left\"", "case.toml:7: joint_set[0].dip_deg: is 112 degrees, must be at least 0"),
         ("dip_deg = 40\ndip_direction_deg = 90", "joint_set[0].dip_direction_deg: is 90, but the case does not say"),
-        ("dip_deg = 400", "case.toml:7: joint_set[0].dip_deg: is 400 degrees, must be at least -360 and at most 360"),
+        ("dip_deg = 40", "case.toml:7: joint_set[0].dip_deg: is 40, but its side is missing; add `dips = \"left\"`"),
+        ("angle_deg = 400", "joint_set[0].angle_deg: is 400 degrees, must be at least -360 and at most 360"),
         ("angle_deg = 1\nangle_sd_deg = 3\ndip_sd_deg = 2", "joint_set[0].angle_sd_deg: is 3, and `dip_sd_deg`"),
         ("angle_deg = 1\nangle_sd_deg = 31", "angle_sd_deg: is 31 degrees, must be at least 0 and at most 30"),
         ("angle_deg = 1\nspacing_sd = 3.1", "joint_set[0].spacing_sd: is 3.1 m, must be at most the mean, 3 m"),

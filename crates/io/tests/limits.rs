@@ -148,9 +148,10 @@ fn short_as_json() -> Value {
 
 /// The valid case, and the same with the other of keys that exclude each other.
 fn cases_as_json() -> [Value; 2] {
-    let other = CASE.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
-    [CASE.to_owned(), other]
-        .map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
+    let own = CASE.replacen("size = 1.0\n", "size = 1.0\nleast_block = 1e-4\n", 1);
+    let own = own.replacen("snap_tolerance = 1e-6\n", "snap_tolerance = 1e-6\nextend_ends = 0.01\n", 1);
+    let other = own.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
+    [own, other].map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Annotations of a picture of a model beside its blocks.
 
 use enmm::contact::EdgeId;
+use enmm::geometry::ends::EndChange;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::model::case::{Anchorage, Axes, Load, LoadKind, Port};
@@ -20,7 +21,7 @@ pub fn counted(count: usize, noun: &str) -> String {
 
 /// Title, supports, loads, water, bolts, monitors, ports, joints and counts of a model as it is now.
 pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
-    let (model, case) = (simulation.model(), simulation.case());
+    let (model, case, built) = (simulation.model(), simulation.case(), simulation.built());
     let covers = &model.covers;
     let boundary = &model.boundary;
     let ends = |k: EdgeId| [boundary.reference[k], boundary.reference[boundary.after(k)]];
@@ -44,6 +45,8 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
         trace_segments: joints.collect(),
         sets: sets(simulation),
         water: water_surface(simulation),
+        ends: built.ends.iter().map(|end| (end.place, end.change != EndChange::Kept)).collect(),
+        crumbs: built.crumbs.iter().map(|crumb| crumb.place).collect(),
         pond: case.water.as_ref().is_some_and(|water| water.faces.is_none()),
     }
 }

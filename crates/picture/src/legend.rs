@@ -53,6 +53,8 @@ pub enum Sign {
     Fill(Colour),
     /// A dot.
     Dot(Colour),
+    /// A ring.
+    Ring(Colour),
     /// Slanting lines across a block.
     Hatch,
     /// A fixity or a boundary that lets waves leave.
@@ -135,6 +137,7 @@ fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
             sheet.line([left, y], [right, y], Style::line(WHITE, signs::OPEN_WIDTH - 2.6));
         }
         Sign::Fill(colour) => sheet.path(area(), Style::fill(colour).edged(INK, 0.9)),
+        Sign::Ring(colour) => sheet.circle([middle, y], 7.0, Style::line(colour, 1.8)),
         Sign::Dot(colour) => sheet.circle([middle, y], 7.0, Style::fill(colour)),
         Sign::Monitor => signs::draw_monitor(sheet, [middle, y]),
         Sign::Port => signs::draw_port(sheet, [middle, y]),

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
-use super::colour::{ACCENT, BLOCKS, GREY, INK, LINES, POND, WATER, WHITE};
+use super::colour::{ACCENT, BLOCKS, Colour, GREY, INK, LINES, POND, WATER, WHITE};
 use super::legend::{self, Entry, Legend, Sign};
 use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle, fitted};
 use super::signs::{self, Held, draw_held};
@@ -28,6 +28,16 @@ const SUPPORT_DISTANCE: f64 = 32.0;
 const ARROWS: [f64; 2] = [64.0, 26.0];
 /// Distance (px) of the arrows of a traction.
 const ARROW_DISTANCE: f64 = 36.0;
+
+/// Radius (px) of the ring round a change.
+const RING: f64 = 7.0;
+/// Colour of rings round blocks that have joined a neighbour.
+const CRUMB: Colour = INK;
+
+/// Colour of rings round ends of joints.
+fn end_colour(joined: bool) -> Colour {
+    if joined { LINES[0] } else { ACCENT }
+}
 
 /// Annotations of a picture of the model besides its elements and blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -58,6 +68,10 @@ pub struct ModelAnnotations {
     pub water: Vec<Point>,
     /// Whether the water also stands outside the rock.
     pub pond: bool,
+    /// Ends of joints that almost met a line (m), and whether they were joined to it.
+    pub ends: Vec<(Point, bool)>,
+    /// Places (m) of blocks that were too small and have joined a neighbour.
+    pub crumbs: Vec<Point>,
 }
 
 /// Points (m) that are held alike.
@@ -212,6 +226,7 @@ impl Model<'_> {
         draw_absence(sheet, view, &self.snapshot.elements);
         self.draw_held(sheet, view);
         self.draw_loads(sheet, view, &mut labels);
+        self.draw_changes(sheet, view);
         self.draw_ports_and_monitors(sheet, view, &mut labels);
         self.draw_sets(sheet, view, &mut labels);
         view.draw_axes(sheet);
@@ -342,6 +357,15 @@ impl Model<'_> {
         if (rock - (a + b) * 0.5).dot(&normal) < 0.0 { -normal } else { normal }
     }
 
+    /// Rings round ends of joints near a line, and round blocks that have joined a neighbour.
+    fn draw_changes(&self, sheet: &mut Sheet, view: &View) {
+        let ends = self.annotations.ends.iter().map(|(place, joined)| (place, end_colour(*joined)));
+        let crumbs = self.annotations.crumbs.iter().map(|place| (place, CRUMB));
+        for (place, colour) in ends.chain(crumbs).filter(|(place, _)| is_drawable(place)) {
+            sheet.circle(view.pixel(place), RING, Style::line(colour, 1.8));
+        }
+    }
+
     /// Marks of ports and monitors with their names; one name where both share name and place.
     fn draw_ports_and_monitors(&self, sheet: &mut Sheet, view: &View, labels: &mut Labels) {
         let mut named: Vec<(&String, Pixel)> = Vec::new();
@@ -421,6 +445,7 @@ impl Model<'_> {
         let place = |is: fn(&PortPlace) -> bool| annotations.ports.iter().any(|port| is(&port.place));
         let bolt =
             |later: bool| annotations.bolts.iter().any(|bolt| (bolt.condition == BoltCondition::Absent) == later);
+        let end = |joined: bool| annotations.ends.iter().any(|(_, is)| *is == joined);
         let joints = annotations.loads.iter().any(|load| matches!(load, LoadMark::Joint { .. }));
         let forces = annotations.loads.iter().any(|load| !matches!(load, LoadMark::Joint { .. }));
         let all = [
@@ -435,6 +460,9 @@ impl Model<'_> {
             (joints, Sign::Dashed(WATER, 4.0), "pressure in joints"),
             (bolt(false), Sign::Bolt, "bolt"),
             (bolt(true), Sign::Dashed(ACCENT, 2.0), "bolt installed later"),
+            (end(true), Sign::Ring(end_colour(true)), "joint end joined to a line"),
+            (end(false), Sign::Ring(end_colour(false)), "joint end held by rock"),
+            (!annotations.crumbs.is_empty(), Sign::Ring(CRUMB), "small block joined to another"),
             (!annotations.monitors.is_empty(), Sign::Monitor, "monitor"),
             (place(|place| !matches!(place, PortPlace::Joint(_))), Sign::Port, "port"),
             (place(|place| matches!(place, PortPlace::Joint(_))), Sign::Dashed(ACCENT, 4.0), "port in joints"),

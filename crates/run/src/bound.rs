@@ -43,6 +43,7 @@ pub fn bound_record(bound: &Bound) -> Value {
         "points": bound.points,
         "corners": bound.corners,
         "programs": bound.programs,
+        "notes": bound.notes,
         "warnings": bound.warnings,
     })
 }

@@ -9,6 +9,8 @@ use enmm::model::Simulation;
 use enmm::model::assemble::ignored_traces;
 use enmm::state::{State, Workspace};
 
+use crate::changes::{CrumbRecord, TraceEndRecord};
+
 /// Share of a full cover's mass below which a cover counts as small.
 const SMALL_COVER: f64 = 1e-3;
 /// Share of a lattice triangle's area below which a block counts as tiny.
@@ -53,6 +55,12 @@ pub struct Check {
     pub memory_bytes: u64,
     /// That memory by part; the state counts once.
     pub memory: Vec<MemoryPart>,
+    /// Ends of joints near the outline or another joint.
+    pub trace_ends: Vec<TraceEndRecord>,
+    /// Blocks below the least area.
+    pub crumbs: Vec<CrumbRecord>,
+    /// What the build has changed in the drawing.
+    pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
 }
@@ -87,6 +95,9 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         ignored_joints: ignored_traces(&built.noding).len(),
         memory_bytes: (model.bytes() + 2 * state.bytes() + workspace.bytes()) as u64,
         memory: memory(simulation, &state, &workspace),
+        trace_ends: TraceEndRecord::all(built),
+        crumbs: CrumbRecord::all(built),
+        notes: built.notes.clone(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
 }

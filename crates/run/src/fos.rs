@@ -247,6 +247,7 @@ fn search_record(reduction: &Reduction) -> Value {
             Err(refused) => json!({ "refused": refused }),
         },
         "remedy": remedy(reduction),
+        "notes": reduction.simulation.built().notes,
         "warnings": reduction.warnings,
     });
     if let Some(doubt) = reduction.doubt() {

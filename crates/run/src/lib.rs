@@ -3,6 +3,7 @@
 
 pub mod blocks;
 mod bound;
+pub mod changes;
 pub mod check;
 mod ensemble;
 mod film;

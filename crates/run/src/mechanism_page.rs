@@ -46,6 +46,7 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
     };
     let rows = [("0", "before gravity acts".to_owned()), ("1", end)];
     film.note(0.0, &facts("What the slider shows", rows.map(|(name, value)| (name.to_owned(), value))))?;
+    film.note_changes(simulation)?;
     close(film, &path)
 }
 
@@ -85,6 +86,7 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     ];
     film.note(0.0, &facts("What the slider shows", shown.map(|(name, value)| (name.to_owned(), value))))?;
     note_warnings(&mut film, bound.warnings.iter())?;
+    film.note_changes(&simulation)?;
     close(film, &path)
 }
 

@@ -14,6 +14,8 @@ use enmm::state::{ENERGIES, Ledger, Seconds};
 use enmm::step::StepError;
 use enmm_io::files::{at_path, write_atomic};
 
+use crate::changes::{CrumbRecord, TraceEndRecord};
+
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -71,6 +73,12 @@ pub struct Summary {
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
     pub threads: usize,
+    /// Ends of joints near the outline or another joint.
+    pub trace_ends: Vec<TraceEndRecord>,
+    /// Blocks below the least area.
+    pub crumbs: Vec<CrumbRecord>,
+    /// What the build has changed in the drawing.
+    pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Why the results of a run that has ended are worthless; it is among the warnings too.
@@ -336,6 +344,9 @@ impl Summary {
             penetration_max_relative: counters.penetration_max / model.covers.mesh.size,
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
+            trace_ends: TraceEndRecord::all(simulation.built()),
+            crumbs: CrumbRecord::all(simulation.built()),
+            notes: simulation.built().notes.clone(),
             warnings: record.warnings,
             doubt: record.doubt,
         }

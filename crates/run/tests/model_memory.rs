@@ -28,7 +28,7 @@ fn slope(spacing: Option<f64>, mesh: f64, duration: f64) -> String {
         let (sd, dip_sd) = (0.15 * spacing, 0.4);
         let _ = write!(
             text,
-            "[[joint_set]]\ndip_deg = {dip}\ndip_sd_deg = {dip_sd}\nspacing = {spacing}\nspacing_sd = {sd}\n\
+            "[[joint_set]]\nangle_deg = {dip}\ndip_sd_deg = {dip_sd}\nspacing = {spacing}\nspacing_sd = {sd}\n\
              seed = {seed}\n"
         );
     }

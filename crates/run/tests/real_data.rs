@@ -21,7 +21,7 @@ fn read(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("readable")).expect("valid JSON")
 }
 
-/// Checks the case with geometry `file` in `folder`, a rock of density 1 and the given mesh.
+/// Checks the case, as it is drawn, with geometry `file` in `folder`, a rock of density 1 and the given mesh.
 fn check(folder: &Path, file: &str, snap_tolerance: f64, mesh: &str) -> Check {
     let text = format!(
         r#"
@@ -30,8 +30,10 @@ title = "shared data"
 geometry_file = "{file}"
 joint_law = "joint"
 snap_tolerance = {snap_tolerance:?}
+extend_ends = 0
 [mesh]
 {mesh}
+least_block = 0
 [rock.any]
 density = 1
 young = 1e9

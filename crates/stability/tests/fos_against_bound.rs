@@ -79,7 +79,7 @@ impl Slope {
         let (top, spacing) = (self.crest(), spacing * self.scale);
         write!(
             self.joints,
-            "[[joint_set]]\ndip_deg = {dip_deg:.2}\ndip_sd_deg = 1.0\nspacing = {spacing:.3}\nspacing_sd = {:.3}\n\
+            "[[joint_set]]\nangle_deg = {dip_deg:.2}\ndip_sd_deg = 1.0\nspacing = {spacing:.3}\nspacing_sd = {:.3}\n\
              seed = {seed}\nregion = [[13.0, 4.0], [{top:.3}, 20.5], [{:.3}, 20.5]]\n",
             0.15 * spacing,
             top + 16.0

@@ -18,7 +18,16 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
     for (k, bolt) in case.bolts.iter().enumerate() {
         let line = Line::new(&format!("bolt[{k}]"), bolt, positions)?;
         match bolt.anchorage {
-            Anchorage::Ends => segments.push(line.whole(k as u32, bolt)),
+            Anchorage::Ends => {
+                let block = |end: usize| positions.covers.element_block[line.elements[end]];
+                if block(0) == block(1) && line.meetings.is_empty() {
+                    warnings.push(format!(
+                        "bolt[{k}].points: both ends lie in one block and the bolt crosses no joint, so that it holds \
+                         nothing: move its points to both sides of a joint"
+                    ));
+                }
+                segments.push(line.whole(k as u32, bolt));
+            }
             Anchorage::Grouted => {
                 let crossings = line.crossings();
                 if crossings.is_empty() {

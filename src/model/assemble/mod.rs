@@ -1,29 +1,34 @@
 //! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
 
 mod bolts;
+mod ends;
 mod geometry;
 mod integrators;
+mod joints;
 mod locator;
 mod memory;
 mod ports;
 mod quiet;
 mod rock;
+mod slips;
 mod stage;
 mod warnings;
 
 use crate::contact::{
     BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support,
 };
-use crate::cover::{self, BlockId, CoverId, Covers, ElementId, Outlines};
-use crate::geometry::{NodingReport, Point, Vector};
+use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
+use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, State, Water};
 
+use joints::Joints;
 use locator::Locator;
 
+pub use ends::TraceEnd;
 pub use integrators::{ExplicitAlone, Integrators};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
@@ -45,6 +50,12 @@ pub struct Built {
     pub traces: Vec<(Vec<Point>, LawId)>,
     /// First of these traces of each joint set, and one past the last.
     pub set_start: Vec<usize>,
+    /// Ends of joints near the outline or another joint: those joined to it, and those that rock holds.
+    pub ends: Vec<TraceEnd>,
+    /// Blocks below the least area.
+    pub crumbs: Vec<Crumb>,
+    /// What the build changed in the drawing, for the user to know.
+    pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
 }
@@ -57,9 +68,10 @@ pub struct Built {
 pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
     case.validate()?;
     integrators.refusal(case).map_or(Ok(()), Err)?;
-    let geometry::Plane { mesh, mut arrangement, joints } = geometry::arrange_case(case, tell)?;
+    let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
+    let notes = warnings::notes(&noding, &ends, &crumbs);
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
@@ -78,6 +90,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     warnings.extend(bolt_warnings);
     warnings.extend(quiet::warning(case));
     warnings.extend(warnings::of_values(case, &model, &positions));
+    let (low, high) = polygon::bounds(&model.covers.polygon_points);
+    warnings.extend(slips::of_values(case, low.y, high.y));
     Ok(Built {
         model,
         state,
@@ -86,6 +100,9 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
         boundary_pieces: outlines.pieces.len(),
         traces: joints.traces,
         set_start: joints.set_start,
+        ends,
+        crumbs,
+        notes,
         warnings,
     })
 }
@@ -106,7 +123,7 @@ const STIFFNESS_LENGTH: f64 = 1.0;
 /// The fixed part of the model, and the warnings about its bolts.
 fn model(
     case: &Case,
-    joints: &geometry::Joints,
+    joints: &Joints,
     covers: Covers,
     outlines: &Outlines,
     tolerance: f64,
@@ -385,6 +402,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         stage: 0,
         stage_start: 0.0,
         stage_starts: Vec::new(),
+        most_rest_since: None,
         stage_step: 0,
         step: 0,
         part: 0.0,

@@ -2,12 +2,14 @@
 //! of rock and soil, which are mostly slips in a unit or a sign.
 
 use crate::contact::LawId;
+use crate::cover::Crumb;
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
 use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
 
-use super::geometry::Joints;
+use super::ends::{self, TraceEnd};
+use super::joints::Joints;
 use super::law_of;
 use super::locator::Locator;
 use super::points;
@@ -25,16 +27,39 @@ const TENSION_SHARE: f64 = 0.01;
 /// Ignored traces that are named.
 const NAMED: usize = 5;
 
+/// What the build has changed in the drawing so that ends and corners meet and no block is a crumb.
+pub(super) fn notes(noding: &NodingReport, ends: &[TraceEnd], crumbs: &[Crumb]) -> Vec<String> {
+    let count = noding.merged_vertices;
+    let merged = (count > 0).then(|| {
+        let what = if count == 1 { "trace end or vertex was" } else { "trace ends or vertices were" };
+        format!("{count} {what} merged within the snap tolerance {:.3e} m", noding.tolerance)
+    });
+    merged.into_iter().chain(ends::notes(ends)).chain(note_of_crumbs(crumbs)).collect()
+}
+
+fn note_of_crumbs(crumbs: &[Crumb]) -> Option<String> {
+    let tell = |crumb: &Crumb| {
+        let kept = if crumb.joined { "" } else { " (alone, kept)" };
+        format!("{:.2e} m² at ({:.6}, {:.6}) m{kept}", crumb.area, crumb.place.x, crumb.place.y)
+    };
+    let named: Vec<String> = crumbs.iter().take(NAMED).map(tell).collect();
+    let more = crumbs.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let blocks = if crumbs.len() == 1 { "block has" } else { "blocks have" };
+    (!crumbs.is_empty()).then(|| {
+        format!(
+            "{} {blocks} less than the least area and joined the neighbour along the longest face: {}{more}; \
+             mesh.least_block = 0 keeps each",
+            crumbs.len(),
+            named.join(", ")
+        )
+    })
+}
+
 /// Warnings about changes by the noder.
 pub(super) fn of_geometry(noding: &NodingReport, case: &Case, joints: &Joints) -> Vec<String> {
     let traces = &joints.traces;
-    let mut warnings = Vec::new();
-    if noding.merged_vertices > 0 {
-        let count = noding.merged_vertices;
-        let what = if count == 1 { "trace end or vertex was" } else { "trace ends or vertices were" };
-        warnings.push(format!("{count} {what} merged within the snap tolerance {:.3e} m", noding.tolerance));
-    }
-    warnings.extend(lost_joints(noding, case, joints));
+    let mut warnings = lost_joints(noding, case, joints);
     if !noding.overlapping_traces.is_empty() {
         warnings.push(format!(
             "{} pairs of joint traces coincide along an edge; the first of each pair gives its law",

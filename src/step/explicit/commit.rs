@@ -123,6 +123,7 @@ impl Step<'_> {
             dt: times.dt,
             ledger,
             unbalanced,
+            kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state),
             locked: count(ContactState::Lock),
             slipping: count(ContactState::Slip),
             penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),

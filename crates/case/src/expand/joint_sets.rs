@@ -23,13 +23,6 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
     }
     for (k, set) in case.joint_sets.iter_mut().enumerate() {
         let key = Key::root().field("joint_set").index(k);
-        if set.dip_deg.is_some() && set.dips.is_none() && set.dip_direction_deg.is_none() && set.angle_deg.is_none() {
-            told.notes.push(format!(
-                "{key}.dip_deg: without `dips` or `dip_direction_deg` it is the angle from the x axis, as before; name \
-                 it `angle_deg`, or add `dips` for a dip"
-            ));
-            told.origins.insert(format!("{key}.angle_deg"), format!("{key}.dip_deg"));
-        }
         if set.angle_sd_deg.is_some() {
             told.origins.insert(format!("{key}.dip_sd_deg"), format!("{key}.angle_sd_deg"));
         }
@@ -60,7 +53,13 @@ fn angle(key: &Key, set: &mut JointSet, section: Option<Section>) -> Check {
         return fail(&key.field("dip_deg"), format!("is {dip}, and `angle_deg` is {angle}; keep one of them"));
     }
     match (set.dips, set.dip_direction_deg) {
-        (None, None) => set.angle_deg = Some(dip),
+        (None, None) => {
+            let message = format!(
+                "is {dip}, but its side is missing; add `dips = \"left\"` or `dips = \"right\"`, or write \
+                 `angle_deg = {dip}` for an angle counter-clockwise from the x axis"
+            );
+            return fail(&key.field("dip_deg"), message);
+        }
         (Some(_), Some(direction)) => {
             let message = format!("is {direction}, and `dips` names a side; keep one of them");
             return fail(&key.field("dip_direction_deg"), message);

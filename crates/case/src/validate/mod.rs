@@ -184,13 +184,15 @@ fn domain(key: &Key, domain: &Domain) -> Check {
             polygon(&key.field(name).index(i), ring)?;
         }
     }
-    optional(key, "snap_tolerance", domain.snap_tolerance, Range::above(0.0).to(1e3), "m", "1e-6 of the model's size")
+    optional(key, "snap_tolerance", domain.snap_tolerance, Range::above(0.0).to(1e3), "m", "1e-6 of the model's size")?;
+    optional(key, "extend_ends", domain.extend_ends, Range::from(0.0).to(1e3), "m", "a tenth of the mesh size")
 }
 
 fn mesh(key: &Key, mesh: &Mesh) -> Check {
     number(key, "size", mesh.size, Range::above(0.0).to(1e6), "m", "about a fifth of the smallest block is usual")?;
     number(key, "angle_deg", mesh.angle_deg, Range::within(360.0), "degrees", "0 to 60 gives every lattice")?;
-    point(&key.field("origin"), &mesh.origin)
+    point(&key.field("origin"), &mesh.origin)?;
+    optional(key, "least_block", mesh.least_block, Range::from(0.0).to(1e6), "m²", "(size/20)² is the default")
 }
 
 fn rock(key: &Key, rock: &Rock) -> Check {

@@ -31,7 +31,7 @@ points = [
 law = "rough"
 
 [[joint_set]]
-dip_deg = 60
+angle_deg = 60
 dip_sd_deg = 2.0
 spacing = 2.0
 spacing_sd = 0.1

@@ -13,10 +13,10 @@ use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
 use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::settle;
+use enmm::model::{Restless, Simulation};
 use enmm::state::bytes::BytesError;
 use enmm::state::{Ledger, Seconds, State};
 use enmm::step::{StepError, StepReport};
@@ -33,6 +33,8 @@ use super::{Observer, RunError, RunOptions, RunProgress, results};
 
 /// Most steps between two copies of the state to which a failed run falls back.
 const GOOD_STEPS: u64 = 200;
+/// Blocks that a warning names.
+const NAMED: usize = 3;
 
 /// Progress of a run beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -170,6 +172,7 @@ impl<'a> Driver<'a> {
         }
         let mut warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
         warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
+        simulation.built().notes.iter().for_each(|note| observer.note(note));
         warnings.iter().for_each(|warning| observer.warn(warning));
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
@@ -334,6 +337,7 @@ impl<'a> Driver<'a> {
         let before = rows::monitors(&self.simulation);
         let sweeps_mean = self.sweeps_mean();
         let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
+        let restless = last.map_or_else(Vec::new, |report| self.simulation.restless(&report));
         let report = self.simulation.advance(true);
         if let Ok(report) = &report {
             self.note(report);
@@ -342,7 +346,7 @@ impl<'a> Driver<'a> {
         }
         self.simulation.return_to(&self.good.state);
         if !recorded {
-            self.warn_of_stage(converged)?;
+            self.warn_of_stage(converged, &restless)?;
             let rests = self.simulation.stage().kind == StageKind::Static;
             if rests {
                 self.outlook.end(self.simulation.time() - self.simulation.state().stage_start);
@@ -367,13 +371,19 @@ impl<'a> Driver<'a> {
         results::draw_stage(&self.simulation, &self.joints, started, &self.options.directory)
     }
 
-    fn warn_of_stage(&mut self, converged: bool) -> Result<(), RunError> {
+    fn warn_of_stage(&mut self, converged: bool, restless: &[Restless]) -> Result<(), RunError> {
+        let stage = self.simulation.stage();
+        if stage.kind == StageKind::Static && converged && !restless.is_empty() {
+            let name = &stage.name;
+            self.warn(format!("stage {name:?} is at rest but for {}, which cannot rest", named(restless)))?;
+        }
         let stage = self.simulation.stage();
         if stage.kind == StageKind::Static && !converged {
             let (name, time, ratio) = (&stage.name, stage.duration, self.progress.unbalanced);
             self.warn(format!(
-                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}): \
-                 the slope moves, or the stage needs a longer duration"
+                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}); \
+                 fastest: {}",
+                named(&self.simulation.moving())
             ))?;
         } else if self.has_only_settled()
             && let Some(slip) = slide(&self.simulation)
@@ -506,6 +516,14 @@ impl<'a> Driver<'a> {
     }
 }
 
+/// The first of these blocks in words.
+fn named(blocks: &[Restless]) -> String {
+    let more = blocks.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let named: Vec<String> = blocks.iter().take(NAMED).map(Restless::to_string).collect();
+    named.join("; ") + &more
+}
+
 impl Driver<'_> {
     /// Writes the page of the run.
     fn close_film(&mut self, status: RunStatus, failure: Option<&StepError>, doubt: Option<&String>) -> io::Result<()> {
@@ -559,6 +577,7 @@ fn film(
     for text in warnings {
         film.note(simulation.time(), &Note::Warning { text: text.clone() })?;
     }
+    film.note_changes(simulation)?;
     Ok(film)
 }
 

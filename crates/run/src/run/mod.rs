@@ -63,6 +63,9 @@ pub trait Observer: Send {
     /// Called before every step.
     fn step(&mut self, _progress: &RunProgress) {}
 
+    /// Called with what the build has changed in the drawing.
+    fn note(&mut self, _message: &str) {}
+
     /// Called with what the user should know.
     fn warn(&mut self, _message: &str) {}
 }

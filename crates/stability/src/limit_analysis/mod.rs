@@ -108,6 +108,8 @@ pub struct Bound {
     pub corners: usize,
     /// Linear programs that were solved.
     pub programs: usize,
+    /// What the build has changed in the drawing.
+    pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
 }
@@ -181,6 +183,7 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
         points: counts.1,
         corners: counts.2,
         programs: search.programs,
+        notes: simulation.built().notes.clone(),
         warnings,
     })
 }

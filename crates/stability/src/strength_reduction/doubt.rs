@@ -1,17 +1,28 @@
 //! Doubts about a factor of safety that follow from its trials.
 
-use super::{Reason, Reduction, Trial, Verdict};
+use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
+use crate::limit_analysis::Bound;
 use enmm::model::case::Case;
+use enmm::step::mass_of_few;
 
 /// Part of the largest term of the ledger that may stay unexplained.
 const RESIDUAL: f64 = 1e-3;
 /// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
 const ABOVE: f64 = 1.02;
+/// Blocks that a warning names.
+const NAMED: usize = 3;
 
 impl Reduction {
+    /// Whether the mechanism of a bound holds more than the few blocks that do not count in trials.
+    fn moves_slope(&self, bound: &Bound) -> bool {
+        let few = mass_of_few(self.simulation.model(), &self.simulation.workspace().mass_matrix);
+        let moving: f64 = bound.level_tops.mechanism.iter().map(|block| block.mass).sum();
+        moving > few
+    }
+
     /// Why the factor is in doubt: it is above the bound of limit analysis. The text is among the warnings, too.
     pub fn doubt(&self) -> Option<String> {
-        let bound = self.bound.as_ref().ok()?;
+        let bound = self.bound.as_ref().ok().filter(|bound| self.moves_slope(bound))?;
         let (stable, limit) = (self.low?, bound.level_tops.factor.value());
         (stable > ABOVE * limit).then(|| {
             format!(
@@ -32,6 +43,7 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     doubts.extend(caught(trials));
     doubts.extend(reduction.doubt());
     doubts.extend(undecided(trials));
+    doubts.extend(loose(reduction));
     let rubbing = case.joint_laws.values().any(|law| law.friction_deg > 0.0);
     if !rubbing && !case.joint_laws.is_empty() {
         doubts.push("no joint has friction: the factor is one on cohesion and tensile strength alone".to_owned());
@@ -53,6 +65,22 @@ fn not_monotone(trials: &[Trial]) -> Option<String> {
             "F = {stable:.4} was stable, but F = {other:.4} was not: the verdict is not monotone, look at both trials"
         )
     })
+}
+
+/// Blocks that slid off or fell in trials at which the slope is stable.
+fn loose(reduction: &Reduction) -> Option<String> {
+    let stable = reduction.trials.iter().filter(|t| t.verdict == Verdict::Stable);
+    let first = stable.clone().find(|t| !t.loose.is_empty())?;
+    let block =
+        |b: &FailingBlock| format!("{} of {:.3} m² at ({:.3}, {:.3}) m", b.block, b.area, b.position.x, b.position.y);
+    let named: Vec<String> = first.loose.iter().take(NAMED).map(block).collect();
+    let blocks = if first.loose.len() == 1 { "block" } else { "blocks" };
+    Some(format!(
+        "from F = {:.4} on {blocks} {} slid off or fell; they have less than a thousandth of the free mass, and do not \
+         count as a failure of the slope",
+        first.factor,
+        named.join(", ")
+    ))
 }
 
 /// Trials whose time was over before motion had died or grown.

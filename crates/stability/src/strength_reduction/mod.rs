@@ -73,6 +73,8 @@ pub struct Trial {
     pub acceleration: f64,
     /// Blocks that fail or were caught, fastest first; none when the slope is stable.
     pub failing: Vec<FailingBlock>,
+    /// Blocks that have slid off or fallen and are too few to decide: less than a thousandth of the free mass together.
+    pub loose: Vec<FailingBlock>,
     /// Internal steps.
     pub steps: u64,
     /// Energy that the ledger does not explain over its largest term.

@@ -11,8 +11,9 @@ pub const ELASTIC: f64 = 1e-3;
 const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Largest slip (m) of a contact since it had one of the histories `before`, which are in the order of nodes. Contacts
-/// of two blocks that a bolt ties are left out: a bolt carries force only after they have moved.
-pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
+/// of two blocks that a bolt ties are left out: a bolt carries force only after they have moved. So are those of the
+/// blocks `without`, which are sorted.
+pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory], without: &[BlockId]) -> f64 {
     let key = |contact: &ContactHistory| (contact.node, contact.side);
     let (model, state) = (simulation.model(), simulation.state());
     let boundary = &model.boundary;
@@ -22,7 +23,8 @@ pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
     let counts = |contact: &&ContactHistory| {
         let points = [boundary.node_point[contact.node], contact.edge];
         let blocks = points.map(|point| boundary.block[point]);
-        !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
+        blocks.iter().all(|block| without.binary_search(block).is_err())
+            && !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
     };
     let slipped = state.contacts.iter().filter(counts).map(|contact| {
         while before.next_if(|b| key(b) < key(contact)).is_some() {}
@@ -35,7 +37,7 @@ pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory]) -> f64 {
 /// Slip (m) of a slope at rest that is a failure: blocks slid until others caught them. None where settling explains
 /// it, and in rock that yields.
 pub fn slide(simulation: &Simulation) -> Option<f64> {
-    let slip = largest_slip(simulation, &[]);
+    let slip = largest_slip(simulation, &[], &[]);
     (!simulation.case().yields() && slip > settling_slip(simulation)).then_some(slip)
 }
 

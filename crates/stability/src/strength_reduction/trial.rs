@@ -12,7 +12,7 @@ use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::state::Ledger;
-use enmm::step::{StepError, StepReport, block_motion};
+use enmm::step::{StepError, StepReport, block_motion, mass_of_few};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
 const WINDOWS_PER_FALL: f64 = 10.0;
@@ -71,13 +71,30 @@ impl Base {
     }
 
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
-    fn positions(&self, simulation: &Simulation) -> Vec<Vector3<f64>> {
+    fn positions(&self, simulation: &Simulation) -> Vec<(BlockId, Vector3<f64>)> {
         let position = |b: BlockId| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
-            Vector3::new(motion.displacement.x, motion.displacement.y, turn)
+            (b, Vector3::new(motion.displacement.x, motion.displacement.y, turn))
         };
         self.moving().map(position).collect()
+    }
+
+    /// The blocks that have gone farthest, as many as are too few to decide about the slope ([`mass_of_few`]).
+    fn few(&self, simulation: &Simulation) -> Vec<BlockId> {
+        let mass = &simulation.model().mass_matrix.total;
+        let mut room = mass_of_few(simulation.model(), &simulation.workspace().mass_matrix);
+        let mut small: Vec<(BlockId, f64)> =
+            self.moving().filter(|&b| mass[b] <= room).map(|b| (b, self.moved(simulation, b))).collect();
+        small.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        small.retain(|&(b, _)| {
+            let fits = mass[b] <= room;
+            room -= if fits { mass[b] } else { 0.0 };
+            fits
+        });
+        let mut few: Vec<BlockId> = small.into_iter().map(|(b, _)| b).collect();
+        few.sort_unstable();
+        few
     }
 
     /// Makes one trial; returns the model at its end as well.
@@ -104,8 +121,10 @@ impl Base {
             }
             let first = *first.get_or_insert(last.ledger);
             let before = std::mem::replace(&mut positions, self.positions(&simulation));
-            let way = positions.iter().zip(&before).map(|(now, before)| (now - before).norm()).fold(0.0, f64::max);
-            samples.push(self.sample(&simulation, &last, &first, way));
+            let few = self.few(&simulation);
+            let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
+            let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
+            samples.push(self.sample(&simulation, &last, &first, way, &few));
             judged = judge::judge(&samples, &self.scales);
         }
         let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
@@ -122,6 +141,7 @@ impl Base {
             released: end.released,
             acceleration: judge::acceleration(&samples),
             failing: self.failing(&simulation, verdict),
+            loose: self.loose(&simulation),
             steps: simulation.state().step - self.simulation.state().step,
             ledger_residual: last.ledger.residual_relative(),
             wall: clock.elapsed().as_secs_f64(),
@@ -129,16 +149,26 @@ impl Base {
         Ok((trial, simulation))
     }
 
-    /// The motion at the end of a window in which the fastest block has gone a way (m).
-    fn sample(&self, simulation: &Simulation, report: &StepReport, first: &Ledger, way: f64) -> Sample {
-        let far = self.moving().map(|b| self.moved(simulation, b)).fold(0.0, f64::max);
+    /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
+    fn sample(
+        &self,
+        simulation: &Simulation,
+        report: &StepReport,
+        first: &Ledger,
+        way: f64,
+        few: &[BlockId],
+    ) -> Sample {
+        let most = self.moving().filter(|b| few.binary_search(b).is_err());
+        let far = most.map(|b| self.moved(simulation, b)).fold(0.0, f64::max);
+        let (model, state, mass_matrix) = (simulation.model(), simulation.state(), &simulation.workspace().mass_matrix);
+        let kinetic_of_few: f64 = few.iter().map(|&b| block_motion(model, state, mass_matrix, b).3).sum();
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
             time: simulation.time() - self.simulation.time(),
             displacement: far,
-            slip: if self.yields { far } else { largest_slip(simulation, &self.simulation.state().contacts) },
+            slip: if self.yields { far } else { largest_slip(simulation, &self.simulation.state().contacts, few) },
             speed: way / self.scales.window,
-            kinetic: report.ledger.kinetic,
+            kinetic: (report.ledger.kinetic - kinetic_of_few).max(0.0),
             released: energy(first) - energy(&report.ledger),
         }
     }
@@ -168,6 +198,14 @@ impl Base {
                 }
             })
             .collect()
+    }
+
+    /// Blocks that are too few to decide about the slope and have gone farther than elasticity explains.
+    fn loose(&self, simulation: &Simulation) -> Vec<FailingBlock> {
+        let few = self.few(simulation);
+        let is_loose =
+            |m: &FailingBlock| m.displacement > self.scales.elastic && few.iter().any(|b| b.number() == m.block);
+        self.motions(simulation).into_iter().filter(is_loose).collect()
     }
 
     /// Blocks that move with the failure, fastest first, or that were caught after they had gone too far.

@@ -1,0 +1,294 @@
+//! Ends of traces that almost meet a line: the outline of the rock or another trace.
+//!
+//! Knows polylines and distances (m); nothing of laws, blocks or the case. Rock that an end leaves uncut cannot break,
+//! so that an end a millimetre short of a face holds a slope. Ends are treated in the order of the traces, each against
+//! the lines as the ends before it have left them.
+
+use std::collections::BTreeMap;
+
+use super::grid::{CellGrid, Groups};
+use super::{Point, TraceId, Vector, cross, polygon, segment};
+
+/// Lines that run back along a trace, by the cosine of their angle, are copies of it: they hold none of its ends.
+const COPY_COSINE: f64 = 1.0 - 1e-6;
+
+/// Distances that decide what becomes of an end (m).
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct EndDistances {
+    /// An end this near to a line is on it.
+    pub tolerance: f64,
+    /// An end nearer than this is extended or trimmed to the line.
+    pub join: f64,
+    /// An end nearer than this is listed.
+    pub list: f64,
+}
+
+/// The line that an end almost meets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EndLine {
+    /// Outline, hole or island.
+    Outline,
+    /// A trace.
+    Trace(TraceId),
+}
+
+/// What became of an end.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EndChange {
+    /// The trace goes on to the line.
+    Extended,
+    /// The trace ends on the line that it crossed.
+    Trimmed,
+    /// The end stays in the rock.
+    Kept,
+}
+
+/// An end in the rock, near a line.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct NearEnd {
+    /// The trace.
+    pub trace: TraceId,
+    /// Where the end was drawn (m).
+    pub place: Point,
+    /// Its distance (m) to the line: along the trace where that meets the line, else the shortest.
+    pub gap: f64,
+    /// The line.
+    pub line: EndLine,
+    /// What became of it.
+    pub change: EndChange,
+}
+
+/// Extends or trims the ends of traces that almost meet a line, and lists them with those that come near one; `is_rock`
+/// judges places of ends.
+pub fn join_ends(
+    outlines: &[[Point; 2]],
+    traces: &mut [&mut Vec<Point>],
+    distances: &EndDistances,
+    is_rock: impl Fn(Point) -> bool,
+) -> Vec<NearEnd> {
+    let mut lines = Lines::new(outlines, traces, distances);
+    let mut ends = Vec::new();
+    for trace in TraceId::all(traces.len()) {
+        for last in [false, true] {
+            let points = &mut *traces[trace.index()];
+            let Some(end) = End::of(points, trace, last).filter(|end| is_rock(end.place)) else { continue };
+            let Some((near, way)) = lines.look(&end) else { continue };
+            if near.change != EndChange::Kept {
+                lines.replace(&end, &way);
+                replace(points, last, &way);
+            }
+            ends.push(near);
+        }
+    }
+    ends
+}
+
+/// Replaces the first or the last point by those of a way that leads there.
+fn replace(points: &mut Vec<Point>, last: bool, way: &[Point]) {
+    if last {
+        points.pop();
+        points.extend(way);
+    } else {
+        points.splice(..1, way.iter().rev().copied());
+    }
+}
+
+/// An end of a trace with its last straight stretch.
+struct End {
+    trace: TraceId,
+    last: bool,
+    place: Point,
+    /// Start of the stretch.
+    from: Point,
+    /// Unit vector from there to the end.
+    direction: Vector,
+    /// Length of the stretch (m).
+    length: f64,
+}
+
+impl End {
+    /// None where a trace has no length or returns to its start.
+    fn of(points: &[Point], trace: TraceId, last: bool) -> Option<Self> {
+        let n = points.len();
+        let (place, from) =
+            if last { (*points.last()?, *points.get(n.checked_sub(2)?)?) } else { (points[0], *points.get(1)?) };
+        let along = place - from;
+        let length = along.norm();
+        let is_open = points[0] != points[n - 1];
+        (is_open && length > 0.0).then(|| Self { trace, last, place, from, direction: along / length, length })
+    }
+
+    /// Distance (m) from the end along its direction, negative backwards, at which its line meets a segment; the ends
+    /// of the segment reach as far as the tolerance.
+    fn meeting(&self, [c, d]: [Point; 2], tolerance: f64) -> Option<f64> {
+        let along = d - c;
+        let across = cross(self.direction, along);
+        let share = cross(self.place - c, self.direction) / -across;
+        let spare = tolerance / along.norm();
+        let at = cross(c - self.place, along) / across;
+        (share >= -spare && share <= 1.0 + spare && at.is_finite()).then_some(at)
+    }
+}
+
+/// A straight stretch of a line.
+#[derive(Clone, Copy)]
+struct Stretch {
+    ends: [Point; 2],
+    line: EndLine,
+}
+
+/// All lines in a grid, as the ends before have left them.
+struct Lines {
+    stretches: Vec<Stretch>,
+    /// First and last stretch of each trace.
+    outermost: Vec<[u32; 2]>,
+    grid: CellGrid,
+    near: Groups,
+    /// Stretches that came later, by cells.
+    added: BTreeMap<usize, Vec<u32>>,
+    distances: EndDistances,
+}
+
+/// The nearest meetings of the line of an end with others, ahead and behind, and the nearest line beside it.
+#[derive(Default)]
+struct Found {
+    ahead: Option<(f64, EndLine)>,
+    behind: Option<(f64, EndLine)>,
+    beside: Option<(f64, EndLine, Point)>,
+}
+
+impl Lines {
+    fn new(outlines: &[[Point; 2]], traces: &[&mut Vec<Point>], distances: &EndDistances) -> Self {
+        let mut stretches: Vec<Stretch> =
+            outlines.iter().map(|&ends| Stretch { ends, line: EndLine::Outline }).collect();
+        let mut outermost = Vec::with_capacity(traces.len());
+        for (trace, points) in TraceId::all(traces.len()).zip(traces) {
+            let first = stretches.len() as u32;
+            let line = EndLine::Trace(trace);
+            stretches.extend(points.windows(2).map(|pair| Stretch { ends: [pair[0], pair[1]], line }));
+            outermost.push([first, (stretches.len() as u32).saturating_sub(1)]);
+        }
+        let (low, high) = polygon::bounds(outlines.as_flattened());
+        let grid = CellGrid::new(low, high, distances.list);
+        let ends = stretches.iter().map(|stretch| (stretch.ends[0], stretch.ends[1]));
+        let near = Groups::of_edges(&grid, ends, distances.tolerance);
+        Self { stretches, outermost, grid, near, added: BTreeMap::new(), distances: *distances }
+    }
+
+    /// What becomes of an end, and the points that take its place; nothing where it is on a line, or far from all.
+    fn look(&self, end: &End) -> Option<(NearEnd, Vec<Point>)> {
+        let Found { ahead, behind, beside } = self.find(end)?;
+        let EndDistances { join, list, .. } = self.distances;
+        let near = |gap, line, change| NearEnd { trace: end.trace, place: end.place, gap, line, change };
+        let moved = |along: f64| vec![end.place + end.direction * along];
+        let gap = |found: Option<(f64, EndLine)>| found.map_or(f64::INFINITY, |(gap, _)| gap);
+        let is_overshoot = gap(behind) <= gap(ahead);
+        if let Some((gap, line)) = behind.filter(|(gap, _)| *gap < join && is_overshoot) {
+            return Some((near(gap, line, EndChange::Trimmed), moved(-gap)));
+        }
+        let beside = beside.filter(|(beside, ..)| *beside < list);
+        let is_near = beside.is_some_and(|(beside, ..)| beside < join);
+        let goes_there = |line: EndLine| is_near && beside.is_some_and(|(_, other, _)| other == line);
+        if let Some((gap, line)) = ahead.filter(|(gap, line)| *gap < join || *gap < list && goes_there(*line)) {
+            return Some((near(gap, line, EndChange::Extended), moved(gap)));
+        }
+        if let Some((beside, line, foot)) = beside.filter(|_| is_near) {
+            // The stretch bends behind its last meeting, so that all its meetings stay where they are.
+            let free = gap(behind).min(list);
+            let bend = (free < end.length).then(|| end.place - end.direction * free);
+            return Some((near(beside, line, EndChange::Extended), bend.into_iter().chain([foot]).collect()));
+        }
+        let nearest = ahead.or(beside.map(|(gap, line, _)| (gap, line))).filter(|(gap, _)| *gap < list);
+        nearest.map(|(gap, line)| (near(gap, line, EndChange::Kept), Vec::new()))
+    }
+
+    /// The lines about an end; nothing where it is on one.
+    fn find(&self, end: &End) -> Option<Found> {
+        let tolerance = self.distances.tolerance;
+        let about = self.about(end);
+        if about.iter().any(|stretch| stretch.distance(end.place) <= tolerance) {
+            return None;
+        }
+        let mut found = Found::default();
+        let mut crossed = Vec::new();
+        for stretch in &about {
+            let Some(at) = end.meeting(stretch.ends, tolerance) else { continue };
+            if at > 0.0 {
+                found.ahead = nearer(found.ahead, (at, stretch.line));
+            } else if -at <= end.length {
+                found.behind = nearer(found.behind, (-at, stretch.line));
+                crossed.push(stretch.line);
+            }
+        }
+        // A line that the trace has crossed holds it already, however near it runs to the end.
+        for stretch in about.iter().filter(|stretch| !crossed.contains(&stretch.line)) {
+            let distance = stretch.distance(end.place);
+            if found.beside.is_none_or(|(least, ..)| distance < least) {
+                found.beside = Some((distance, stretch.line, stretch.foot(end.place)));
+            }
+        }
+        Some(found)
+    }
+
+    /// Stretches of other lines near an end.
+    fn about(&self, end: &End) -> Vec<Stretch> {
+        let mut near: Vec<u32> = Vec::new();
+        self.grid.visit_square(end.place, self.distances.list, |cell| {
+            near.extend(self.near.get(cell));
+            near.extend(self.added.get(&cell).into_iter().flatten());
+        });
+        near.sort_unstable();
+        near.dedup();
+        let stretches = near.iter().map(|&k| self.stretches[k as usize]);
+        let is_other = |stretch: &Stretch| {
+            stretch.line != EndLine::Trace(end.trace)
+                && stretch.distance(end.place) < self.distances.list
+                && !stretch.is_copy(end, self.distances.tolerance)
+        };
+        stretches.filter(is_other).collect()
+    }
+
+    /// Lets the trace of an end go the way instead.
+    fn replace(&mut self, end: &End, way: &[Point]) {
+        let line = EndLine::Trace(end.trace);
+        let old = self.outermost[end.trace][usize::from(end.last)];
+        let mut from = end.from;
+        for (k, &to) in way.iter().enumerate() {
+            let new = if k == 0 { old } else { self.stretches.len() as u32 };
+            if k > 0 {
+                self.stretches.push(Stretch { ends: [from, to], line });
+            }
+            self.stretches[new as usize].ends = [from, to];
+            self.outermost[end.trace][usize::from(end.last)] = new;
+            let added = &mut self.added;
+            self.grid.visit_edge(from, to, self.distances.tolerance, |cell| added.entry(cell).or_default().push(new));
+            from = to;
+        }
+    }
+}
+
+impl Stretch {
+    fn distance(&self, p: Point) -> f64 {
+        segment::distance(p, self.ends[0], self.ends[1])
+    }
+
+    /// The point of it nearest to another.
+    fn foot(&self, p: Point) -> Point {
+        let [a, b] = self.ends;
+        a + (b - a) * ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
+    }
+
+    /// Whether it ends where the end lies and runs back along its trace.
+    fn is_copy(&self, end: &End, tolerance: f64) -> bool {
+        let [a, b] = self.ends;
+        let back = |from: Point, to: Point| {
+            (from - end.place).norm() <= tolerance
+                && (to - from).dot(&end.direction) < -COPY_COSINE * (to - from).norm()
+        };
+        self.line != EndLine::Outline && (back(a, b) || back(b, a))
+    }
+}
+
+fn nearer(found: Option<(f64, EndLine)>, other: (f64, EndLine)) -> Option<(f64, EndLine)> {
+    Some(found.filter(|found| found.0 <= other.0).unwrap_or(other))
+}

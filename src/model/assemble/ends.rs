@@ -1,0 +1,117 @@
+//! Ends of the joints of a case that almost meet a line, with names: which were joined to it, and which rock holds.
+
+use crate::geometry::ends::{EndChange, EndDistances, EndLine, NearEnd, join_ends};
+use crate::geometry::{Point, TraceId};
+use crate::model::case::{Case, JointSet};
+
+use super::joints::Joints;
+
+/// Ends that one message names.
+const NAMED: usize = 5;
+/// Default of `domain.extend_ends` over the mesh size.
+const JOIN_RATIO: f64 = 0.1;
+
+/// An end of a joint in the rock, near the outline or another joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TraceEnd {
+    /// The joint: `joint[3]`, `joint_set[0]`.
+    pub name: String,
+    /// Where it was drawn to end (m).
+    pub place: Point,
+    /// Distance (m) to the line.
+    pub gap: f64,
+    /// The line: `the outline`, or a joint.
+    pub line: String,
+    /// What became of the end.
+    pub change: EndChange,
+}
+
+/// Joins the ends of joints that almost meet a line to it; the list has those with others near a line, but for the ends
+/// of sets whose traces are meant to end in the rock.
+pub(super) fn join(
+    case: &Case,
+    joints: &mut Joints,
+    outlines: &[[Point; 2]],
+    tolerance: f64,
+    is_rock: impl Fn(Point) -> bool,
+) -> Vec<TraceEnd> {
+    let join = case.domain.extend_ends.unwrap_or(JOIN_RATIO * case.mesh.size);
+    let distances = EndDistances { tolerance, join, list: join.max(case.mesh.size) };
+    let mut lines: Vec<&mut Vec<Point>> = joints.traces.iter_mut().map(|(points, _)| points).collect();
+    let ends = join_ends(outlines, &mut lines, &distances, is_rock);
+    let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end.trace);
+    let named = |end: &NearEnd| TraceEnd {
+        name: name(joints, end.trace),
+        place: end.place,
+        gap: end.gap,
+        line: match end.line {
+            EndLine::Outline => "the outline".to_owned(),
+            EndLine::Trace(trace) => name(joints, trace),
+        },
+        change: end.change,
+    };
+    ends.iter().filter(is_listed).map(named).collect()
+}
+
+/// The set of a trace, unless it is a joint of the case or a piece that a region with another law has parted.
+fn set_of(joints: &Joints, trace: TraceId) -> Option<usize> {
+    joints.set_start.windows(2).position(|range| (range[0]..range[1]).contains(&trace.index()))
+}
+
+fn ends_on_purpose(case: &Case, joints: &Joints, trace: TraceId) -> bool {
+    let is_short = |set: &JointSet| set.trace_length.is_some() || set.gap > 0.0;
+    set_of(joints, trace).is_some_and(|set| is_short(&case.joint_sets[set]))
+}
+
+fn name(joints: &Joints, trace: TraceId) -> String {
+    set_of(joints, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| format!("joint_set[{set}]"))
+}
+
+/// The ends that were joined to a line, and those that rock holds, in a line of text each.
+pub(super) fn notes(ends: &[TraceEnd]) -> impl Iterator<Item = String> {
+    joined(ends).into_iter().chain(kept(ends))
+}
+
+fn joined(ends: &[TraceEnd]) -> Option<String> {
+    let joined: Vec<&TraceEnd> = ends.iter().filter(|end| end.change != EndChange::Kept).collect();
+    let tell = |end: &&TraceEnd| {
+        let verb = if end.change == EndChange::Extended { "extended" } else { "trimmed" };
+        let TraceEnd { name, place, gap, line, .. } = end;
+        format!("{name} at ({:.6}, {:.6}) m by {:.3} mm to {line} ({verb})", place.x, place.y, 1e3 * gap)
+    };
+    let ends = if joined.len() == 1 {
+        "trace end that almost meets a line was"
+    } else {
+        "trace ends that almost meet a line were"
+    };
+    (!joined.is_empty()).then(|| {
+        format!(
+            "{} {ends} joined to it: {}; domain.extend_ends = 0 keeps what is drawn",
+            joined.len(),
+            list(&joined, tell)
+        )
+    })
+}
+
+fn kept(ends: &[TraceEnd]) -> Option<String> {
+    let kept: Vec<&TraceEnd> = ends.iter().filter(|end| end.change == EndChange::Kept).collect();
+    let tell = |end: &&TraceEnd| {
+        let TraceEnd { name, place, gap, line, .. } = end;
+        let side = if line.starts_with("the") { "inside" } else { "before" };
+        format!("{name} ends {gap:.3} m {side} {line} at ({:.6}, {:.6})", place.x, place.y)
+    };
+    let it = if kept.len() == 1 { "it" } else { "each" };
+    (!kept.is_empty()).then(|| {
+        format!(
+            "{}: intact rock holds {it}, and the model cannot break it; draw joints that are to part the rock up to \
+             the line, or raise domain.extend_ends",
+            list(&kept, tell)
+        )
+    })
+}
+
+fn list(ends: &[&TraceEnd], tell: impl Fn(&&TraceEnd) -> String) -> String {
+    let named: Vec<String> = ends.iter().take(NAMED).map(tell).collect();
+    let more = ends.len().saturating_sub(NAMED);
+    named.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
