@@ -1,11 +1,11 @@
 //! The vertex rule at corners: nothing catches where nothing is in the way, and nothing passes through.
 
 use crate::common::claims::{advance, block_at, motion};
-use crate::common::overlap::deepest_overlap;
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
+use enmm::model::overlap::deepest_overlap;
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;

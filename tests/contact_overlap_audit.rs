@@ -1,8 +1,8 @@
 //! A slope that fails: no block goes into another, by an audit of polygons that knows nothing of contacts.
 
-use crate::common::overlap::Audit;
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation};
+use enmm::model::overlap::Audit;
 
 const SIZE: f64 = 1.0;
 

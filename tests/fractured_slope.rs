@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use crate::common::extent::by_extent;
-use crate::common::overlap::Audit;
 use crate::common::run_stage;
 use enmm::contact::EntranceRule;
+use enmm::model::overlap::Audit;
 use enmm::model::{Case, Simulation};
 
 /// The case of the README.

@@ -3,6 +3,7 @@
 pub mod assemble;
 pub mod fit;
 mod observe;
+pub mod overlap;
 mod restless;
 pub mod settle;
 mod simulation;

@@ -4,7 +4,6 @@
 pub mod claims;
 pub mod extent;
 pub mod geometry;
-pub mod overlap;
 pub mod saved;
 pub mod shared;
 

@@ -12,9 +12,11 @@ use crate::film::{Film, Opening};
 use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
+use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
+use enmm::model::overlap::{Audit, Overlap};
 use enmm::model::settle;
 use enmm::model::{Restless, Simulation};
 use enmm::state::bytes::BytesError;
@@ -49,6 +51,10 @@ struct Progress {
     row_sweeps: [u64; 2],
     /// Largest penetration at reports of this stage (m).
     penetration_max: f64,
+    /// Deepest overlap (m) of blocks that have passed into each other.
+    overlap_max: f64,
+    /// These blocks.
+    overlapping: Vec<[BlockId; 2]>,
     /// Unbalanced ratio at the last report.
     unbalanced: f64,
     /// Ledger at the last report.
@@ -64,8 +70,8 @@ impl Progress {
     /// # Errors
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
-        let Self { done, unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger, started } =
-            self;
+        let Self { done, unsettled_before, potential_start, row_sweeps, .. } = self;
+        let Self { penetration_max, overlap_max, overlapping, unbalanced, ledger, started, .. } = self;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
@@ -73,6 +79,9 @@ impl Progress {
         fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
         fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
         fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
+        fit::number("overlap_max", *overlap_max, fit::LENGTH)?;
+        let blocks = state.removed.len();
+        fit::at_most("the number of pairs in overlapping", overlapping.len() as u64, (blocks * blocks) as u64)?;
         fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
         if !started.is_empty() {
             let covers = state.displacement.len() as f64;
@@ -111,6 +120,7 @@ struct Driver<'a> {
     history: HistoryWriter,
     frames: Option<PvdWriter>,
     joints: Joints,
+    overlaps: Audit,
     film: Film,
     clock: Instant,
     stage_clock: Instant,
@@ -177,7 +187,7 @@ impl<'a> Driver<'a> {
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
         let progress = good.progress.clone();
-        let joints = Joints::of(&simulation);
+        let (joints, overlaps) = (Joints::of(&simulation), Audit::new(&simulation));
         let stage_clock = Instant::now();
         let mut driver = Self {
             loaded,
@@ -190,6 +200,7 @@ impl<'a> Driver<'a> {
             history,
             frames,
             joints,
+            overlaps,
             film,
             clock,
             stage_clock,
@@ -258,6 +269,7 @@ impl<'a> Driver<'a> {
         }
         if plan.frame_due(step) {
             self.push_frame().map_err(Err)?;
+            self.audit().map_err(Err)?;
         }
         if plan.film_due(step) {
             self.film.frame(&self.simulation).map_err(|error| Err(RunError::Output(error)))?;
@@ -331,6 +343,7 @@ impl<'a> Driver<'a> {
     fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
         self.keep_good();
         self.push_frame()?;
+        self.audit()?;
         self.film.frame(&self.simulation).map_err(RunError::Output)?;
         self.draw_stage().map_err(RunError::Output)?;
         let dt_before = self.simulation.state().dt_last;
@@ -363,6 +376,23 @@ impl<'a> Driver<'a> {
             self.progress.done.push(record);
         }
         Ok(StageEnd::Over)
+    }
+
+    /// Looks for blocks that have passed into each other, which no contact need know.
+    fn audit(&mut self) -> Result<(), RunError> {
+        let passed = self.overlaps.passed(&self.simulation, &self.progress.overlapping);
+        let Some(deepest) = passed.first() else { return Ok(()) };
+        self.progress.overlap_max = self.progress.overlap_max.max(deepest.depth);
+        for overlap in passed {
+            if self.progress.overlapping.contains(&overlap.blocks) {
+                continue;
+            }
+            self.progress.overlapping.push(overlap.blocks);
+            if self.progress.overlapping.len() <= NAMED {
+                self.warn(overlap_text(&self.simulation, &overlap))?;
+            }
+        }
+        Ok(())
     }
 
     fn draw_stage(&self) -> io::Result<()> {
@@ -506,6 +536,7 @@ impl<'a> Driver<'a> {
             failure,
             stages,
             ledger: &self.progress.ledger,
+            overlaps: (self.progress.overlap_max, self.progress.overlapping.len()),
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
             doubt,
@@ -514,6 +545,19 @@ impl<'a> Driver<'a> {
         summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;
         Ok(summary)
     }
+}
+
+fn overlap_text(simulation: &Simulation, Overlap { depth, blocks: [a, b], .. }: &Overlap) -> String {
+    let place = simulation.motion_of(*a).centroid;
+    let size = simulation.model().covers.mesh.size;
+    format!(
+        "blocks {a} and {b} near ({:.3}, {:.3}) m overlap by {depth:.3e} m, {:.2} % of the mesh size, at t = {:.4} s: \
+         no contact holds them there; results about them are wrong from here on",
+        place.x,
+        place.y,
+        100.0 * depth / size,
+        simulation.time()
+    )
 }
 
 /// The first of these blocks in words.

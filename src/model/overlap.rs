@@ -2,13 +2,18 @@
 
 use rayon::prelude::*;
 
-use enmm::contact::{Boundary, EdgeId, VertexEdge};
-use enmm::cover::BlockId;
-use enmm::geometry::{Point, Vector, polygon, segment};
-use enmm::model::Simulation;
+use crate::contact::{Boundary, EdgeId, VertexEdge};
+use crate::cover::BlockId;
+use crate::geometry::{Point, Vector, orientation, polygon, segment};
+
+use super::Simulation;
 
 /// Opening (m) from which a crack is a way in.
 const ROOM: f64 = 1e-3;
+/// Overlap over the mesh size that no contact presses blocks to.
+pub const DEEP: f64 = 0.01;
+/// Closure of springs by which an overlap is explained: faces bend between two contacts.
+const EXPLAINED: f64 = 1.2;
 
 /// Deepest overlap (m) of two blocks in the last step, and which.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,12 +37,13 @@ impl Overlap {
         let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
         let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
         let contacts = simulation.workspace().contacts.iter().filter(is_between);
-        let held = 1.2 * contacts.map(closure).fold(0.0, f64::max);
+        let held = EXPLAINED * contacts.map(closure).fold(0.0, f64::max);
         [self.depth - held, self.at_nodes - held]
     }
 }
 
 /// The blocks of a model, cut into triangles once.
+#[derive(Debug, Clone)]
 pub struct Audit {
     /// Boundary points of each block.
     points: Vec<Vec<EdgeId>>,
@@ -58,6 +64,7 @@ struct Placed {
 }
 
 impl Audit {
+    /// Cuts the blocks of a model.
     pub fn new(simulation: &Simulation) -> Self {
         let (boundary, blocks) = (&simulation.model().boundary, simulation.model().covers.block_count());
         let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
@@ -72,10 +79,25 @@ impl Audit {
         Self { points, nodes, triangles, cracked }
     }
 
-    /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
+    /// Deepest overlap among all pairs of blocks that are near each other, at their places now.
     pub fn deepest(&self, simulation: &Simulation) -> Overlap {
         let overlaps = self.overlaps(simulation).into_par_iter();
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
+    }
+
+    /// Pairs of blocks that have passed into each other by more than [`DEEP`] of the mesh size, deepest first, at their
+    /// places now; those that are `known` to have done so are looked at in any case.
+    pub fn passed(&self, simulation: &Simulation, known: &[[BlockId; 2]]) -> Vec<Overlap> {
+        let limit = DEEP * simulation.model().covers.mesh.size;
+        let place = simulation.positions();
+        let suspects = distinct(suspects(simulation, &place, limit).into_iter().chain(known.iter().copied()));
+        if suspects.is_empty() {
+            return Vec::new();
+        }
+        let mut passed = self.overlaps_of(simulation, &suspects, &place);
+        passed.retain(|overlap| overlap.depth > limit);
+        passed.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.blocks.cmp(&b.blocks)));
+        passed
     }
 
     /// Deepest overlap (m), and how much of one no spring explains at most, anywhere and at the nodes.
@@ -92,24 +114,22 @@ impl Audit {
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
         let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
         let place: Vec<Point> = boundary.edges().map(|point| frames.position(point)).collect();
-        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, &place)).collect();
-        let mut pairs: Vec<[BlockId; 2]> = Vec::new();
-        for c in &simulation.state().neighbours.pairs {
-            let [a, b] = [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]);
-            let pair = [a.min(b), a.max(b)];
-            if pairs.last() != Some(&pair) && a != b {
-                pairs.push(pair);
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
+        let near = simulation.state().neighbours.pairs.iter();
+        let pairs = near.map(|c| [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]));
+        self.overlaps_of(simulation, &distinct(pairs), &place)
+    }
+
+    /// Overlaps of pairs of blocks whose boundary points have these places.
+    fn overlaps_of(&self, simulation: &Simulation, pairs: &[[BlockId; 2]], place: &[Point]) -> Vec<Overlap> {
+        let boundary = &simulation.model().boundary;
+        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
         let overlap = |&blocks: &[BlockId; 2]| {
             let [p, q] = blocks;
             let (depth, at_nodes) = if placed[p].is_apart(placed[q].low, placed[q].high) {
                 (0.0, 0.0)
             } else if self.cracked[p] || self.cracked[q] {
                 let depth = |of: &[Vec<EdgeId>]| {
-                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, &place, &of[p], &self.points[q]);
+                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, place, &of[p], &self.points[q]);
                     depth(p, q).max(depth(q, p))
                 };
                 (depth(&self.points), depth(&self.nodes))
@@ -138,14 +158,38 @@ impl Placed {
     }
 }
 
+/// Pairs of different blocks, each once, in order.
+fn distinct(pairs: impl Iterator<Item = [BlockId; 2]>) -> Vec<[BlockId; 2]> {
+    let mut pairs: Vec<_> = pairs.filter(|[a, b]| a != b).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// Pairs of blocks of which a node lies behind the nearest edge of the other by more than a limit (m).
+fn suspects(simulation: &Simulation, place: &[Point], limit: f64) -> Vec<[BlockId; 2]> {
+    let boundary = &simulation.model().boundary;
+    let ends = |edge: EdgeId| [place[edge], place[boundary.after(edge)]];
+    let runs = simulation.state().neighbours.pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side));
+    let behind = runs.filter_map(|run| {
+        let node = boundary.node_point[run[0].node];
+        let distance = |edge: EdgeId| segment::distance(place[node], ends(edge)[0], ends(edge)[1]);
+        let edge = run.iter().map(|pair| pair.edge).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+        let [a, b] = ends(edge);
+        let is_behind = orientation(a, b, place[node]) > 0.0 && distance(edge) > limit;
+        is_behind.then(|| [node, edge].map(|k| boundary.block[k]))
+    });
+    distinct(behind)
+}
+
 /// Triangles of a block, as indices of its boundary points.
 fn cut(boundary: &Boundary, points: &[EdgeId]) -> Vec<[EdgeId; 3]> {
     let polygon: Vec<Point> = points.iter().map(|&k| boundary.reference[k]).collect();
-    let index = |p: Point| points[polygon.iter().position(|q| *q == p).expect("a corner of the block")];
+    let index = |p: Point| points[polygon.iter().position(|q| *q == p).expect("triangles have corners of the block")];
     polygon::triangles(&polygon).iter().map(|t| t.map(index)).collect()
 }
 
-/// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
+/// Deepest overlap among all pairs of blocks that are near each other, at their places now.
 pub fn deepest_overlap(simulation: &Simulation) -> Overlap {
     Audit::new(simulation).deepest(simulation)
 }
@@ -184,8 +228,12 @@ fn corner_depth(boundary: &Boundary, place: &[Point], p: &[EdgeId], q: &[EdgeId]
         !boundary.partial[e] || !polygon::contains(&polygon, foot + outward * (foot - x).norm().max(ROOM))
     };
     let depth = |x: Point| {
-        let outer = q.iter().filter(|&&e| is_way_in(e, x));
-        outer.map(|&e| segment::distance(x, ends(e).0, ends(e).1)).fold(f64::INFINITY, f64::min)
+        let mut near: Vec<(f64, EdgeId)> = q.iter().map(|&e| (segment::distance(x, ends(e).0, ends(e).1), e)).collect();
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.iter().find(|&&(_, e)| is_way_in(e, x)).map_or(f64::INFINITY, |(distance, _)| *distance)
     };
-    p.iter().map(|&k| place[k]).filter(|&x| polygon::contains(&polygon, x)).map(depth).fold(0.0, f64::max)
+    let (low, high) = polygon::bounds(&polygon);
+    let is_boxed = |x: &Point| x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y;
+    let inside = p.iter().map(|&k| place[k]).filter(is_boxed).filter(|&x| polygon::contains(&polygon, x));
+    inside.map(depth).fold(0.0, f64::max)
 }
