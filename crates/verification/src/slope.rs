@@ -24,7 +24,8 @@ pub fn slope_text(spacing: f64, seconds: f64) -> String {
     );
     format!(
         "title = \"Fractured slope\"\n[domain]\n\
-         outline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\n[mesh]\nsize = {:e}\n\
+         outline = [[0, 0], [230, 0], [230, 120], [120, 120], [60, 20], [0, 20]]\nextend_ends = 0\n\
+         [mesh]\nleast_block = 0\nsize = {:e}\n\
          angle_deg = 7.0\n{}{}[rock.gneiss]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n\
          [joint_law.joint]\nfriction_deg = 50\n[[fix]]\nedge = [[0, 0], [230, 0]]\n[[fix]]\nedge = [[0, 0], [0, 20]]\n\
          axes = \"x\"\n[[fix]]\nedge = [[230, 0], [230, 120]]\naxes = \"x\"\n[[stage]]\nname = \"gravity\"\n\

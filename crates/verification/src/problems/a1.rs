@@ -87,8 +87,8 @@ fn case(setup: &Setup, seed: u64) -> String {
     let joints: String = (0..setup.get("joints") as usize).map(joint).collect();
     let sets: String = [seed, seed + 100].map(|seed| joint_set(&mut random, setup.get("traces"), seed)).concat();
     format!(
-        "title = \"Patch\"\n[domain]\noutline = {OUTLINE:?}\n[mesh]\nsize = {:?}\nangle_deg = {:?}\norigin = [{:?}, \
-         {:?}]\n\
+        "title = \"Patch\"\n[domain]\noutline = {OUTLINE:?}\nextend_ends = 0\n[mesh]\nleast_block = 0\n\
+         size = {:?}\nangle_deg = {:?}\norigin = [{:?}, {:?}]\n\
          {joints}{sets}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\npoisson = {:?}\n[joint_law.joint]\nfriction_deg = \
          30.0\n\
          [[stage]]\nname = \"none\"\nkind = \"dynamic\"\nduration = 1.0\n",
