@@ -219,7 +219,8 @@ impl<F: Arithmetic> Tally<F> {
     }
 }
 
-/// Common velocity of all covers of a block, which depends only on their position and mass: a + (μ/m)·b + spin·J90·q.
+/// Common velocity of all covers of a block, which depends only on their position and mass:
+/// a + (μ/m)·b + spin·J90·q + widening·q.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Common {
     /// a (m/s).
@@ -228,24 +229,26 @@ pub struct Common {
     pub weighted: Vector,
     /// Spin (rad/s) about the reference.
     pub spin: f64,
+    /// Radial velocity over the distance from the reference (1/s).
+    pub widening: f64,
 }
 
 impl Common {
     /// A spin about a position q, and a translation.
     pub fn about(velocity: Vector, spin: f64, centre: Vector) -> Self {
-        Self { velocity: velocity - turned(centre) * spin, weighted: Vector::zeros(), spin }
+        Self { velocity: velocity - turned(centre) * spin, spin, ..Self::default() }
     }
 
     /// The same in all lanes, for a loop over covers.
     #[inline(always)]
     fn shared<L: Lanes>(&self, lanes: L) -> Shared<L::F> {
         let (velocity, weighted) = (splat(lanes, self.velocity), splat(lanes, self.weighted));
-        let spin = lanes.splat(self.spin);
+        let (spin, widening) = (lanes.splat(self.spin), lanes.splat(self.widening));
         if self.weighted == Vector::zeros() {
             let velocity = [velocity[0] + weighted[0], velocity[1] + weighted[1]];
-            return Shared { velocity, weighted: None, spin };
+            return Shared { velocity, weighted: None, spin, widening };
         }
-        Shared { velocity, weighted: Some(weighted), spin }
+        Shared { velocity, weighted: Some(weighted), spin, widening }
     }
 }
 
@@ -254,6 +257,7 @@ struct Shared<F> {
     velocity: [F; 2],
     weighted: Option<[F; 2]>,
     spin: F,
+    widening: F,
 }
 
 impl<F: Arithmetic> Shared<F> {
@@ -265,7 +269,8 @@ impl<F: Arithmetic> Shared<F> {
             let ratio = chunk.inertial / chunk.mass;
             (x, y) = (x + ratio * weighted[0], y + ratio * weighted[1]);
         }
-        [x - self.spin * chunk.q[1], y + self.spin * chunk.q[0]]
+        let [q, r] = chunk.q;
+        [x - self.spin * r + self.widening * q, y + self.spin * q + self.widening * r]
     }
 }
 

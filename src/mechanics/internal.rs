@@ -40,16 +40,35 @@ pub struct Deformation {
     trace: f64,
 }
 
+/// Σ u⊗G of three covers, row by row, and `unit` times I.
+fn gradient(unit: f64, u: [Vector; 3], g: &[Vector; 3]) -> [f64; 4] {
+    [
+        unit + u[0].x * g[0].x + u[1].x * g[1].x + u[2].x * g[2].x,
+        u[0].x * g[0].y + u[1].x * g[1].y + u[2].x * g[2].y,
+        u[0].y * g[0].x + u[1].y * g[1].x + u[2].y * g[2].x,
+        unit + u[0].y * g[0].y + u[1].y * g[1].y + u[2].y * g[2].y,
+    ]
+}
+
 impl Deformation {
     /// F = I + Σ u⊗G with the displacements of the three covers.
     pub fn new(u: [Vector; 3], g: &[Vector; 3]) -> Self {
-        let f11 = 1.0 + u[0].x * g[0].x + u[1].x * g[1].x + u[2].x * g[2].x;
-        let f12 = u[0].x * g[0].y + u[1].x * g[1].y + u[2].x * g[2].y;
-        let f21 = u[0].y * g[0].x + u[1].y * g[1].x + u[2].y * g[2].x;
-        let f22 = 1.0 + u[0].y * g[0].y + u[1].y * g[1].y + u[2].y * g[2].y;
-        let (a, b) = (f11 + f22, f21 - f12);
+        Self::of(gradient(1.0, u, g))
+    }
+
+    /// The deformation before the three covers moved by `moved` (m), in the frame that has turned with the element:
+    /// F − ΔF + θJF, θ being the turn in ΔF. Rock that only turns is not strained.
+    pub fn before(&self, moved: [Vector; 3], g: &[Vector; 3]) -> Self {
+        let [f11, f12, f21, f22] = self.f;
+        let [d11, d12, d21, d22] = gradient(0.0, moved, g);
+        let turn = 0.5 * (d21 * f22 - d22 * f21 - d12 * f11 + d11 * f12) / (f11 * f22 - f12 * f21);
+        Self::of([f11 - d11 - turn * f21, f12 - d12 - turn * f22, f21 - d21 + turn * f11, f22 - d22 + turn * f12])
+    }
+
+    fn of(f: [f64; 4]) -> Self {
+        let (a, b) = (f[0] + f[3], f[2] - f[1]);
         let trace = (a * a + b * b).sqrt();
-        Self { f: [f11, f12, f21, f22], cos: a / trace, sin: b / trace, trace }
+        Self { f, cos: a / trace, sin: b / trace, trace }
     }
 
     /// F − R.

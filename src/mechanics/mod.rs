@@ -13,6 +13,7 @@ mod motion;
 mod plasticity;
 pub mod pressure;
 mod record;
+mod turn;
 
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
@@ -25,3 +26,4 @@ pub use motion::{
 };
 pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
 pub use record::Record;
+pub use turn::Turn;

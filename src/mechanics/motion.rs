@@ -7,7 +7,7 @@ use super::MassMatrix;
 use super::block_lanes::{BlockSums, Common, Reference, WorkSums};
 
 /// J90·v: turned by +90°.
-fn turned(v: Vector) -> Vector {
+pub(super) fn turned(v: Vector) -> Vector {
     Vector::new(-v.y, v.x)
 }
 
@@ -32,12 +32,14 @@ pub struct BlockMotion {
 }
 
 /// A velocity field of a block, split into its rigid part and sums over the rest.
-struct Sums {
-    velocity: Vector,
+pub(super) struct Sums {
+    pub velocity: Vector,
     linear: Vector,
-    moment: f64,
+    pub moment: f64,
+    /// Half the rate at which the polar inertia grows (kg·m²/(m·s)).
+    pub radial: f64,
     /// Polar inertia of the lumped masses about their own centroid at the current positions (kg·m²/m).
-    polar: f64,
+    pub polar: f64,
 }
 
 /// One block's slices of the cover arrays and its index in the mass matrix.
@@ -62,31 +64,34 @@ impl BlockCovers<'_> {
     }
 
     /// Centroid of the block in its metric.
-    fn centre(&self) -> Point {
+    pub(super) fn centre(&self) -> Point {
         let first: Point = self.range.clone().map(|i| self.position(i) * self.mass_matrix.inertial[i]).sum();
         first / self.mass_matrix.total[self.block]
     }
 
     /// Rigid velocity of a field and the sums over the rest (Eq. 5).
-    fn sums(&self, field: &[Vector], centre: Point) -> Sums {
+    pub(super) fn sums(&self, field: &[Vector], centre: Point) -> Sums {
         let mass_matrix = self.mass_matrix;
         let total = mass_matrix.total[self.block];
         let velocity = self.range.clone().map(|i| field[i] * mass_matrix.inertial[i]).sum::<Vector>() / total;
-        let (mut moment, mut polar, mut first, mut linear) = (0.0, 0.0, Vector::zeros(), Vector::zeros());
+        let (mut moment, mut radial, mut polar) = (0.0, 0.0, 0.0);
+        let (mut first, mut linear) = (Vector::zeros(), Vector::zeros());
         for i in self.range.clone() {
             let (m, d, u) = (mass_matrix.mass[i], self.position(i) - centre, field[i] - velocity);
             first += d * m;
             linear += u * m;
             moment += m * d.perp(&u);
+            radial += m * d.dot(&u);
             polar += m * d.norm_squared();
         }
         moment -= first.perp(&linear) / total;
+        radial -= first.dot(&linear) / total;
         polar -= first.norm_squared() / total;
-        Sums { velocity, linear, moment, polar }
+        Sums { velocity, linear, moment, radial, polar }
     }
 
     /// Σm(a−va)·(b−vb) of two fields less their mean: the part of their product that is not translation.
-    fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
+    pub(super) fn product(&self, a: &[Vector], b: &[Vector], of: &Sums, with: &Sums) -> f64 {
         let sum: f64 = self
             .range
             .clone()
@@ -181,6 +186,11 @@ impl BlockStart {
         }
     }
 
+    /// Angular velocity (rad/s).
+    pub fn spin(&self) -> f64 {
+        self.moment / self.polar
+    }
+
     /// Centroid and inertia correction for contacts: C·J_D' is constant, so that J·L/J_D is kept to round-off in every
     /// kick and drift.
     pub fn motion(&self, mass_matrix: &MassMatrix, block: BlockId) -> BlockMotion {
@@ -191,7 +201,7 @@ impl BlockStart {
         BlockMotion { centre, spin: (mass_matrix.polar_lumped[block] / mass_matrix.polar[block] - 1.0) / self.polar }
     }
 
-    /// Common velocity that damping and the forces on a block give to all its covers (Eqs. 3, 11).
+    /// Common velocity that damping and the forces on a block give to all its covers (Eqs. 3, 11, 83).
     pub fn common(&self, mass_matrix: &MassMatrix, block: BlockId, sums: &BlockSums, step: &KickStep) -> Common {
         let mut common = Common::default();
         if let Damping::Deformation(factor) = step.damping
@@ -199,7 +209,7 @@ impl BlockStart {
         {
             let share = 1.0 - factor;
             let rigid = self.from.velocity + self.velocity;
-            common = Common::about(rigid * share, self.moment / self.polar * share, self.centre);
+            common = Common::about(rigid * share, self.spin() * share, self.centre);
         }
         if mass_matrix.is_free(block) {
             let share = mass_matrix.inverse_total[block];
@@ -211,6 +221,9 @@ impl BlockStart {
             common.velocity += by_force.velocity;
             common.spin += by_force.spin;
             common.weighted = sums.force * (-share * step.kick);
+            let own = mass_matrix.polar[block] / mass_matrix.polar_lumped[block];
+            common.widening = own * self.spin().powi(2) * step.kick;
+            common.velocity -= self.centre * common.widening;
         }
         common
     }

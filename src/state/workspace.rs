@@ -6,7 +6,7 @@ use crate::contact::{
 };
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
-use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, YieldSurface};
+use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
 
 use super::{Buffers, Model, State};
 
@@ -66,6 +66,8 @@ pub struct Workspace {
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.
     pub push: Vec<BlockImpulse>,
+    /// How each block turns at the end of the step; none for one that does not.
+    pub turns: Vec<Option<Turn>>,
     /// Law of each joint trace after switches.
     pub trace_law: Vec<LawId>,
     /// Yield surface of each rock in this step; none for one that never yields.

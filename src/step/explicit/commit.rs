@@ -24,6 +24,7 @@ impl Step<'_> {
         if self.report {
             self.drift(dt);
         }
+        self.turn(dt);
         let state = &mut *self.state;
         for row in &self.workspace.bolts {
             let segment = &self.model.bolts[row.segment as usize];

@@ -8,6 +8,7 @@ mod finish;
 mod kick;
 mod predict;
 mod touch;
+mod turn;
 mod works;
 mod yielding;
 

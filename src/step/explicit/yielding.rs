@@ -56,7 +56,7 @@ impl Pass<'_> {
             let (at, pre) =
                 (self.model.deformation(element, self.displacement), self.model.pre_stress_and_out(element));
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
-                let taken = surface.taken(&self.before(element), &at, &pre, [plastic, &growth]);
+                let taken = surface.taken(&self.before(element, &at), &at, &pre, [plastic, &growth]);
                 (0..4).for_each(|k| plastic[k] += growth[k]);
                 energy += taken * covers.element_area[element];
             }
@@ -65,10 +65,9 @@ impl Pass<'_> {
     }
 
     /// Deformation of an element one step ago.
-    fn before(&self, element: ElementId) -> Deformation {
+    fn before(&self, element: ElementId, now: &Deformation) -> Deformation {
         let covers = &self.model.covers;
-        let position = |i: CoverId| self.displacement[i] - self.velocity[i] * self.dt_last;
         let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
-        Deformation::new(covers.element_covers[element].map(position), gradients)
+        now.before(covers.element_covers[element].map(|i: CoverId| self.velocity[i] * self.dt_last), gradients)
     }
 }
