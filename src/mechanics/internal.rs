@@ -56,12 +56,11 @@ impl Deformation {
         Self::of(gradient(1.0, u, g))
     }
 
-    /// The deformation before the three covers moved by `moved` (m), in the frame that has turned with the element:
-    /// F − ΔF + θJF, θ being the turn in ΔF. Rock that only turns is not strained.
-    pub fn before(&self, moved: [Vector; 3], g: &[Vector; 3]) -> Self {
+    /// The deformation before the three covers moved by `moved` (m), in the frame of a block that has turned by `turn`
+    /// (rad) since: F − ΔF + θJF (Eqs. 81, 82).
+    pub fn before(&self, moved: [Vector; 3], turn: f64, g: &[Vector; 3]) -> Self {
         let [f11, f12, f21, f22] = self.f;
         let [d11, d12, d21, d22] = gradient(0.0, moved, g);
-        let turn = 0.5 * (d21 * f22 - d22 * f21 - d12 * f11 + d11 * f12) / (f11 * f22 - f12 * f21);
         Self::of([f11 - d11 - turn * f21, f12 - d12 - turn * f22, f21 - d21 + turn * f11, f22 - d22 + turn * f12])
     }
 

@@ -23,6 +23,7 @@ pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::MassMatrix;
 pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
+    turning,
 };
 pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
 pub use record::Record;

@@ -122,6 +122,15 @@ pub fn rigid_motion(covers: &BlockCovers) -> (Point, Vector, f64) {
     (centre, sums.velocity, covers.spin(&sums))
 }
 
+/// Angular velocity (rad/s) with which a step turns a block: 0 of a fixed one.
+pub fn turning(covers: &BlockCovers) -> f64 {
+    if !covers.mass_matrix.is_free(covers.block) {
+        return 0.0;
+    }
+    let sums = covers.sums(covers.velocity, covers.centre());
+    sums.moment / sums.polar
+}
+
 /// Writes the velocity (m/s) of a block's covers that is a translation (m/s) plus a spin (rad/s) about the centroid.
 pub fn rigid_velocity(covers: &BlockCovers, velocity: Vector, spin: f64, out: &mut [Vector]) {
     let centre = covers.centre();

@@ -19,8 +19,9 @@ pub struct Turn {
     angle: f64,
     sin: f64,
     versed: f64,
-    /// Angular velocities (rad/s) before and after, at the same angular momentum.
-    spin: [f64; 2],
+    /// Angular velocity (rad/s) before, and by how much it grows at the same angular momentum.
+    spin: f64,
+    growth: f64,
 }
 
 impl Turn {
@@ -33,11 +34,22 @@ impl Turn {
         let centre = covers.centre();
         let sums = covers.sums(covers.velocity, centre);
         let square = covers.product(covers.velocity, covers.velocity, &sums, &sums);
-        let polar = sums.polar - 2.0 * dt * sums.radial + dt * dt * square;
-        let angle = sums.moment / polar * dt;
-        let spin = [sums.moment / polar, sums.moment / (sums.polar - angle * angle * polar)];
+        let radial = sums.radial - dt * square;
+        let polar = sums.polar - dt * (sums.radial + radial);
+        let spin = sums.moment / polar;
+        let widened = dt * (2.0 * radial + dt * (square - spin * sums.moment));
+        let (angle, growth) = (spin * dt, -spin * widened / (polar + widened));
         let half = libm::sin(0.5 * angle);
-        Self { centre, velocity: sums.velocity, dt, angle, sin: libm::sin(angle), versed: 2.0 * half * half, spin }
+        Self {
+            centre,
+            velocity: sums.velocity,
+            dt,
+            angle,
+            sin: libm::sin(angle),
+            versed: 2.0 * half * half,
+            spin,
+            growth,
+        }
     }
 
     /// Turns a cover; returns by how much its displacement changes (m).
@@ -46,12 +58,17 @@ impl Turn {
         let (along, own) = (star - self.centre + *displacement, *velocity - self.velocity);
         let before = along - own * self.dt;
         let back = turned(before) * self.angle;
-        let strained = along - back;
-        let shift = turned(strained) * self.sin - strained * self.versed - back;
-        let straining = own - turned(before) * self.spin[0];
-        let twisted = straining + turned(straining) * self.sin - straining * self.versed;
+        let shift = self.turn(along - back) - back;
+        let straining = own - turned(before) * self.spin;
+        let carried = turned(straining + self.turn(straining)) * self.angle;
         *displacement += shift;
-        *velocity = self.velocity + turned(along + shift) * self.spin[1] + twisted;
+        *velocity += self.turn(own) + carried + turned(along + shift) * self.growth;
         shift
+    }
+
+    /// What turning adds to a vector.
+    #[inline(always)]
+    fn turn(&self, v: Vector) -> Vector {
+        turned(v) * self.sin - v * self.versed
     }
 }

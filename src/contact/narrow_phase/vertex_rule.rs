@@ -51,8 +51,8 @@ impl NarrowPhase<'_> {
     ///
     /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
     /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as
-    /// well, or else (q, the side of p that turns towards it). The corner leaves through the less deep facet. The
-    /// compression of springs, of this facet or of others beside it, does not count as depth. Parallel faces do not
+    /// well, or else (q, the side of p that turns towards it). The corner leaves through the less deep facet of those
+    /// that can hold it: whose corner is over the side, or that carry force. The compression of springs, of this facet or of others beside it, does not count as depth. Parallel faces do not
     /// exclude each other; a sharp block may be pierced: the node is then beyond the facet round its tip.
     fn overlap_round(&self, node: NodeId, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
@@ -82,13 +82,25 @@ impl NarrowPhase<'_> {
             self.closure_with(meets, self.boundary.sides_of_node(node)[end as usize])
         };
         let beyond = depth - closure.max(self.let_in_by_others(node, meets, out));
-        if flush {
+        let (other, foot) = if faces_round {
+            ((node, boundary.side[round]), (p - q).dot(&self.away(round, end)))
+        } else {
+            ((meets, boundary.sides_of_node(node)[end as usize]), (q - p).dot(&own) / distance)
+        };
+        let can_hold = foot >= -self.corner_tolerance(candidate) || self.carries(other.0, other.1);
+        if flush || !can_hold {
             return Some(beyond / along);
         }
         let closure = candidate.held.map_or(0.0, |known| -candidate.gap * self.history[known as usize].share);
         let tie = TIE_TOLERANCE * self.size;
         let way_out = || -candidate.gap - closure.max(self.let_in_by_others(node, meets, normal));
         (-candidate.gap <= beyond + tie || way_out() <= beyond + tie).then_some(beyond / along)
+    }
+
+    /// Direction of the side round an end of another, away from that end.
+    fn away(&self, round: EdgeId, end: End) -> Vector {
+        let tangent = self.frames.edge(round).tangent;
+        if end == End::Finish { tangent } else { -tangent }
     }
 
     /// Distance (m) by which a node and a corner of another block separate along a direction, out of that block, when

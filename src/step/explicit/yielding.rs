@@ -2,10 +2,12 @@
 
 use rayon::prelude::*;
 
-use crate::cover::{CoverId, ElementId};
+use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, PlasticStrain, YieldSurface};
+use crate::mechanics::{self, Deformation, MassMatrix, PlasticStrain, YieldSurface};
 use crate::state::{Model, State, Workspace};
+
+use super::report;
 
 /// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
 const RUN: usize = 1024;
@@ -22,7 +24,8 @@ pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time:
     workspace.yielded.clear();
     workspace.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    let pass = Pass { model, surfaces: &workspace.surfaces, displacement, velocity, dt_last: *dt_last, removed };
+    let (surfaces, mass_matrix) = (&workspace.surfaces[..], &workspace.mass_matrix);
+    let pass = Pass { model, surfaces, mass_matrix, displacement, velocity, dt_last: *dt_last, removed };
     let runs = workspace.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
     if workspace.serial {
         runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
@@ -37,6 +40,7 @@ pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time:
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
+    mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
     dt_last: f64,
@@ -47,7 +51,7 @@ impl Pass<'_> {
     /// Updates the elements from `first` on; returns the energy (J/m) that it takes.
     fn run(&self, first: usize, plastic: &mut [PlasticStrain]) -> f64 {
         let covers = &self.model.covers;
-        let mut energy = 0.0;
+        let (mut energy, mut turn) = (0.0, None);
         for (element, plastic) in ElementId::range(first..first + plastic.len()).zip(plastic) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element]] {
@@ -56,7 +60,7 @@ impl Pass<'_> {
             let (at, pre) =
                 (self.model.deformation(element, self.displacement), self.model.pre_stress_and_out(element));
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
-                let taken = surface.taken(&self.before(element, &at), &at, &pre, [plastic, &growth]);
+                let taken = surface.taken(&self.before(element, &at, &mut turn), &at, &pre, [plastic, &growth]);
                 (0..4).for_each(|k| plastic[k] += growth[k]);
                 energy += taken * covers.element_area[element];
             }
@@ -64,10 +68,19 @@ impl Pass<'_> {
         energy
     }
 
-    /// Deformation of an element one step ago.
-    fn before(&self, element: ElementId, now: &Deformation) -> Deformation {
+    /// Deformation of an element one step ago, in the frame of its block; `turn` is that of the last block asked for.
+    fn before(&self, element: ElementId, now: &Deformation, turn: &mut Option<(BlockId, f64)>) -> Deformation {
         let covers = &self.model.covers;
-        let gradients = &covers.gradients[covers.element_triangle[element].set as usize];
-        now.before(covers.element_covers[element].map(|i: CoverId| self.velocity[i] * self.dt_last), gradients)
+        let block = covers.element_block[element];
+        let known = turn.filter(|known| known.0 == block);
+        let (_, angle) = *turn.insert(known.unwrap_or_else(|| (block, self.turn(block))));
+        let moved = covers.element_covers[element].map(|i: CoverId| self.velocity[i] * self.dt_last);
+        now.before(moved, angle, &covers.gradients[covers.element_triangle[element].set as usize])
+    }
+
+    /// Angle (rad) by which the last step turned a block.
+    fn turn(&self, block: BlockId) -> f64 {
+        let covers = report::block_covers(self.model, self.mass_matrix, self.displacement, self.velocity, block);
+        mechanics::turning(&covers) * self.dt_last
     }
 }
