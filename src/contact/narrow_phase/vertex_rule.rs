@@ -52,8 +52,9 @@ impl NarrowPhase<'_> {
     /// Two convex corners p and q overlap when they are inside both facets next to their meeting: pairs of one's corner
     /// and a side of the other that it faces. Next to (p, side) comes (p, the side round q), where p faces that as
     /// well, or else (q, the side of p that turns towards it). The corner leaves through the less deep facet of those
-    /// that can hold it: whose corner is over the side, or that carry force. The compression of springs, of this facet or of others beside it, does not count as depth. Parallel faces do not
-    /// exclude each other; a sharp block may be pierced: the node is then beyond the facet round its tip.
+    /// that can hold it: whose corner is over the side, or that carry force. The compression of springs, of this facet
+    /// or of others beside it, does not count as depth. Parallel faces do not exclude each other; a sharp block may be
+    /// pierced: the node is then beyond the facet round its tip.
     fn overlap_round(&self, node: NodeId, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
         let boundary = self.boundary;
         let SideEnd { round, point: corner, .. } = boundary.side_ends[candidate.side][end as usize];
