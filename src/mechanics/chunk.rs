@@ -39,6 +39,18 @@ pub struct Chunk {
     batches: Range<usize>,
 }
 
+impl Chunk {
+    /// Blocks with covers here, each with these covers.
+    pub fn parts<'a>(&self, covers: &'a Covers) -> impl Iterator<Item = (BlockId, Range<usize>)> + use<'a> {
+        let here = self.covers.clone();
+        let blocks = self.part_of.map_or(self.blocks.clone(), |b| b.index()..b.index() + 1);
+        BlockId::range(blocks).map(move |block| {
+            let own = covers.covers_of(block);
+            (block, own.start.max(here.start)..own.end.min(here.end))
+        })
+    }
+}
+
 /// Elements of one gradient set and one rock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {

@@ -52,9 +52,9 @@ impl Turn {
         }
     }
 
-    /// Turns a cover; returns by how much its displacement changes (m).
+    /// Turns a cover.
     #[inline]
-    pub fn apply(&self, star: Point, displacement: &mut Vector, velocity: &mut Vector) -> Vector {
+    pub fn apply(&self, star: Point, displacement: &mut Vector, velocity: &mut Vector) {
         let (along, own) = (star - self.centre + *displacement, *velocity - self.velocity);
         let before = along - own * self.dt;
         let back = turned(before) * self.angle;
@@ -63,10 +63,9 @@ impl Turn {
         let carried = turned(straining + self.turn(straining)) * self.angle;
         *displacement += shift;
         *velocity += self.turn(own) + carried + turned(along + shift) * self.growth;
-        shift
     }
 
-    /// What turning adds to a vector.
+    /// Change of a vector by the turn.
     #[inline(always)]
     fn turn(&self, v: Vector) -> Vector {
         turned(v) * self.sin - v * self.versed

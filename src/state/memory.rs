@@ -116,7 +116,7 @@ impl Workspace {
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", mass_matrix(&self.mass_matrix)),
-            ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.touching])),
+            ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.turns, &self.touching])),
             ("places", self.frames.bytes()),
             ("near sides", self.near_sides.bytes()),
             ("accepted pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),

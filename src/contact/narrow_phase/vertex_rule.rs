@@ -77,18 +77,13 @@ impl NarrowPhase<'_> {
         if -candidate.gap < most && depth > 2.0 * most {
             return Some(depth / along);
         }
-        let closure = if faces_round {
-            self.closure_with(node, boundary.side[round])
+        let (tip, facet, foot) = if faces_round {
+            (node, boundary.side[round], (p - q).dot(&self.away(round, end)))
         } else {
-            self.closure_with(meets, self.boundary.sides_of_node(node)[end as usize])
+            (meets, boundary.sides_of_node(node)[end as usize], (q - p).dot(&own) / distance)
         };
-        let beyond = depth - closure.max(self.let_in_by_others(node, meets, out));
-        let (other, foot) = if faces_round {
-            ((node, boundary.side[round]), (p - q).dot(&self.away(round, end)))
-        } else {
-            ((meets, boundary.sides_of_node(node)[end as usize]), (q - p).dot(&own) / distance)
-        };
-        let can_hold = foot >= -self.corner_tolerance(candidate) || self.carries(other.0, other.1);
+        let beyond = depth - self.closure_with(tip, facet).max(self.let_in_by_others(node, meets, out));
+        let can_hold = foot >= -self.corner_tolerance(candidate) || self.carries(tip, facet);
         if flush || !can_hold {
             return Some(beyond / along);
         }

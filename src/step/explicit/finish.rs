@@ -15,6 +15,11 @@ use super::chunk_runs::{Cut, Run, Work};
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
 const NEAR: f64 = 0.99;
 
+/// Whether no cover is as far as the distance of failure, given the largest square of a displacement (m²).
+pub(super) fn is_near(model: &Model, farthest: f64) -> bool {
+    farthest < NEAR * model.failure_displacement.powi(2)
+}
+
 /// The end of a step: contacts' part of the velocities, new positions, sums for the works.
 pub(super) struct Finish<'a> {
     pub model: &'a Model,
@@ -67,10 +72,7 @@ impl Work for Finish<'_> {
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
         let common = sums.common;
-        let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b.index()..b.index() + 1);
-        for block in BlockId::range(blocks).filter(|&b| !self.mass_matrix.fixed[b]) {
-            let own = self.model.covers.covers_of(block);
-            let covers = own.start.max(chunk.covers.start)..own.end.min(chunk.covers.end);
+        for (block, covers) in chunk.parts(&self.model.covers).filter(|&(b, _)| !self.mass_matrix.fixed[b]) {
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let of_part = chunk
                 .part_of
@@ -96,7 +98,7 @@ impl Work for Finish<'_> {
                 sums.damping += self.damping_work(block, &works);
             }
         }
-        sums.is_near = farthest < NEAR * self.model.failure_displacement.powi(2);
+        sums.is_near = is_near(self.model, farthest);
     }
 }
 

@@ -10,13 +10,11 @@ use crate::mechanics::{BlockStart, MassMatrix, Turn};
 use crate::state::{Model, Workspace};
 
 use super::chunk_runs::{self, Run, Work};
-use super::finish::Finished;
+use super::finish::{Finished, is_near};
 use super::{Step, report};
 
 /// Blocks that one thread looks at, at least.
 const BLOCKS: usize = 512;
-/// Share of the distance of failure that a turn may move a cover before the block is looked at again.
-const FAR: f64 = 1e-3;
 
 impl Step<'_> {
     /// Turns the blocks that spin, after a step of `dt` (s).
@@ -43,7 +41,7 @@ impl Step<'_> {
     }
 }
 
-/// Whether a block turns in `dt` (s) by an angle that double precision can tell from none.
+/// Whether a block turns in `dt` (s) by an angle above the rounding of double precision.
 fn spins(mass_matrix: &MassMatrix, block: BlockId, start: &BlockStart, push: &BlockImpulse, dt: f64) -> bool {
     if !mass_matrix.is_free(block) {
         return false;
@@ -65,17 +63,15 @@ impl Work for Turning<'_> {
     fn chunk<L: Lanes>(&self, _: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
         let (chunk, covers) = (self.model.chunks.get(k), &self.model.covers);
         let Finished { velocity, displacement, sums: [sums] } = out else { return };
-        let blocks = chunk.part_of.map_or(chunk.blocks.clone(), |b| b.index()..b.index() + 1);
         let mut farthest = 0.0;
-        for block in BlockId::range(blocks) {
+        for (block, own) in chunk.parts(covers) {
             let Some(turn) = &self.turns[block.index()] else { continue };
-            let own = covers.covers_of(block);
-            for i in own.start.max(chunk.covers.start)..own.end.min(chunk.covers.end) {
+            for i in own {
                 let at = i - chunk.covers.start;
-                let shift = turn.apply(covers.star_position[i], &mut displacement[at], &mut velocity[at]);
-                farthest = f64::max(farthest, shift.norm_squared());
+                turn.apply(covers.star_position[i], &mut displacement[at], &mut velocity[at]);
+                farthest = f64::max(farthest, displacement[at].norm_squared());
             }
         }
-        sums.is_near &= farthest < (FAR * self.model.failure_displacement).powi(2);
+        sums.is_near &= is_near(self.model, farthest);
     }
 }
