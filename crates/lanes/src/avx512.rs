@@ -252,8 +252,8 @@ impl Lanes for Avx512 {
     fn load_some(self, values: &[f64], fill: f64) -> Register {
         match values.first_chunk() {
             Some(full) => self.load(full),
-            // SAFETY: the token proves AVX-512F; lanes beyond the end are not read.
             None => {
+                // SAFETY: the token proves AVX-512F; lanes beyond the end are not read.
                 Register(unsafe { _mm512_mask_loadu_pd(_mm512_set1_pd(fill), first(values.len()), values.as_ptr()) })
             }
         }

@@ -16,7 +16,7 @@ mod prefetch;
 mod table;
 
 pub use first::First;
-pub use path::{Path, dispatch, dispatch_on, path};
+pub use path::{Path, VARIABLE, dispatch, dispatch_on, requested};
 pub use places::Places;
 pub use prefetch::prefetch;
 pub use table::{SLOTS, Slot, Table};

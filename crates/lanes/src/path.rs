@@ -1,6 +1,6 @@
 //! Which kind of lanes runs: the widest that the processor has, or the one that is requested.
 
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::Kernel;
 use super::portable::Portable;
@@ -46,17 +46,42 @@ impl Path {
     }
 }
 
-/// The kind that [`dispatch`] takes: the widest there is, or a narrower one that `ENMM_LANES` names.
-pub fn path() -> Path {
-    static PATH: OnceLock<Path> = OnceLock::new();
-    *PATH.get_or_init(|| {
-        let wanted = std::env::var("ENMM_LANES").unwrap_or_default();
-        let all = Path::all();
-        all.iter().copied().find(|p| p.name() == wanted).unwrap_or(all[all.len() - 1])
+/// Name of the environment variable that asks for a kind of lanes.
+pub const VARIABLE: &str = "ENMM_LANES";
+
+/// The kind that `ENMM_LANES` names, else the widest of this processor.
+///
+/// # Errors
+/// A message for the user: no kind has that name, or this processor lacks it.
+pub fn requested() -> Result<Path, String> {
+    let all = Path::all();
+    let Some(wanted) = std::env::var_os(VARIABLE).filter(|wanted| !wanted.is_empty()) else {
+        return Ok(all[all.len() - 1]);
+    };
+    all.iter().copied().find(|kind| wanted == kind.name()).ok_or_else(|| {
+        let names = all.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+        format!("is {wanted:?}, must be one of those that this processor has: {names}; correct or unset it")
     })
 }
 
-/// Runs a kernel with the lanes of [`path`].
+/// The kind that [`dispatch`] takes: the one [`requested`], or the widest where the request is none of this processor,
+/// which builders of models refuse.
+fn path() -> Path {
+    /// Number of the kind and 1, once it is known; threads that find it at the same time find the same.
+    static KNOWN: AtomicU8 = AtomicU8::new(0);
+    const KINDS: [Path; 3] = [Path::Portable, Path::Avx2, Path::Avx512];
+    match KNOWN.load(Ordering::Relaxed) {
+        0 => {
+            let all = Path::all();
+            let path = requested().unwrap_or(all[all.len() - 1]);
+            KNOWN.store(path as u8 + 1, Ordering::Relaxed);
+            path
+        }
+        known => KINDS[usize::from(known) - 1],
+    }
+}
+
+/// Runs a kernel with the lanes that `ENMM_LANES` names, else with the widest of this processor.
 #[inline]
 pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     dispatch_on(path(), kernel)

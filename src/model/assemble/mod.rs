@@ -66,6 +66,7 @@ pub struct Built {
 /// The first key of the case that does not fit the model: integrator, geometry, references to positions without rock,
 /// memory.
 pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
+    enmm_lanes::requested().map_err(|message| Invalid { key: enmm_lanes::VARIABLE.to_owned(), message })?;
     case.validate()?;
     integrators.refusal(case).map_or(Ok(()), Err)?;
     let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
