@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm_report::PAGE;
-use enmm_run::{BoundFailure, bound_record, write_bound_page};
+use enmm_run::{BoundFailure, Folder, bound_record, write_bound_page};
 use enmm_stability::limit_analysis::{Bound, Collapse};
 
 use crate::case::CaseArguments;
@@ -29,11 +29,15 @@ pub struct Arguments {
 pub fn bound(arguments: &Arguments) -> ExitCode {
     let Arguments { case, output, json } = arguments;
     let json = *json;
-    let found = case.load().map_err(BoundFailure::from);
-    match found.and_then(|loaded| enmm_run::bound(&loaded).map(|bound| (loaded, bound))) {
-        Ok((loaded, bound)) => {
+    let directory = output.clone().unwrap_or_else(|| directory_for(&case.path, "bound"));
+    let loaded = case.load().map_err(BoundFailure::from);
+    let found = loaded.and_then(|loaded| {
+        let held = Folder::open(&directory, loaded.source.inputs()).map_err(BoundFailure::Directory)?;
+        enmm_run::bound(&loaded).map(|bound| (loaded, held, bound))
+    });
+    match found {
+        Ok((loaded, _held, bound)) => {
             print_line(&if json { bound_record(&bound).to_string() } else { text(&bound) });
-            let directory = output.clone().unwrap_or_else(|| directory_for(&case.path, "bound"));
             if let Err(error) = write_bound_page(&directory, &loaded, &bound) {
                 return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
             }
@@ -45,7 +49,8 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
             if json {
                 print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
             }
-            let status = if matches!(error, BoundFailure::Case(_)) { BAD_INPUT } else { FAILED };
+            let status =
+                if matches!(error, BoundFailure::Case(_) | BoundFailure::Directory(_)) { BAD_INPUT } else { FAILED };
             return fail(&error, status);
         }
     }

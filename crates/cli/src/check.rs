@@ -4,9 +4,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use enmm::model::Simulation;
-use enmm_io::CaseError;
-use enmm_run::Observer;
 use enmm_run::check::Check;
+use enmm_run::{Folder, Observer};
 
 use crate::case::CaseArguments;
 use crate::progress::Screen;
@@ -15,7 +14,7 @@ use crate::{BAD_INPUT, FAILED, fail, print_line};
 /// Builds the model of a case, prints what it is, and draws it into a directory if there is one.
 pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> ExitCode {
     let mut screen = Screen::new(json);
-    let looked = look(case, &mut screen);
+    let looked = look(case, directory, &mut screen);
     screen.close();
     let refuse = |error: &dyn std::fmt::Display, status| {
         if json {
@@ -23,9 +22,9 @@ pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> Exit
         }
         fail(&error, status)
     };
-    let (simulation, found) = match looked {
+    let (simulation, _held, found) = match looked {
         Ok(looked) => looked,
-        Err(error) => return refuse(&error, BAD_INPUT),
+        Err(message) => return refuse(&message, BAD_INPUT),
     };
     if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
         return refuse(&format!("cannot draw the model ({error}): choose another directory with -o"), FAILED);
@@ -39,14 +38,22 @@ pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> Exit
     ExitCode::SUCCESS
 }
 
-fn look(case: &CaseArguments, screen: &mut Screen) -> Result<(Simulation, Check), CaseError> {
-    let loaded = case.load()?;
-    let invalid = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
+/// The model of a case, the folder for its picture, and the report.
+fn look(
+    case: &CaseArguments,
+    directory: Option<&Path>,
+    screen: &mut Screen,
+) -> Result<(Simulation, Option<Folder>, Check), String> {
+    let loaded = case.load().map_err(|error| error.to_string())?;
+    let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs())).transpose();
+    let held = held.map_err(|error| format!("cannot draw the model ({error}): choose another directory with -o"))?;
+    let invalid =
+        |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message).to_string();
     let build = enmm_implicit::build(loaded.case.clone(), &mut |stage| screen.build(stage));
     let mut simulation = build.map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
     let found = enmm_run::check(&simulation, &loaded.warnings);
-    Ok((simulation, found))
+    Ok((simulation, held, found))
 }
 
 /// Memory while the model runs, and what of it is the model, its state (held twice) and the buffers of a step.

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use enmm_fmi::pack::{PackError, Packed, pack};
 use enmm_fmi::platform::Library;
 use enmm_fmi::{library, table};
+use enmm_io::files::read_input;
 
 use crate::case::CaseArguments;
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
@@ -48,7 +49,9 @@ pub fn fmu(arguments: &Arguments) -> ExitCode {
         Err((message, status)) => return fail(&message, status),
     };
     packed.warnings.iter().for_each(|warning| tell_line(&format!("warning: {warning}")));
-    if let Err(error) = enmm_io::files::write_atomic(&output, &packed.bytes) {
+    let folder = output.parent().unwrap_or(Path::new(""));
+    let made = if folder.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(folder) };
+    if let Err(error) = made.and_then(|()| enmm_io::files::write_atomic(&output, &packed.bytes)) {
         return fail(&format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
     }
     print_line(&line(&packed, version, &output));
@@ -65,14 +68,20 @@ fn default_output(case: &Path) -> PathBuf {
 fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
     let case = arguments.case.path.as_path();
     let loaded = arguments.case.load().map_err(|error| (error.to_string(), BAD_INPUT))?;
-    if output.canonicalize().is_ok_and(|output| case.canonicalize().is_ok_and(|case| case == output)) {
-        return Err((format!("{} is the case itself: choose another file with -o", output.display()), BAD_INPUT));
+    let mut inputs = loaded.source.inputs().to_vec();
+    let mut libraries = Vec::new();
+    for given in &arguments.library {
+        let (path, library) = other(given, version)?;
+        inputs.push(path);
+        libraries.push(library);
     }
-    let mut libraries: Vec<Library> =
-        arguments.library.iter().map(|given| other(given, version)).collect::<Result<_, _>>()?;
     if libraries.iter().all(|library| library.folder != library::platform(version)) {
-        libraries.push(own(version)?);
+        let (path, library) = own(version)?;
+        inputs.push(path);
+        libraries.push(library);
     }
+    let refuse = |error| (format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
+    enmm_run::check_output(output, &inputs).map_err(refuse)?;
     let name = case.file_name().unwrap_or_default().to_string_lossy();
     pack(&loaded, &name, version, &libraries).map_err(|error| {
         let status = if matches!(error, PackError::Part(..)) { FAILED } else { BAD_INPUT };
@@ -81,21 +90,24 @@ fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Resu
 }
 
 /// The library beside this program.
-fn own(version: table::Version) -> Result<Library, (String, u8)> {
+fn own(version: table::Version) -> Result<(PathBuf, Library), (String, u8)> {
     let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
     let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;
     let unreadable = |error| (format!("{}: cannot read the library ({error})", path.display()), BAD_INPUT);
-    std::fs::read(&path).map_err(unreadable).map(|bytes| Library::of_this_system(version, bytes))
+    let bytes = read_input(&path).map_err(unreadable)?;
+    Ok((path, Library::of_this_system(version, bytes)))
 }
 
 /// A library that was given as `PLATFORM=PATH`.
-fn other(given: &str, version: table::Version) -> Result<Library, (String, u8)> {
+fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), (String, u8)> {
     let wrong = |reason: String| (format!("--library {given}: {reason}"), BAD_INPUT);
     let (platform, path) = given
         .split_once('=')
         .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmi3.dll".to_owned()))?;
-    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
-    Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))
+    let path = PathBuf::from(path);
+    let bytes = read_input(&path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
+    let library = Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))?;
+    Ok((path, library))
 }
 
 fn line(packed: &Packed, version: table::Version, output: &Path) -> String {

@@ -84,6 +84,9 @@ fn main() -> ExitCode {
 }
 
 fn execute(command: Command) -> ExitCode {
+    if let Err(message) = enmm_lanes::requested() {
+        return fail(&format!("{}: {message}", enmm_lanes::VARIABLE), BAD_INPUT);
+    }
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),

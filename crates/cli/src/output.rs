@@ -49,9 +49,11 @@ pub fn finish(status: ExitCode) -> ExitCode {
     if status == ExitCode::SUCCESS { failed } else { status }
 }
 
-/// Prints a line to standard error; a failure of that cannot be reported.
+/// Prints a line to standard error; a failure of that cannot be reported. Control characters, which terminals obey and
+/// file names may have, are shown by their codes.
 pub fn tell_line(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
+    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    let _ = writeln!(io::stderr(), "{}", text.chars().map(shown).collect::<String>());
 }
 
 /// Prints an error as one line and returns its exit status.

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     screen.close();
     match outcome {
         Ok(summary) => report(&summary, &options.directory, arguments.quiet),
-        Err(error @ RunError::Output(_)) => fail(&error, FAILED),
+        Err(error @ (RunError::Output(_) | RunError::OutputAfter { .. })) => fail(&error, FAILED),
         Err(error) => fail(&error, BAD_INPUT),
     }
 }

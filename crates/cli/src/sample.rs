@@ -111,7 +111,7 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
         Ok(found) => report(arguments, &found, &options),
         Err(error) => {
             let status = match error {
-                EnsembleError::Case(_) => BAD_INPUT,
+                EnsembleError::Case(_) | EnsembleError::Directory(_) => BAD_INPUT,
                 EnsembleError::Interrupted { .. } => INTERRUPTED,
                 _ => FAILED,
             };

@@ -51,7 +51,7 @@ fn nothing_is_written_for_a_bad_case_or_a_bad_place() {
     assert!(text(&output.stderr).starts_with("error: missing.toml: cannot read") && is_empty(folder.path()));
     let case = folder.path().join("case.toml");
     std::fs::copy(example(), &case).unwrap();
-    for (place, told) in [("case.toml", "is the case itself"), ("case.toml/x.fmu", "cannot write the FMU")] {
+    for (place, told) in [("case.toml", "which is the input"), ("case.toml/x.fmu", "cannot write the FMU")] {
         let output = enmm(folder.path(), &["case.toml", "-o", place]);
         assert_eq!(output.status.code(), Some(2));
         let error = text(&output.stderr);

@@ -46,7 +46,7 @@ fn devices_pipes_and_directories_are_no_checkpoints() {
     fs::create_dir(place.path("folder")).expect("made");
     for path in ["/dev/zero", "/dev/full", "pipe", "folder"] {
         let answer = place.enmm(&["run", "case.toml", "-o", "out", "--resume", path]);
-        answer.assert_bad_input(&[path, "no regular file", "checkpoint.enmm"]);
+        answer.assert_bad_input(&[path, "no file", "checkpoint"]);
     }
     assert!(!place.path("out").exists());
 }

@@ -1,10 +1,11 @@
 //! Errors of input files, each one line that names the file, the line and the key.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use thiserror::Error;
+
+use super::files::open_input;
 
 /// Why an input file cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -57,6 +58,17 @@ impl CaseError {
     }
 }
 
+/// A text as a message may show it: in quotes if it `looks` like what was asked for, else by a word alone, since the
+/// file may be any file of the user, such as one with passwords.
+pub(super) fn shown(text: &str, looks: bool) -> String {
+    if looks { format!("{text:?}") } else { "the line".to_owned() }
+}
+
+/// Whether a text is made of the signs of numbers alone.
+pub(super) fn is_numeric(text: &str) -> bool {
+    text.chars().all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ';' | 'e' | 'E' | ' ' | '\t'))
+}
+
 /// Largest input file (bytes).
 const SIZE_MAX: u64 = 1 << 28;
 
@@ -67,7 +79,7 @@ const SIZE_MAX: u64 = 1 << 28;
 pub fn read_text(path: &Path) -> Result<String, String> {
     let unreadable = |error: std::io::Error| format!("cannot read the file ({error}); check its path and permissions");
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
+    let file = open_input(path).map_err(unreadable)?;
     file.take(SIZE_MAX + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > SIZE_MAX {
         return Err(format!("the file has more than {SIZE_MAX} bytes, the limit; split or thin it"));

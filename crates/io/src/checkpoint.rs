@@ -1,13 +1,12 @@
 //! Checkpoint files: saved states that are written whole or not at all, and looked at before they are read.
 
-use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::files::write_atomic;
+use super::files::{open_input, write_atomic};
 use enmm::state::bytes::{BytesError, HEAD_MAX, decode, encode, head};
 
 /// Why a checkpoint cannot be used.
@@ -16,9 +15,6 @@ pub enum CheckpointError {
     /// The file cannot be read.
     #[error("cannot read the checkpoint ({0}); check its path and permissions")]
     Unreadable(io::Error),
-    /// It is a directory, a pipe or a device.
-    #[error("this is no regular file: give a checkpoint.enmm that a run has written")]
-    NoFile,
     /// Its bytes are no state of this case.
     #[error(transparent)]
     Bytes(#[from] BytesError),
@@ -37,18 +33,14 @@ pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Resu
 /// # Errors
 /// When the file cannot be read, or is no whole checkpoint of this engine and case.
 pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, CheckpointError> {
-    // Opening a pipe would wait for its writer.
-    let metadata = fs::metadata(path).map_err(CheckpointError::Unreadable)?;
-    if !metadata.is_file() {
-        return Err(CheckpointError::NoFile);
-    }
-    let mut file = File::open(path).map_err(CheckpointError::Unreadable)?;
+    let mut file = open_input(path).map_err(CheckpointError::Unreadable)?;
+    let length = file.metadata().map_err(CheckpointError::Unreadable)?.len();
     let mut bytes = Vec::new();
     file.by_ref().take(HEAD_MAX as u64).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
-    head(&bytes, case_hash)?.check_size(metadata.len())?;
+    head(&bytes, case_hash)?.check_size(length)?;
     bytes
-        .try_reserve_exact((metadata.len() as usize).saturating_sub(bytes.len()))
+        .try_reserve_exact((length as usize).saturating_sub(bytes.len()))
         .map_err(|error| CheckpointError::Unreadable(io::Error::new(io::ErrorKind::OutOfMemory, error.to_string())))?;
-    file.take(metadata.len()).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
+    file.take(length).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
     Ok(decode(&bytes, case_hash)?)
 }

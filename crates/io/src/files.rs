@@ -1,7 +1,7 @@
 //! Files that are either whole or absent. Knows nothing of what is written into them.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -15,7 +15,8 @@ pub fn at_path(path: &Path) -> impl FnOnce(io::Error) -> io::Error + '_ {
 
 /// Replaces the file at `path` by `bytes` in one move, so that a reader or a killed run never sees half of it.
 ///
-/// The bytes first go to a temporary file beside `path`; missing directories are made.
+/// The bytes first go to a temporary file beside `path`. A missing directory is an error: one that is removed during a
+/// run does not come back with a part of the results.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message; the old file is then untouched.
@@ -44,11 +45,29 @@ pub fn temporary_beside(path: &Path) -> io::Result<PathBuf> {
     let mut hidden = std::ffi::OsString::from(".");
     hidden.push(name);
     hidden.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-    let directory = path.parent().unwrap_or(Path::new(""));
-    if !directory.as_os_str().is_empty() {
-        fs::create_dir_all(directory)?;
+    Ok(path.with_file_name(hidden))
+}
+
+/// Opens a regular file to read it. A pipe, a socket or a device is not opened at all, so that nothing waits for its
+/// other end.
+///
+/// # Errors
+/// It is something else, or what the file system refuses.
+pub fn open_input(path: &Path) -> io::Result<File> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a directory, a pipe or a device and no file"));
     }
-    Ok(directory.join(hidden))
+    File::open(path)
+}
+
+/// Reads a regular file.
+///
+/// # Errors
+/// As [`open_input`].
+pub fn read_input(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_input(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Kinds of files that runs and searches leave.

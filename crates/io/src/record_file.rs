@@ -1,6 +1,6 @@
 //! Reader of records: CSV files whose first two columns are time (s) and value.
 
-use super::case_error::CaseError;
+use super::case_error::{CaseError, is_numeric, shown};
 use enmm::model::case::TimeTable;
 
 /// A record and the line of each of its rows.
@@ -25,11 +25,13 @@ pub fn parse(file: &str, text: &str) -> Result<Record, CaseError> {
             continue;
         }
         if line.contains(';') && line.contains(',') {
-            let message = format!("{line:?} has commas and semicolons; write decimal points, as in `0.02, 1.5`");
+            let line = shown(line, is_numeric(line));
+            let message = format!("{line} has commas and semicolons; write decimal points, as in `0.02, 1.5`");
             return Err(CaseError::at(file, k, "", message));
         }
         let mut fields = line.split([',', ';', '\t', ' ']).filter(|field| !field.is_empty());
-        match [fields.next(), fields.next()].map(number) {
+        let begun = !record.rows.is_empty();
+        match [fields.next(), fields.next()].map(|field| number(field, begun)) {
             [Ok(time), Ok(value)] => {
                 record.rows.push([time, value]);
                 record.lines.push(k);
@@ -48,10 +50,15 @@ pub fn parse(file: &str, text: &str) -> Result<Record, CaseError> {
     Ok(record)
 }
 
-fn number(field: Option<&str>) -> Result<f64, String> {
+/// The number of a column; `begun` when lines before it have numbers, so that the file looks like a record.
+fn number(field: Option<&str>, begun: bool) -> Result<f64, String> {
     let field = field.ok_or("the line has fewer than 2 columns")?;
-    let value = field.parse::<f64>().map_err(|_| format!("{field:?} is no number"))?;
-    if value.is_finite() { Ok(value) } else { Err(format!("{field:?} is not finite")) }
+    let is_none = |fault: &str| match begun || is_numeric(field) {
+        true => format!("{field:?} is {fault}"),
+        false => format!("a column is {fault}"),
+    };
+    let value = field.parse::<f64>().map_err(|_| is_none("no number"))?;
+    if value.is_finite() { Ok(value) } else { Err(is_none("not finite")) }
 }
 
 #[cfg(test)]
@@ -70,7 +77,7 @@ mod tests {
     fn a_line_that_cannot_be_used_is_named() {
         for (text, message) in [
             ("t,a\n0,1\n0.1,x\n", "quake.csv:3: \"x\" is no number"),
-            ("t,a\nunits,g\n0,1\n", "quake.csv:2: \"units\" is no number"),
+            ("t,a\nunits,g\n0,1\n", "quake.csv:2: a column is no number"),
             ("0,00;0,10\n", "quake.csv:1: \"0,00;0,10\" has commas and semicolons"),
             ("0,1\n0.1\n", "quake.csv:2: the line has fewer than 2 columns"),
             ("0,1\n0.1,inf\n", "quake.csv:2: \"inf\" is not finite"),

@@ -93,7 +93,7 @@ fn json_of_the_wrong_shape_is_located() {
         "g.json:2: joints[0]: has 1 points, a joint trace needs at least 2; add points or remove it"
     );
     assert_eq!(error(&json("7")), "g.json:2: joints[0]: is 7, must be an array; write `[…]`");
-    assert_eq!(error("[1]"), "g.json:1: is an array of 1 values, must be an object with `outline`");
+    assert_eq!(error("[1]"), "g.json:1: the file is no object; write `{\"outline\": [[x, y], …]}`");
     assert_eq!(
         error("{\"name\": \"x\"}"),
         "g.json:1: the file has none of the keys outline, holes, islands, joints; add one"
@@ -265,7 +265,7 @@ fn dxf_that_cannot_be_used_is_located() {
             "g.dxf:20: LINE is not in the x-y plane (extrusion -1.0); draw it seen from above",
         ),
         ("ENTITIES", "TABLES", "g.dxf:1: no section ENTITIES, which holds the lines; save the drawing as ASCII DXF"),
-        ("0\nSECTION", "x\nSECTION", "g.dxf:1: \"x\" is no group code of DXF, a whole number; save it again"),
+        ("0\nSECTION", "x\nSECTION", "g.dxf:1: the line is no group code of DXF, a whole number; save it again"),
     ] {
         assert!(DXF.contains(from), "{from:?}");
         assert_eq!(with_geometry("g.dxf", &DXF.replacen(from, to, 1)).unwrap_err(), *message);

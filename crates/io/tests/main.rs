@@ -5,6 +5,7 @@ mod common;
 mod errors;
 mod expand;
 mod geometry_files;
+mod issue_a_message_showed_a_line_of_any_file;
 mod key_reference;
 mod limits;
 mod support;

@@ -58,7 +58,11 @@ fn a_line_that_cannot_be_used_is_named() {
         ("g.wkt", "LINE (0 0)\n", "g.wkt:1: geometry[0]: \"LINE (0 0)\" is no geometry ("),
         ("g.wkt", "\nLINESTRING (0 0,\n 1 1\n", "g.wkt:2: a `(` is not closed before the end of the file; add `)`"),
         ("g.wkt", "# nothing\n", "g.wkt:1: the file has no geometry; write `LINESTRING (0 0, 4 3)`"),
-        ("g.csv", "a,b\n1,2\n", "g.csv:1: the columns are a, b, must be `wkt`, or `x1, y1, x2, y2`, or `trace, x, y`"),
+        (
+            "g.csv",
+            "a,b\n1,2\n",
+            "g.csv:1: the columns are none of ours, must be `wkt`, or `x1, y1, x2, y2`, or `trace, x, y`",
+        ),
         ("g.csv", "trace,x,y\n1,0,0\n1,a,0\n", "g.csv:3: \"a\" is no finite number; correct it"),
         ("g.csv", "trace;x;y\n1;0,5;0\n", "g.csv:2: \"0,5\" is no finite number; write a decimal point"),
         ("g.csv", "trace,x,y\n1,0\n", "g.csv:2: no row of the table: "),

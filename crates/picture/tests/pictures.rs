@@ -21,7 +21,9 @@ use tiny_skia::Pixmap;
 
 /// Where a person can look at the pictures.
 fn shown(name: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures").join(name)
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.join(name)
 }
 
 /// Rasterises, checks the frame of the PNG and keeps it.

@@ -1,5 +1,7 @@
 //! Limit analysis from case file to record.
 
+use std::io;
+
 use serde_json::{Value, json};
 
 use enmm_io::CaseError;
@@ -12,6 +14,9 @@ pub enum BoundFailure {
     /// The case cannot be built, or holds what limit analysis cannot treat.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// The directory cannot take the page.
+    #[error("cannot write the page ({0}): choose another directory with -o")]
+    Directory(io::Error),
     /// The solver gave up.
     #[error("{0}")]
     Unsolved(BoundError),

@@ -10,11 +10,12 @@ use std::{fs, io};
 use serde_json::{Value, json};
 
 use super::bound::bound_record;
+use super::folder::Folder;
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
 use super::run::has_run;
 use enmm::engine_version;
-use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
+use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
 use enmm_report::PAGE;
@@ -110,6 +111,9 @@ pub enum FosError {
     /// The threads cannot be started.
     #[error("cannot start {0} threads: ask for fewer")]
     Threads(usize),
+    /// The directory cannot take results.
+    #[error("cannot write results ({0}): choose another directory with -o")]
+    Directory(io::Error),
     /// A result cannot be written.
     #[error("cannot write results ({0}): choose another directory with -o")]
     Output(io::Error),
@@ -125,6 +129,7 @@ pub fn fos(
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Found, FosError> {
     let clock = Instant::now();
+    let _held = Folder::open(&options.directory, loaded.source.inputs()).map_err(FosError::Directory)?;
     let found = search(loaded, options, hear)?;
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
     let directory = &options.directory;
@@ -168,7 +173,6 @@ pub fn search(
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
-    sweep_temporaries(directory)?;
     let path = directory.join("fos.json");
     let text = serde_json::to_vec_pretty(record).map_err(io::Error::from).map_err(at_path(&path))?;
     write_table(&directory.join("fos.csv"), &reduction.trials)?;

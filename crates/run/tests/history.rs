@@ -17,7 +17,7 @@ fn text(path: &Path) -> String {
 #[test]
 fn rows_are_in_the_file_at_once_and_exact() {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("new/history.csv");
+    let path = directory.path().join("history.csv");
     let mut history = HistoryWriter::new(&path, &COLUMNS).unwrap();
     assert_eq!(text(&path), HEADER);
     let rows = [[0.1 + 0.2, -1e-300, 3.0], [1.0, f64::MIN_POSITIVE, f64::NAN], [2.0, 1.0 / 3.0, f64::MAX]];
@@ -96,11 +96,13 @@ fn names_with_commas_survive() {
 #[test]
 fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("a/b/summary.json");
+    let path = directory.path().join("summary.json");
     write_atomic(&path, b"first").unwrap();
     write_atomic(&path, b"second").unwrap();
     assert_eq!(text(&path), "second");
     assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    write_atomic(&directory.path().join("missing/summary.json"), b"bytes").unwrap_err();
+    assert!(!directory.path().join("missing").exists(), "a folder that was removed does not come back");
 }
 
 #[test]

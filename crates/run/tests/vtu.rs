@@ -20,6 +20,7 @@ fn directory(name: &str) -> PathBuf {
     if directory.exists() {
         fs::remove_dir_all(&directory).unwrap();
     }
+    fs::create_dir_all(&directory).unwrap();
     directory
 }
 
@@ -99,7 +100,7 @@ fn integers(document: &Document, name: &str) -> Vec<i64> {
 
 #[test]
 fn elements_come_back_as_they_were() {
-    let path = directory("vtu_elements").join("deep/elements.vtu");
+    let path = directory("vtu_elements").join("elements.vtu");
     let snapshot = small().moved(0.3, 1.0);
     write_vtu(&snapshot, &path).unwrap();
     let text = fs::read_to_string(path).unwrap();

@@ -28,12 +28,14 @@ const COLUMNS: usize = 110;
 /// When the file system refuses it.
 pub fn write(record: &Record, solved: &[Solved], directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = vec![directory.join(DOCUMENT), directory.join(RECORD)];
+    let plots = directory.join(PLOTS);
+    std::fs::create_dir_all(&plots).map_err(at_path(&plots))?;
     write_atomic(&paths[0], document(record).as_bytes())?;
     write_atomic(&paths[1], json(record).as_bytes())?;
     for solved in solved {
-        let plots = solved.outcome.iter().flat_map(|outcome| &outcome.plots);
-        for (k, plot) in plots.enumerate() {
-            let path = directory.join(PLOTS).join(plot::file_name(solved.job.problem.id, k));
+        let drawn = solved.outcome.iter().flat_map(|outcome| &outcome.plots);
+        for (k, plot) in drawn.enumerate() {
+            let path = plots.join(plot::file_name(solved.job.problem.id, k));
             write_atomic(&path, plot::picture(plot).svg().as_bytes())?;
             paths.push(path);
         }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use enmm::model::case::Integrator;
-use enmm_io::files::write_atomic;
+use enmm_io::files::{at_path, write_atomic};
 
 use crate::{Outcome, Problem, Setup, Trouble, Values};
 
@@ -89,6 +89,7 @@ pub fn solve_all(jobs: Vec<Job>, threads: usize, done: impl Fn(usize, &Solved) +
 /// When the file system refuses it.
 pub fn write_cases(solved: &Solved, directory: &Path) -> std::io::Result<Vec<PathBuf>> {
     let folder = directory.join(solved.job.problem.id.to_lowercase());
+    std::fs::create_dir_all(&folder).map_err(at_path(&folder))?;
     let mut paths: Vec<PathBuf> = Vec::new();
     for (name, text) in &solved.cases {
         let stem = file_stem(name);

@@ -233,6 +233,26 @@ pub fn table(key: &Key, rows: &TimeTable) -> Check {
     Ok(())
 }
 
+/// Checks that a name does no harm where it is shown: terminals obey control characters, and spreadsheets take a text
+/// that begins with `=`, `+`, `-` or `@` for a formula.
+///
+/// # Errors
+/// It has one of these.
+pub fn harmless(key: &Key, name: &str) -> Check {
+    if let Some(sign) = name.chars().find(|c| c.is_control()) {
+        return fail(key, format!("{name:?} has the control character {sign:?}, which no name must have; remove it"));
+    }
+    match name.trim_start().chars().next().filter(|c| "=+-@".contains(*c)) {
+        Some(sign) => {
+            let message = format!(
+                "{name:?} begins with `{sign}`, from which spreadsheets make a formula; begin with a letter or a digit"
+            );
+            fail(key, message)
+        }
+        None => Ok(()),
+    }
+}
+
 /// Checks that names are not empty and that no two are equal; a thing without a name is skipped.
 ///
 /// # Errors
@@ -244,6 +264,7 @@ pub fn unique<'a>(key: &Key, what: &str, names: impl Iterator<Item = Option<&'a 
         if name.trim().is_empty() {
             return fail(&place, format!("is {name:?}, a {what} needs at least one letter; give it a name"));
         }
+        harmless(&place, name)?;
         if let Some(first) = seen.insert(name, i) {
             let message =
                 format!("{name:?} is already the name of {}, names must differ; rename one", key.index(first));

@@ -16,8 +16,8 @@ use thiserror::Error;
 use super::key::Key;
 use super::{Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, Rock, Solver};
 use checks::{
-    COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, number, optional, point, points, polygon, region,
-    unique, whole,
+    COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, harmless, number, optional, point, points,
+    polygon, region, unique, whole,
 };
 
 /// A value of a case that cannot be used.
@@ -38,6 +38,8 @@ impl Case {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.must_be_expanded()?;
         let root = Key::root();
+        self.rocks.keys().try_for_each(|name| harmless(&root.field("rock"), name))?;
+        self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name))?;
         domain(&root.field("domain"), &self.domain)?;
         mesh(&root.field("mesh"), &self.mesh)?;
         self.validate_joints(&root)?;

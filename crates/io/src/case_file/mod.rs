@@ -3,7 +3,7 @@
 mod reader;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::case_error::{CaseError, read_text};
 use super::geometry_file::{self, Format, Geometry, Trace};
@@ -11,6 +11,10 @@ use super::lines::{LineMap, beginnings};
 use super::record_file;
 use enmm::cosimulation::Cosimulation;
 use enmm::model::case::{Case, Invalid, JointTrace};
+
+/// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
+/// are read far faster.
+const CASE_BYTES_MAX: usize = 8 << 20;
 
 /// A case that has been read and checked.
 #[derive(Debug, Clone)]
@@ -75,12 +79,19 @@ pub struct CaseSource {
     origins: BTreeMap<String, String>,
     /// Settings by their keys.
     settings: BTreeMap<String, String>,
+    /// Files that were read.
+    inputs: Vec<PathBuf>,
 }
 
 impl CaseSource {
     /// Returns the case file as the user named it.
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// Returns the paths of the files that the case was read from.
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
     }
 
     /// Returns the text of the case file, with settings as comments at its end; empty when the case was not read from
@@ -136,7 +147,9 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, CaseError> {
 pub fn load_case_with(path: &Path, settings: &[impl AsRef<str>]) -> Result<LoadedCase, CaseError> {
     let file = path.display().to_string();
     let text = read_text(path).map_err(|message| CaseError::Unreadable { file: file.clone(), message })?;
-    parse_case_with(&text, &file, path.parent().unwrap_or(Path::new("")), settings)
+    let mut loaded = parse_case_with(&text, &file, path.parent().unwrap_or(Path::new("")), settings)?;
+    loaded.source.inputs.push(path.to_owned());
+    Ok(loaded)
 }
 
 /// Reads a case from text; `file_name` stands in messages, and `base_dir` is where relative paths start.
@@ -153,6 +166,14 @@ fn parse_case_with(
     base_dir: &Path,
     settings: &[impl AsRef<str>],
 ) -> Result<LoadedCase, CaseError> {
+    if text.len() > CASE_BYTES_MAX {
+        let message = format!(
+            "the case has {} bytes, the limit is {CASE_BYTES_MAX}; move outline and traces to a \
+             `domain.geometry_file`, and records to a `file`",
+            text.len()
+        );
+        return Err(CaseError::at(file_name, 1, "", message));
+    }
     let (mut case, lines, settings) = reader::read(text, file_name, settings)?;
     let file = file_name.to_string();
     let notes = settings.values().map(|setting| format!("\n# --set {}", setting.replace('\n', " ")));
@@ -180,6 +201,7 @@ fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path)
             let text = read_text(&path);
             let text = text.map_err(|message| source.locate(&key("file"), &format!("{shown:?}: {message}")))?;
             let record = record_file::parse(&shown, &text)?;
+            source.inputs.push(path);
             *table = Some(record.rows);
             source.records.insert(key("table"), (shown, record.lines));
         }
@@ -193,6 +215,7 @@ fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path
     let path = base_dir.join(name);
     source.geometry_file = path.display().to_string();
     let geometry = read_geometry_file(case, source, &path)?;
+    source.inputs.push(path);
     if !case.domain.outline.is_empty() && geometry.outline.is_some() {
         let message = format!("the outline is also in {:?}, only one can be; remove this one", source.geometry_file);
         return Err(source.locate("domain.outline", &message));

@@ -16,6 +16,9 @@ use enmm::model::case::key::{Key, list};
 /// Names in the column `law` that make loops.
 const LOOPS: [&str; 3] = ["outline", "hole", "island"];
 
+/// Names of columns; a file that has none of them is no such table, and no message shows a line of it.
+const COLUMNS: [&str; 12] = ["wkt", "geometry", "geom", "x1", "y1", "x2", "y2", "trace", "id", "x", "y", "law"];
+
 /// Columns by their places.
 enum Columns {
     Wkt(usize),
@@ -64,10 +67,11 @@ fn columns(names: &[String]) -> Result<(Columns, Option<usize>), String> {
     } else if let (Some(trace), Some(x), Some(y)) = (find(&["trace", "id"]), find(&["x"]), find(&["y"])) {
         Columns::Points { trace, xy: [x, y] }
     } else {
+        let is_table = names.iter().any(|name| COLUMNS.contains(&name.as_str()));
+        let found = if is_table { list(names.iter().map(String::as_str)) } else { "none of ours".to_owned() };
         return Err(format!(
-            "the columns are {}, must be `wkt`, or `x1, y1, x2, y2`, or `trace, x, y`, and `law` if there is one; name \
-             them in the first line",
-            list(names.iter().map(String::as_str))
+            "the columns are {found}, must be `wkt`, or `x1, y1, x2, y2`, or `trace, x, y`, and `law` if there is one; \
+             name them in the first line"
         ));
     };
     Ok((columns, find(&["law"])))

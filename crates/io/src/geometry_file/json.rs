@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use super::json_text::{Document, shown};
+use super::json_text::Document;
 use super::{Geometry, Located, Trace};
 use crate::case_error::CaseError;
 use enmm::model::case::key::{Key, edit_distance, list};
@@ -18,7 +18,7 @@ const KEYS: [&str; 4] = ["outline", "holes", "islands", "joints"];
 pub fn parse(document: Document) -> Result<Geometry, CaseError> {
     let root = Key::root();
     let Some(object) = document.value.as_object() else {
-        return document.fail(&root, format!("is {}, must be an object with `outline`", shown(&document.value)));
+        return document.fail(&root, "the file is no object; write `{\"outline\": [[x, y], …]}`".to_owned());
     };
     if !object.keys().any(|key| KEYS.contains(&key.as_str())) {
         return document.fail(&root, format!("the file has none of the keys {}; add one", list(KEYS)));

@@ -6,12 +6,24 @@ use wkt::Wkt;
 use wkt::types::{Coord, Polygon};
 
 use super::{Geometry, Trace};
-use crate::case_error::CaseError;
+use crate::case_error::{CaseError, shown};
 use enmm::model::case::PointList;
 use enmm::model::case::key::Key;
 
 /// How a geometry is written.
 const FORM: &str = "write `LINESTRING (0 0, 4 3)`";
+/// First words of geometries and of what users take for one: a message shows the text behind no other.
+const GEOMETRIES: [&str; 9] = [
+    "GEOMETRYCOLLECTION",
+    "LINE",
+    "LINEARRING",
+    "LINESTRING",
+    "MULTILINESTRING",
+    "MULTIPOINT",
+    "MULTIPOLYGON",
+    "POINT",
+    "POLYGON",
+];
 
 /// Reads the format.
 ///
@@ -68,9 +80,12 @@ impl Reader {
             Some((srid, rest)) if srid.trim_start().to_ascii_uppercase().starts_with("SRID=") => rest,
             _ => text,
         };
-        let shown: String = text.chars().take(40).collect();
-        let geometry =
-            text.trim().parse().map_err(|reason: &str| format!("{shown:?} is no geometry ({reason}); {FORM}"))?;
+        let geometry = text.trim().parse().map_err(|reason: &str| {
+            let word = text.trim_start().split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
+            let begin: String = text.chars().take(40).collect();
+            let text = shown(&begin, GEOMETRIES.contains(&word.to_ascii_uppercase().as_str()));
+            format!("{text} is no geometry ({reason}); {FORM}")
+        })?;
         self.walk(&geometry, key, law);
         Ok(())
     }

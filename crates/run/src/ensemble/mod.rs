@@ -16,6 +16,7 @@ use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key,
 use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
+use crate::folder::{Folder, check_output};
 use crate::fos::FosOptions;
 
 pub use answer::{answer, columns};
@@ -115,6 +116,9 @@ pub enum EnsembleError {
         /// Number of samples.
         n: usize,
     },
+    /// The directory or the store cannot take results.
+    #[error("cannot write results ({0}): choose another directory with -o, or another file with --store")]
+    Directory(io::Error),
     /// A result cannot be written.
     #[error("cannot write results ({0}): choose another directory with -o")]
     Output(io::Error),
@@ -143,6 +147,10 @@ pub fn ensemble(
     hear: &mut dyn FnMut(usize, usize),
 ) -> Result<EnsembleResult, EnsembleError> {
     let clock = Instant::now();
+    let inputs = loaded.source.inputs();
+    let held = Folder::open(&options.directory, inputs);
+    let _held =
+        held.and_then(|held| check_output(&options.store, inputs).map(|()| held)).map_err(EnsembleError::Directory)?;
     let located = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let samples = draw(&loaded.case).map_err(located)?;
     let rows = rows(loaded, options, &samples, ask, hear)?;

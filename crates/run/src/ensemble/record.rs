@@ -8,7 +8,7 @@ use enmm::engine_version;
 use enmm::model::case::Ensemble;
 use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
 use enmm_io::LoadedCase;
-use enmm_io::files::{at_path, sweep_temporaries, write_atomic};
+use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{histogram_picture, number_text};
 use serde_json::{Value as Json, json};
 
@@ -106,7 +106,6 @@ impl EnsembleResult {
     /// Writes all results; `ensemble.json` last, so that it is there when all others are.
     pub(super) fn write(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> io::Result<()> {
         let directory = &options.directory;
-        sweep_temporaries(directory)?;
         self.write_table(&directory.join("ensemble.csv"))?;
         let Interval { low, high } = self.interval();
         let caption = format!(

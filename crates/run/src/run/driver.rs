@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::blocks::write_blocks;
 use crate::film::{Film, Opening};
+use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
@@ -33,6 +34,8 @@ use super::results::Past;
 use super::rows::{self, Plan};
 use super::{Observer, RunError, RunOptions, RunProgress, results};
 
+/// Name of the checkpoint in the folder of a run.
+const CHECKPOINT: &str = "checkpoint.enmm";
 /// Most steps between two copies of the state to which a failed run falls back.
 const GOOD_STEPS: u64 = 200;
 /// Blocks that a warning names.
@@ -125,28 +128,26 @@ struct Driver<'a> {
     clock: Instant,
     stage_clock: Instant,
     warnings: Vec<String>,
+    /// Whether a checkpoint of this run is in its folder.
+    saved: bool,
 }
 
 /// Runs all stages; see [`super::run`].
 pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
     let clock = Instant::now();
+    let _held = Folder::open(&options.directory, loaded.source.inputs()).map_err(RunError::Directory)?;
     let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
     let mut simulation =
         enmm_implicit::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
     let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
     let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;
-    loop {
-        match driver.run_stage()? {
-            StageEnd::Over => {}
-            StageEnd::Interrupted => return driver.close(RunStatus::Interrupted, None),
-            StageEnd::Failed(error) => return driver.fail(&error),
+    driver.run(invalid).map_err(|error| match error {
+        RunError::Output(error) if driver.saved => {
+            RunError::OutputAfter { error, checkpoint: options.directory.join(CHECKPOINT) }
         }
-        if !driver.simulation.next_stage().map_err(invalid)? {
-            return driver.close(RunStatus::Finished, None);
-        }
-        driver.begin_stage().map_err(RunError::Output)?;
-    }
+        other => other,
+    })
 }
 
 fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
@@ -168,7 +169,7 @@ impl<'a> Driver<'a> {
         clock: Instant,
     ) -> Result<Self, RunError> {
         let directory = &options.directory;
-        let used = results::enter(directory).map_err(RunError::Directory)?;
+        let used = results::has_run(directory);
         let past = options.resume.as_deref().map(|checkpoint| results::bring_past(checkpoint, directory));
         let past = past.transpose().map_err(RunError::Directory)?;
         if used && past != Some(Past::Here) {
@@ -205,11 +206,27 @@ impl<'a> Driver<'a> {
             clock,
             stage_clock,
             warnings,
+            saved: false,
         };
         if !resumed {
             driver.begin_stage().map_err(RunError::Directory)?;
         }
         Ok(driver)
+    }
+
+    /// Runs all stages that are left.
+    fn run(&mut self, invalid: impl Fn(Invalid) -> RunError) -> Result<Summary, RunError> {
+        loop {
+            match self.run_stage()? {
+                StageEnd::Over => {}
+                StageEnd::Interrupted => return self.close(RunStatus::Interrupted, None),
+                StageEnd::Failed(error) => return self.fail(&error),
+            }
+            if !self.simulation.next_stage().map_err(&invalid)? {
+                return self.close(RunStatus::Finished, None);
+            }
+            self.begin_stage().map_err(RunError::Output)?;
+        }
     }
 
     fn begin_stage(&mut self) -> io::Result<()> {
@@ -495,23 +512,25 @@ impl<'a> Driver<'a> {
     }
 
     /// Writes the checkpoint of the state now.
-    fn save(&self) -> Result<(), RunError> {
+    fn save(&mut self) -> Result<(), RunError> {
         let mut progress = self.progress.clone();
         progress.done.iter_mut().for_each(|stage| stage.wall_seconds = None);
         let saved = Saved { state: self.simulation.state(), progress };
-        let path = self.options.directory.join("checkpoint.enmm");
-        checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)
+        let path = self.options.directory.join(CHECKPOINT);
+        checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)?;
+        self.saved = true;
+        Ok(())
     }
 
     /// Falls back to the last good state and closes.
-    fn fail(mut self, error: &StepError) -> Result<Summary, RunError> {
+    fn fail(&mut self, error: &StepError) -> Result<Summary, RunError> {
         self.simulation.return_to(&self.good.state);
         self.progress = self.good.progress.clone();
         self.close(RunStatus::Failed, Some(error))
     }
 
     /// Writes what a run leaves at its end, the checkpoint first and the summary last.
-    fn close(mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
+    fn close(&mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
         self.simulation.drop_buffers();
         self.save()?;
         self.history.check_place().map_err(RunError::Output)?;

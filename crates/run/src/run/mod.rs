@@ -94,8 +94,19 @@ pub enum RunError {
     #[error("cannot write results ({0}): choose another directory with -o")]
     Directory(io::Error),
     /// A result cannot be written.
-    #[error("cannot write results ({0}): make room and continue from the last checkpoint")]
+    #[error("cannot write results ({0}): see that the folder is there and has room, and run the case again")]
     Output(io::Error),
+    /// A result cannot be written, but a checkpoint has been.
+    #[error(
+        "cannot write results ({error}): see that the folder is there and has room, and continue with --resume {}",
+        checkpoint.display()
+    )]
+    OutputAfter {
+        /// The refusal of the file system.
+        error: io::Error,
+        /// The last checkpoint.
+        checkpoint: PathBuf,
+    },
 }
 
 /// Runs all stages of a case and writes its results.

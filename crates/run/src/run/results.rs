@@ -9,7 +9,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::case::PictureKind;
 use enmm::model::snapshot::Polygons;
 use enmm::model::{Case, Simulation, Snapshot};
-use enmm_io::files::{at_path, sweep_temporaries};
+use enmm_io::files::at_path;
 use enmm_picture::joints::Joints;
 use enmm_picture::structures::water_surface;
 use enmm_picture::{
@@ -20,6 +20,7 @@ use enmm_picture::{
 use enmm_report::FILM;
 
 use super::rows;
+use crate::folder::{FRAMES, make_frames};
 use crate::vtu::PARTS;
 
 /// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
@@ -36,14 +37,6 @@ const STAGE_PICTURES: [(PictureKind, &[&str]); 7] = [
 /// Files by which a directory is known as that of a run.
 const TRACES: [&str; 2] = ["history.csv", "summary.json"];
 
-/// Makes the directory, removes what a killed run left half written, and returns whether a run has been here before.
-pub fn enter(directory: &Path) -> io::Result<bool> {
-    fs::create_dir_all(directory).map_err(at_path(directory))?;
-    sweep_temporaries(directory)?;
-    sweep_temporaries(&directory.join("frames"))?;
-    Ok(has_run(directory))
-}
-
 /// Whether a run has written into a directory.
 pub fn has_run(directory: &Path) -> bool {
     TRACES.iter().any(|name| directory.join(name).exists())
@@ -52,8 +45,7 @@ pub fn has_run(directory: &Path) -> bool {
 /// Removes the frames and the pictures of stages of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
     stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
-    let frames_directory = directory.join("frames");
-    fs::create_dir_all(&frames_directory).map_err(at_path(&frames_directory))?;
+    make_frames(directory)?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
 }
 
@@ -79,7 +71,7 @@ fn stage_pictures(directory: &Path) -> io::Result<Vec<PathBuf>> {
 /// Files of frames in a directory.
 fn frames(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
-    let frames = directory.join("frames");
+    let frames = directory.join(FRAMES);
     for entry in fs::read_dir(&frames).map_err(at_path(&frames))? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -121,7 +113,7 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
     }
     stage_pictures(beside)?.iter().try_for_each(|picture| copy(picture))?;
     let collection = beside.join("run.pvd");
-    if collection.is_file() && beside.join("frames").is_dir() {
+    if collection.is_file() && beside.join(FRAMES).is_dir() {
         frames(beside)?.iter().try_for_each(|frame| copy(frame))?;
         copy(&collection)?;
     }
@@ -151,7 +143,6 @@ fn draw_slope(simulation: &Simulation, directory: &Path) -> io::Result<()> {
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()> {
-    fs::create_dir_all(directory).map_err(at_path(directory))?;
     if !simulation.case().output.pictures.include(PictureKind::Model) {
         draw_slope(simulation, directory)?;
     }

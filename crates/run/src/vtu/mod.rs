@@ -19,6 +19,8 @@ use enmm_io::files::{at_path, write_atomic, write_atomic_by};
 use enmm_picture::joints::{JointPiece, Joints};
 use enmm_picture::structures::{self, BoltLine, SupportKind, SupportPoint, WetEdge};
 
+use crate::folder::make_frames;
+
 /// Cell types of VTK.
 const VERTEX: u8 = 1;
 const POLY_VERTEX: u8 = 2;
@@ -303,6 +305,7 @@ impl PvdWriter {
     /// # Errors
     /// Whatever the file system refuses, with the path in the message.
     pub fn new(directory: &Path, parts: Vec<Part>) -> io::Result<Self> {
+        make_frames(directory)?;
         let writer = Self { directory: directory.to_owned(), parts, frames: Vec::new() };
         writer.write_collection()?;
         Ok(writer)
@@ -319,6 +322,7 @@ impl PvdWriter {
             Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(directory, parts),
             read => read.map_err(at_path(&path))?,
         };
+        make_frames(directory)?;
         let mut frames = listed_frames(&text).map_err(at_path(&path))?;
         frames.retain(|frame| frame.time <= keep_until_time);
         let writer = Self { directory: directory.to_owned(), parts, frames };

@@ -1,6 +1,6 @@
 //! The pairs of lines that a DXF file is made of: a code and a value.
 
-use crate::case_error::CaseError;
+use crate::case_error::{CaseError, shown};
 use enmm::model::case::key::Key;
 
 /// One pair of lines.
@@ -37,7 +37,8 @@ impl<'a> Groups<'a> {
                 if code.is_empty() && lines.all(|(_, rest)| rest.is_empty()) {
                     break;
                 }
-                return groups.syntax(line, format!("{code:?} is no group code of DXF, a whole number; save it again"));
+                let code = shown(code, !groups.all.is_empty());
+                return groups.syntax(line, format!("{code} is no group code of DXF, a whole number; save it again"));
             };
             let Some((line, value)) = lines.next() else {
                 return groups.syntax(line, format!("the value of group {code} is missing; the file is cut off"));

@@ -1,0 +1,213 @@
+//! The folder of results of a command: looked at before anything is written, and held by one process at a time.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use enmm_io::files::{at_path, sweep_temporaries};
+use same_file::Handle;
+
+/// Name of the file by which a process holds a folder.
+const LOCK: &str = ".enmm.lock";
+/// Folder of frames in a folder of results.
+pub(crate) const FRAMES: &str = "frames";
+/// Names of results beside the pictures of stages.
+const FILES: [&str; 19] = [
+    "blocks.csv",
+    "checkpoint.enmm",
+    "covers.png",
+    "deformed.png",
+    "ensemble.csv",
+    "ensemble.json",
+    "ensemble.png",
+    "ensemble.sqlite",
+    "failure.png",
+    "film.bin",
+    "fos.csv",
+    "fos.json",
+    "fos.png",
+    "history.csv",
+    "history.png",
+    "model.png",
+    "report.html",
+    "run.pvd",
+    "summary.json",
+];
+
+/// A folder of results that no other process writes to until this is dropped.
+#[derive(Debug)]
+pub struct Folder {
+    /// Folders that were made for it, outermost first.
+    made: Vec<PathBuf>,
+    lock: Option<Lock>,
+}
+
+/// A lock that its process holds; the system takes it back when the process ends in any way.
+#[derive(Debug)]
+struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Folder {
+    /// Makes a folder or takes one that is there, and removes what killed processes left half written in it.
+    ///
+    /// # Errors
+    /// Another process holds it; a result would replace one of the `inputs`; the name of a result is taken by what is
+    /// no regular file; or whatever the file system refuses. Each names the path.
+    pub fn open(path: &Path, inputs: &[PathBuf]) -> io::Result<Self> {
+        let mut folder = Self { made: Vec::new(), lock: None };
+        for missing in missing_folders(path) {
+            fs::create_dir(missing).map_err(at_path(missing))?;
+            folder.made.push(missing.to_owned());
+        }
+        if !path.is_dir() {
+            return Err(taken(path, "is no directory"));
+        }
+        folder.lock = Some(Lock::take(path)?);
+        check(path, inputs)?;
+        sweep_temporaries(path)?;
+        sweep_temporaries(&path.join(FRAMES))?;
+        Ok(folder)
+    }
+}
+
+impl Drop for Folder {
+    /// Gives the folder free; what was made for it and holds nothing goes again.
+    fn drop(&mut self) {
+        self.lock = None;
+        for made in self.made.iter().rev() {
+            // One that has results stays.
+            let _ = fs::remove_dir(made);
+        }
+    }
+}
+
+/// Makes the folder of frames in a folder of results, unless it is there.
+pub(crate) fn make_frames(directory: &Path) -> io::Result<()> {
+    let frames = directory.join(FRAMES);
+    match fs::create_dir(&frames) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+        made => made.map_err(at_path(&frames)),
+    }
+}
+
+/// The folders of a path that are not there, outermost first.
+fn missing_folders(path: &Path) -> Vec<&Path> {
+    let is_missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+    let mut missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
+    missing.reverse();
+    missing
+}
+
+impl Lock {
+    fn take(folder: &Path) -> io::Result<Self> {
+        let path = folder.join(LOCK);
+        loop {
+            let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = opened.map_err(at_path(&path))?;
+            match file.try_lock() {
+                Err(TryLockError::WouldBlock) => return Err(held(folder, &mut file)),
+                Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+                Err(TryLockError::Error(error)) => return Err(at_path(&path)(error)),
+                Ok(()) => {}
+            }
+            // The process that held it may have removed it between the two calls above.
+            if Handle::from_path(&path).is_ok_and(|there| file.try_clone().is_ok_and(|own| is_same(own, &there))) {
+                file.set_len(0).and_then(|()| write!(file, "{}", std::process::id())).map_err(at_path(&path))?;
+                return Ok(Self { path, _file: file });
+            }
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Whoever finds it later takes it over.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn is_same(file: File, there: &Handle) -> bool {
+    Handle::from_file(file).is_ok_and(|own| own == *there)
+}
+
+fn held(folder: &Path, lock: &mut File) -> io::Error {
+    let mut number = String::new();
+    // Some systems let nobody read a locked file.
+    let read = lock.read_to_string(&mut number).is_ok() && number.parse::<u32>().is_ok();
+    let process = if read { format!("process {number}") } else { "another process".to_owned() };
+    io::Error::new(io::ErrorKind::ResourceBusy, format!("{}: {process} is writing its results here", folder.display()))
+}
+
+/// Whether a path in a folder of results is the name of a result.
+pub fn is_result(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    match path.parent() {
+        Some(parent) if parent == Path::new(FRAMES) => name.ends_with(".vtu"),
+        Some(parent) if parent == Path::new("") => FILES.contains(&name) || is_stage_picture(name),
+        _ => false,
+    }
+}
+
+/// Whether a name is that of a picture of a stage, such as `stage1_joints.png`.
+fn is_stage_picture(name: &str) -> bool {
+    let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png"));
+    rest.and_then(|rest| rest.split_once('_')).is_some_and(|(number, _)| number.parse::<u32>().is_ok())
+}
+
+/// Looks at all that has the name of a result.
+fn check(folder: &Path, inputs: &[PathBuf]) -> io::Result<()> {
+    let inputs = handles(inputs);
+    let frames = folder.join(FRAMES);
+    if frames.exists() && !frames.is_dir() {
+        return Err(taken(&frames, "is no directory, but frames go into one of this name"));
+    }
+    let results = names(folder)?.into_iter().filter(|name| is_result(name));
+    results.map(|name| folder.join(name)).try_for_each(|path| check_against(&path, &inputs))
+}
+
+/// Looks at the place of a result that is not in a folder of its own, such as an FMU.
+///
+/// # Errors
+/// The file is one of the `inputs`, or no regular file; with the path in the message.
+pub fn check_output(path: &Path, inputs: &[PathBuf]) -> io::Result<()> {
+    check_against(path, &handles(inputs))
+}
+
+/// Inputs that are there, with what the system knows them by.
+fn handles(inputs: &[PathBuf]) -> Vec<(&Path, Handle)> {
+    inputs.iter().filter_map(|input| Some((input.as_path(), Handle::from_path(input).ok()?))).collect()
+}
+
+fn check_against(path: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
+    let Ok(metadata) = fs::metadata(path) else { return Ok(()) };
+    if !metadata.is_file() {
+        return Err(taken(path, "is no regular file, but a result goes into a file of this name"));
+    }
+    let handle = Handle::from_path(path).map_err(at_path(path))?;
+    match inputs.iter().find(|(_, input)| *input == handle) {
+        Some((input, _)) => {
+            Err(taken(path, &format!("a result would replace this, which is the input {}", input.display())))
+        }
+        None => Ok(()),
+    }
+}
+
+fn taken(path: &Path, message: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: {message}", path.display()))
+}
+
+/// Paths in a folder and its folder of frames, relative to it.
+fn names(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut names = Vec::new();
+    for below in ["", FRAMES] {
+        let place = folder.join(below);
+        if place.is_dir() {
+            for entry in fs::read_dir(&place).map_err(at_path(&place))? {
+                names.push(Path::new(below).join(entry.map_err(at_path(&place))?.file_name()));
+            }
+        }
+    }
+    Ok(names)
+}
