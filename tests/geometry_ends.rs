@@ -13,7 +13,7 @@ fn square() -> Vec<Point> {
 fn join(traces: &mut [Vec<Point>]) -> Vec<NearEnd> {
     let outlines: Vec<[Point; 2]> = polygon::sides(&square()).map(|(a, b)| [a, b]).collect();
     let mut lines: Vec<&mut Vec<Point>> = traces.iter_mut().collect();
-    join_ends(&outlines, &mut lines, &DISTANCES, |p| polygon::contains(&square(), p))
+    join_ends(&outlines, &mut lines, &DISTANCES, |p| polygon::contains(&square(), p)).expect("few lines")
 }
 
 fn line(points: &[[f64; 2]]) -> Vec<Point> {

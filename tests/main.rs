@@ -30,6 +30,7 @@ mod issue_cohesion_counted_twice_where_joints_end;
 mod issue_cohesive_joint_in_shear_never_settled;
 mod issue_corner_on_an_inner_node_lost_its_length;
 mod issue_dense_joints_filled_the_memory;
+mod issue_dense_lines_took_minutes_to_refuse;
 mod issue_implausible_values_were_silent;
 mod issue_no_joint_law_panicked;
 mod issue_pressed_corner_was_let_go;

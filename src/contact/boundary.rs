@@ -323,7 +323,9 @@ fn divide(mut span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
     let mut cuts = Vec::new();
     for target in (1..parts).map(|part| part as f64 * step) {
         let distance = |k: &usize| (at[*k] - target).abs();
-        let nearest = (1..span.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let behind = at[1..span.len()].partition_point(|&at| at < target) + 1;
+        let either = [behind - 1, behind].into_iter().filter(|k| (1..span.len()).contains(k));
+        let nearest = either.min_by(|a, b| distance(a).total_cmp(&distance(b)));
         match nearest.filter(|k| distance(k) <= 0.1 * step) {
             Some(near) => span[near].node = true,
             None => cuts.push(target),

@@ -7,10 +7,14 @@
 use std::collections::BTreeMap;
 
 use super::grid::{CellGrid, Groups};
-use super::{Point, TraceId, Vector, cross, polygon, segment};
+use super::work::Work;
+use super::{GeometryError, Point, TraceId, Vector, cross, polygon, segment};
 
 /// Lines that run back along a trace, by the cosine of their angle, are copies of it: they hold none of its ends.
 const COPY_COSINE: f64 = 1.0 - 1e-6;
+
+/// Comparisons of points that sorting a stretch near an end and measuring its distances take the time of.
+const COMPARISONS: usize = 12;
 
 /// Distances that decide what becomes of an end (m).
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -60,19 +64,22 @@ pub struct NearEnd {
 
 /// Extends or trims the ends of traces that almost meet a line, and lists them with those that come near one; `is_rock`
 /// judges places of ends.
+///
+/// # Errors
+/// Too many lines near each other.
 pub fn join_ends(
     outlines: &[[Point; 2]],
     traces: &mut [&mut Vec<Point>],
     distances: &EndDistances,
     is_rock: impl Fn(Point) -> bool,
-) -> Vec<NearEnd> {
+) -> Result<Vec<NearEnd>, GeometryError> {
     let mut lines = Lines::new(outlines, traces, distances);
     let mut ends = Vec::new();
     for trace in TraceId::all(traces.len()) {
         for last in [false, true] {
             let points = &mut *traces[trace.index()];
             let Some(end) = End::of(points, trace, last).filter(|end| is_rock(end.place)) else { continue };
-            let Some((near, way)) = lines.look(&end) else { continue };
+            let Some((near, way)) = lines.look(&end)? else { continue };
             if near.change != EndChange::Kept {
                 lines.replace(&end, &way);
                 replace(points, last, &way);
@@ -80,7 +87,7 @@ pub fn join_ends(
             ends.push(near);
         }
     }
-    ends
+    Ok(ends)
 }
 
 /// Replaces the first or the last point by those of a way that leads there.
@@ -147,6 +154,7 @@ struct Lines {
     /// Stretches that came later, by cells.
     added: BTreeMap<usize, Vec<u32>>,
     distances: EndDistances,
+    work: Work,
 }
 
 /// The nearest meetings of the line of an end with others, ahead and behind, and the nearest line beside it.
@@ -172,12 +180,19 @@ impl Lines {
         let grid = CellGrid::new(low, high, distances.list);
         let ends = stretches.iter().map(|stretch| (stretch.ends[0], stretch.ends[1]));
         let near = Groups::of_edges(&grid, ends, distances.tolerance);
-        Self { stretches, outermost, grid, near, added: BTreeMap::new(), distances: *distances }
+        let work = Work::for_lines(stretches.len());
+        Self { stretches, outermost, grid, near, added: BTreeMap::new(), distances: *distances, work }
     }
 
     /// What becomes of an end, and the points that take its place; nothing where it is on a line, or far from all.
-    fn look(&self, end: &End) -> Option<(NearEnd, Vec<Point>)> {
-        let Found { ahead, behind, beside } = self.find(end)?;
+    ///
+    /// # Errors
+    /// Too many lines near each other.
+    fn look(&mut self, end: &End) -> Result<Option<(NearEnd, Vec<Point>)>, GeometryError> {
+        Ok(self.find(end)?.and_then(|found| self.judge(end, found)))
+    }
+
+    fn judge(&self, end: &End, Found { ahead, behind, beside }: Found) -> Option<(NearEnd, Vec<Point>)> {
         let EndDistances { join, list, .. } = self.distances;
         let near = |gap, line, change| NearEnd { trace: end.trace, place: end.place, gap, line, change };
         let moved = |along: f64| vec![end.place + end.direction * along];
@@ -203,11 +218,11 @@ impl Lines {
     }
 
     /// The lines about an end; nothing where it is on one.
-    fn find(&self, end: &End) -> Option<Found> {
+    fn find(&mut self, end: &End) -> Result<Option<Found>, GeometryError> {
         let tolerance = self.distances.tolerance;
-        let about = self.about(end);
+        let about = self.about(end)?;
         if about.iter().any(|stretch| stretch.distance(end.place) <= tolerance) {
-            return None;
+            return Ok(None);
         }
         let mut found = Found::default();
         let mut crossed = Vec::new();
@@ -227,16 +242,17 @@ impl Lines {
                 found.beside = Some((distance, stretch.line, stretch.foot(end.place)));
             }
         }
-        Some(found)
+        Ok(Some(found))
     }
 
     /// Stretches of other lines near an end.
-    fn about(&self, end: &End) -> Vec<Stretch> {
+    fn about(&mut self, end: &End) -> Result<Vec<Stretch>, GeometryError> {
         let mut near: Vec<u32> = Vec::new();
         self.grid.visit_square(end.place, self.distances.list, |cell| {
             near.extend(self.near.get(cell));
             near.extend(self.added.get(&cell).into_iter().flatten());
         });
+        self.work.take(COMPARISONS * near.len(), end.place)?;
         near.sort_unstable();
         near.dedup();
         let stretches = near.iter().map(|&k| self.stretches[k as usize]);
@@ -245,7 +261,7 @@ impl Lines {
                 && stretch.distance(end.place) < self.distances.list
                 && !stretch.is_copy(end, self.distances.tolerance)
         };
-        stretches.filter(is_other).collect()
+        Ok(stretches.filter(is_other).collect())
     }
 
     /// Lets the trace of an end go the way instead.

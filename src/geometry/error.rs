@@ -55,6 +55,19 @@ pub enum GeometryError {
         /// Ordinate of one of them (m).
         y: f64,
     },
+    /// Lines lie so close together that comparing them would take far too long.
+    #[error(
+        "lines near ({x}, {y}) lie so close together that more than {limit} comparisons are needed: take out traces \
+         there, or raise the snap tolerance above their distance"
+    )]
+    TooDense {
+        /// Comparisons allowed.
+        limit: u64,
+        /// Abscissa of one of the places (m).
+        x: f64,
+        /// Ordinate of one of the places (m).
+        y: f64,
+    },
     /// Outline edges do not close, so that inside and outside are undefined.
     #[error(
         "outline edges do not close at ({x}, {y}): {found} windings meet where {expected} belong: close the outline"

@@ -16,6 +16,7 @@ mod planar_map;
 pub mod polygon;
 pub mod segment;
 pub mod trace;
+mod work;
 
 pub use arrangement::{arrange, arrange_within};
 pub use error::GeometryError;

@@ -5,6 +5,7 @@
 
 use super::grid::{CellGrid, Groups, PointChains};
 use super::planar_map::{Label, NodingReport, Segment, VertexId};
+use super::work::Work;
 use super::{GeometryError, Point, cross, orientation};
 
 /// Merge radius of vertices over the snap tolerance. With 1 more than half of adversarial inputs never settle.
@@ -62,6 +63,11 @@ pub(super) struct Noder {
     merged: usize,
     grid: CellGrid,
     chains: PointChains,
+    work: Work,
+    /// Cells that the edges pass through.
+    places: usize,
+    /// Room for the edges of the next pass.
+    spare: Vec<WorkEdge>,
 }
 
 impl Noder {
@@ -77,9 +83,11 @@ impl Noder {
         let cut = segments.iter().filter_map(|segment| clip(segment, &reach));
         let grid = CellGrid::for_edges(cut.clone().map(|s| (s.a, s.b)), 4.0 * tolerance);
         let chains = PointChains::new(grid.len());
-        let mut noder = Self { points: vec![], edges: vec![], tolerance, edges_max, merged: 0, grid, chains };
+        let work = Work::for_lines(segments.len());
+        let (points, edges, spare) = (Vec::new(), Vec::new(), Vec::new());
+        let mut noder = Self { points, edges, tolerance, edges_max, merged: 0, grid, chains, work, places: 0, spare };
         for Segment { a, b, label } in cut.filter(counts) {
-            let (a, b) = (noder.vertex(a), noder.vertex(b));
+            let (a, b) = (noder.vertex(a)?, noder.vertex(b)?);
             if a != b {
                 let lattice = label.mesh.is_some() && label.trace.is_none() && label.outline == 0;
                 noder.edges.push(WorkEdge { a, b, label, unsplit: true, uncrossed: true, lattice });
@@ -91,6 +99,7 @@ impl Noder {
     /// Splits and crosses until nothing changes.
     pub fn run(&mut self) -> Result<NodingReport, GeometryError> {
         let mut passes = 1;
+        self.places = self.places(&self.edges);
         while let Some(hits) = self.hits()? {
             if passes == PASSES_MAX {
                 let (p, tolerance) = (self.points[hits[0].vertex], self.tolerance);
@@ -125,13 +134,13 @@ impl Noder {
 
     /// Refuses edges that pass through too many cells of the grid, as dense ones across the whole plane do.
     fn check_places(&self) -> Result<(), GeometryError> {
-        let mut positions = 0;
-        for (id, edge) in (0u32..).zip(&self.edges) {
-            let (a, b) = self.ends(edge);
-            positions += self.grid.cells_along(a, b);
-            self.check_count(positions, PLACES_RATIO.saturating_mul(self.edges_max), id)?;
-        }
-        Ok(())
+        let limit = PLACES_RATIO.saturating_mul(self.edges_max);
+        if self.edges.is_empty() { Ok(()) } else { self.check_count(self.places, limit, self.edges.len() as u32 / 2) }
+    }
+
+    /// Cells of the grid that edges pass through, each as often as one does.
+    fn places(&self, edges: &[WorkEdge]) -> usize {
+        edges.iter().map(|edge| self.ends(edge)).map(|(a, b)| self.grid.cells_along(a, b)).sum()
     }
 
     fn ends(&self, edge: &WorkEdge) -> (Point, Point) {
@@ -139,11 +148,13 @@ impl Noder {
     }
 
     /// Returns the vertex within the merge radius of a point, or makes one there.
-    fn vertex(&mut self, p: Point) -> VertexId {
+    fn vertex(&mut self, p: Point) -> Result<VertexId, GeometryError> {
         let radius = MERGE_RATIO * self.tolerance;
         let mut nearest: Option<(f64, VertexId)> = None;
+        let mut compared = 0;
         self.grid.visit_square(p, radius, |cell| {
             for vertex in self.chains.get(cell) {
+                compared += 1;
                 let distance = (self.points[vertex] - p).norm_squared();
                 let is_nearer = nearest.map_or(distance <= radius * radius, |(least, first)| {
                     distance < least || (distance == least && vertex < first)
@@ -153,13 +164,14 @@ impl Noder {
                 }
             }
         });
+        self.work.take(compared, p)?;
         if let Some((distance, vertex)) = nearest {
             self.merged += usize::from(distance > 0.0);
-            return vertex;
+            return Ok(vertex);
         }
         self.chains.push(self.grid.cell_of(p));
         self.points.push(p);
-        VertexId::new(self.points.len() - 1)
+        Ok(VertexId::new(self.points.len() - 1))
     }
 
     /// Judges whether a vertex lies within the tolerance of the inside of an edge.
@@ -190,14 +202,15 @@ impl Noder {
         let mut hits = Vec::new();
         for (id, edge) in (0u32..).zip(&self.edges).filter(|(_, edge)| edge.unsplit) {
             let (a, b) = self.ends(edge);
+            let mut compared = 0;
             self.grid.visit_edge(a, b, self.tolerance, |cell| {
-                hits.extend(self.chains.get(cell).filter_map(|vertex| self.near(id, vertex)));
+                let near = self.chains.get(cell).inspect(|_| compared += 1);
+                hits.extend(near.filter_map(|vertex| self.near(id, vertex)));
             });
+            self.work.take(compared, a)?;
             self.check_count(hits.len(), HITS_RATIO.saturating_mul(self.edges_max), id)?;
         }
-        for edge in &mut self.edges {
-            edge.unsplit = false;
-        }
+        self.edges.iter_mut().filter(|edge| edge.unsplit).for_each(|edge| edge.unsplit = false);
         Ok(hits)
     }
 
@@ -206,8 +219,7 @@ impl Noder {
         if self.edges.iter().all(|edge| !edge.uncrossed || edge.lattice) {
             return Ok(Vec::new());
         }
-        let ends = self.edges.iter().map(|edge| self.ends(edge));
-        let cells = Groups::of_edges(&self.grid, ends, self.tolerance);
+        let cells = self.cells_to_cross();
         let first_new = self.points.len();
         let crossings = self.cross_all(&cells)?;
         let mut hits = Vec::with_capacity(2 * crossings.len());
@@ -221,12 +233,30 @@ impl Noder {
         }
         for vertex in VertexId::range(first_new..self.points.len()) {
             let cell = self.grid.cell_of(self.points[vertex]);
+            self.work.take(cells.get(cell).len(), self.points[vertex])?;
             hits.extend(cells.get(cell).iter().filter_map(|&edge| self.near(edge, vertex)));
         }
-        for edge in &mut self.edges {
-            edge.uncrossed = false;
-        }
+        self.edges.iter_mut().filter(|edge| edge.uncrossed).for_each(|edge| edge.uncrossed = false);
         Ok(hits)
+    }
+
+    /// The edges in each cell that an untested edge comes near; the other cells stay empty.
+    fn cells_to_cross(&self) -> Groups {
+        let mut wanted = vec![false; self.grid.len()];
+        for edge in self.edges.iter().filter(|edge| edge.uncrossed && !edge.lattice) {
+            let (a, b) = self.ends(edge);
+            self.grid.visit_edge(a, b, self.tolerance, |cell| wanted[cell] = true);
+        }
+        Groups::build(self.grid.len(), |put| {
+            for (id, edge) in (0u32..).zip(&self.edges) {
+                let (a, b) = self.ends(edge);
+                self.grid.visit_edge(a, b, self.tolerance, |cell| {
+                    if wanted[cell] {
+                        put(cell, id);
+                    }
+                });
+            }
+        })
     }
 
     /// Makes a vertex at each proper crossing of an untested edge with any other.
@@ -241,7 +271,9 @@ impl Noder {
             }
             near.clear();
             let (a, b) = self.ends(&edge);
+            let mut compared = 0;
             self.grid.visit_edge(a, b, self.tolerance, |cell| {
+                compared += cells.get(cell).len();
                 for &f in cells.get(cell) {
                     let other = &self.edges[f as usize];
                     let taken = f <= e && other.uncrossed && !other.lattice;
@@ -250,9 +282,10 @@ impl Noder {
                     }
                 }
             });
+            self.work.take(compared, a)?;
             for &f in &near {
                 if let Some(position) = self.crossing(&edge, &self.edges[f as usize]) {
-                    crossings.push(Crossing { vertex: self.vertex(position), edges: [e, f] });
+                    crossings.push(Crossing { vertex: self.vertex(position)?, edges: [e, f] });
                 }
             }
             self.check_count(crossings.len(), HITS_RATIO.saturating_mul(self.edges_max), e)?;
@@ -281,15 +314,22 @@ impl Noder {
         hits.dedup_by_key(|hit| (hit.edge, hit.vertex));
         let pieces = self.edges.len() + hits.len();
         self.check_count(pieces, self.edges_max, hits[hits.len() / 2].edge)?;
-        let mut edges = Vec::with_capacity(pieces);
-        let mut rest = hits.as_slice();
-        for (k, edge) in self.edges.iter().enumerate() {
-            let count = rest.iter().take_while(|hit| hit.edge == k as u32).count();
-            let (own, others) = rest.split_at(count);
-            rest = others;
-            push_chain(edge, own, &mut edges);
+        let mut edges = std::mem::take(&mut self.spare);
+        edges.clear();
+        edges.reserve(pieces);
+        let (mut places, mut whole) = (self.places, 0);
+        for own in hits.chunk_by(|p, q| p.edge == q.edge) {
+            let split = own[0].edge as usize;
+            edges.extend_from_slice(&self.edges[whole..split]);
+            let first = edges.len();
+            push_chain(&self.edges[split], own, &mut edges);
+            places += self.places(&edges[first..]);
+            places -= self.places(&self.edges[split..=split]);
+            whole = split + 1;
         }
-        self.edges = edges;
+        edges.extend_from_slice(&self.edges[whole..]);
+        self.places = places;
+        self.spare = std::mem::replace(&mut self.edges, edges);
         Ok(())
     }
 }

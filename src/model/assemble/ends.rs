@@ -1,7 +1,7 @@
 //! Ends of the joints of a case that almost meet a line, with names: which were joined to it, and which rock holds.
 
 use crate::geometry::ends::{EndChange, EndDistances, EndLine, NearEnd, join_ends};
-use crate::geometry::{Point, TraceId};
+use crate::geometry::{GeometryError, Point, TraceId};
 use crate::model::case::{Case, JointSet};
 
 use super::joints::Joints;
@@ -28,17 +28,20 @@ pub struct TraceEnd {
 
 /// Joins the ends of joints that almost meet a line to it; the list has those with others near a line, but for the ends
 /// of sets whose traces are meant to end in the rock.
+///
+/// # Errors
+/// Too many joints near each other.
 pub(super) fn join(
     case: &Case,
     joints: &mut Joints,
     outlines: &[[Point; 2]],
     tolerance: f64,
     is_rock: impl Fn(Point) -> bool,
-) -> Vec<TraceEnd> {
+) -> Result<Vec<TraceEnd>, GeometryError> {
     let join = case.domain.extend_ends.unwrap_or(JOIN_RATIO * case.mesh.size);
     let distances = EndDistances { tolerance, join, list: join.max(case.mesh.size) };
     let mut lines: Vec<&mut Vec<Point>> = joints.traces.iter_mut().map(|(points, _)| points).collect();
-    let ends = join_ends(outlines, &mut lines, &distances, is_rock);
+    let ends = join_ends(outlines, &mut lines, &distances, is_rock)?;
     let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end.trace);
     let named = |end: &NearEnd| TraceEnd {
         name: name(joints, end.trace),
@@ -50,7 +53,7 @@ pub(super) fn join(
         },
         change: end.change,
     };
-    ends.iter().filter(is_listed).map(named).collect()
+    Ok(ends.iter().filter(is_listed).map(named).collect())
 }
 
 /// The set of a trace, unless it is a joint of the case or a piece that a region with another law has parted.

@@ -44,6 +44,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_dense(&joints.traces, tolerance, is_rock)?;
     demand.check_crossings(&joints.traces, tolerance, is_rock)?;
     let ends = ends::join(case, &mut joints, &loops.sides(), tolerance, is_rock);
+    let ends = ends.map_err(|error| demand.explain(&error))?;
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), joints.default_law));
