@@ -622,6 +622,11 @@ def test_a_client_of_um_bridge_gets_the_factor(package):
                     break
             assert server.poll() is None
             time.sleep(0.05)
+        listening = Path("/proc/net/tcp")
+        if listening.exists():
+            rows = [line.split() for line in listening.read_text().splitlines()[1:]]
+            addresses = [row[1] for row in rows if row[3] == "0A" and row[1].endswith(f":{port:04X}")]
+            assert addresses == [f"0100007F:{port:04X}"], "it listens at this machine alone"
         model = umbridge.HTTPModel(f"http://localhost:{port}", "enmm")
         assert model.get_input_sizes() == [1] and model.get_output_sizes() == [1]
         exact = 0.7 / math.tan(math.radians(30))

@@ -7,7 +7,7 @@ use std::path::Path;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 
-use crate::chunk::{Chunks, MAGIC};
+use crate::chunk::{self, Chunks, MAGIC};
 use crate::error::FilmError;
 use crate::writer::temporary_beside;
 
@@ -34,7 +34,7 @@ const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
 /// A file that is no film, or what the file system refuses.
 pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: film.to_owned(), problem: error.to_string() };
-    let mut chunks = File::open(film)
+    let mut chunks = chunk::open(film)
         .map_err(FilmError::at(film))
         .and_then(|file| Chunks::new(BufReader::new(file)).map_err(no_film))?;
     let temporary = temporary_beside(page);

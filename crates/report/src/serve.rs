@@ -7,16 +7,23 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
+use crate::chunk::{self, MAGIC};
 use crate::page::live_page;
 
 /// Bytes of a request that are read; ours are much shorter.
 const REQUEST_MAX: u64 = 16 * 1024;
 /// Bytes of a film in one answer.
 const PIECE: u64 = 8 * 1024 * 1024;
-/// How long a browser may take over its request and over our answer.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// How long a browser may take over its whole request.
+const ASKING: Duration = Duration::from_secs(5);
+/// How long it may take over our whole answer.
+const ANSWERING: Duration = Duration::from_secs(60);
+/// Browsers that are answered side by side; others wait for their turn.
+const CLIENTS_MAX: usize = 64;
 
 /// A server for one film.
 #[derive(Debug)]
@@ -42,51 +49,143 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Answers requests without end; a browser that goes away in the middle is no error.
+    /// Answers requests without end, side by side; a browser that goes away in the middle is no error.
     ///
     /// # Errors
     /// When no further browser can connect.
     pub fn run(&self) -> io::Result<()> {
-        loop {
-            let (stream, _) = self.listener.accept()?;
-            let _ = self.answer(stream);
-        }
+        let turns = Turns::default();
+        thread::scope(|scope| {
+            loop {
+                let turn = turns.take();
+                let (stream, _) = self.listener.accept()?;
+                let answer = move || {
+                    let _turn = turn;
+                    let _ = self.answer(&stream);
+                };
+                // A system without a thread to spare ends the connection.
+                let _ = thread::Builder::new().spawn_scoped(scope, answer);
+            }
+        })
     }
 
-    fn answer(&self, mut stream: TcpStream) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
-        stream.set_write_timeout(Some(PATIENCE))?;
-        let Some(request) = Request::read(&stream)? else { return refuse(&mut stream, "400 Bad Request") };
+    fn answer(&self, stream: &TcpStream) -> io::Result<()> {
+        let request = Request::read(Timed { stream, until: Instant::now() + ASKING })?;
+        let mut out = Timed { stream, until: Instant::now() + ANSWERING };
+        let Some(request) = request else { return refuse(&mut out, "400 Bad Request") };
         let port = self.address()?.port();
         if ![format!("127.0.0.1:{port}"), format!("localhost:{port}")].contains(&request.host) {
-            return refuse(&mut stream, "403 Forbidden");
+            return refuse(&mut out, "403 Forbidden");
         }
         match request.path.split_once("?from=") {
-            None if request.path == "/" => send(&mut stream, "text/html; charset=utf-8", live_page().as_bytes()),
+            None if request.path == "/" => {
+                let page = live_page();
+                send(&mut out, "text/html; charset=utf-8", page.len() as u64, &mut page.as_bytes())
+            }
             Some(("/film", from)) => match from.parse() {
-                Ok(from) => match self.film_from(from)? {
-                    Some(bytes) => send(&mut stream, "application/octet-stream", &bytes),
-                    None => refuse(&mut stream, "416 Range Not Satisfiable"),
+                Ok(from) => match self.film_from(from) {
+                    Ok(piece) => send(&mut out, "application/octet-stream", piece.length, &mut piece.bytes()),
+                    Err(status) => refuse(&mut out, status),
                 },
-                Err(_) => refuse(&mut stream, "400 Bad Request"),
+                Err(_) => refuse(&mut out, "400 Bad Request"),
             },
-            _ => refuse(&mut stream, "404 Not Found"),
+            _ => refuse(&mut out, "404 Not Found"),
         }
     }
 
-    /// A piece of the film; none behind its end, when a run has begun it again.
-    fn film_from(&self, from: u64) -> io::Result<Option<Vec<u8>>> {
-        let mut bytes = Vec::new();
-        let mut film = match File::open(&self.film) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((from == 0).then_some(bytes)),
-            opened => opened?,
+    /// A piece of the film, nothing of one that is yet to come.
+    ///
+    /// # Errors
+    /// The status of the answer: the offset is behind the end, as when a run has begun the film again, or the file is
+    /// no film.
+    fn film_from(&self, from: u64) -> Result<Piece, &'static str> {
+        const NO_FILM: &str = "403 Forbidden";
+        const BEHIND: &str = "416 Range Not Satisfiable";
+        let mut file = match chunk::open(&self.film) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return if from == 0 { Ok(Piece::default()) } else { Err(BEHIND) };
+            }
+            opened => opened.map_err(|_| NO_FILM)?,
         };
-        if film.metadata()?.len() < from {
-            return Ok(None);
+        let mut first = Vec::new();
+        let read = (&file).take(MAGIC.len() as u64).read_to_end(&mut first);
+        if read.is_err() || !MAGIC.starts_with(&first) {
+            return Err(NO_FILM);
         }
-        film.seek(SeekFrom::Start(from))?;
-        film.take(PIECE).read_to_end(&mut bytes)?;
-        Ok(Some(bytes))
+        let left = file.metadata().ok().and_then(|found| found.len().checked_sub(from)).ok_or(BEHIND)?;
+        file.seek(SeekFrom::Start(from)).map_err(|_| BEHIND)?;
+        Ok(Piece { file: Some(file), length: left.min(PIECE) })
+    }
+}
+
+/// A piece of a film; nothing without a file.
+#[derive(Default)]
+struct Piece {
+    file: Option<File>,
+    length: u64,
+}
+
+impl Piece {
+    fn bytes(self) -> Box<dyn Read> {
+        self.file.map_or_else(|| Box::new(io::empty()) as Box<dyn Read>, |file| Box::new(file.take(self.length)))
+    }
+}
+
+/// Turns of the browsers that are answered at a time.
+#[derive(Default)]
+struct Turns {
+    taken: Mutex<usize>,
+    freed: Condvar,
+}
+
+/// The turn of one browser, which is given back when this is dropped.
+struct Turn<'a>(&'a Turns);
+
+impl Turns {
+    /// Waits until there is a turn, and takes it.
+    fn take(&self) -> Turn<'_> {
+        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_full = |taken: &mut usize| *taken >= CLIENTS_MAX;
+        *self.freed.wait_while(taken, is_full).unwrap_or_else(PoisonError::into_inner) += 1;
+        Turn(self)
+    }
+}
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        *self.0.taken.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        self.0.freed.notify_one();
+    }
+}
+
+/// A connection that fails when it takes longer than until a time, however its other end spreads the bytes.
+struct Timed<'a> {
+    stream: &'a TcpStream,
+    until: Instant,
+}
+
+impl Timed<'_> {
+    fn left(&self) -> io::Result<Option<Duration>> {
+        let left = self.until.saturating_duration_since(Instant::now());
+        if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(Some(left)) }
+    }
+}
+
+impl Read for Timed<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(self.left()?)?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for Timed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(self.left()?)?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
     }
 }
 
@@ -98,7 +197,7 @@ struct Request {
 
 impl Request {
     /// Reads a GET request; none when it is another or too long.
-    fn read(stream: &TcpStream) -> io::Result<Option<Self>> {
+    fn read(stream: Timed) -> io::Result<Option<Self>> {
         let mut lines = BufReader::new(stream.take(REQUEST_MAX)).lines();
         let first = lines.next().transpose()?.unwrap_or_default();
         let path = first.strip_prefix("GET ").and_then(|rest| rest.split(' ').next()).map(str::to_owned);
@@ -116,13 +215,15 @@ impl Request {
     }
 }
 
-fn send(stream: &mut TcpStream, kind: &str, body: &[u8]) -> io::Result<()> {
-    let length = body.len();
-    write!(stream, "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n")?;
-    write!(stream, "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n")?;
-    stream.write_all(body)
+fn send(out: &mut impl Write, kind: &str, length: u64, body: &mut dyn Read) -> io::Result<()> {
+    let head = format!(
+        "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"
+    );
+    out.write_all(head.as_bytes())?;
+    io::copy(body, out).map(drop)
 }
 
-fn refuse(stream: &mut TcpStream, status: &str) -> io::Result<()> {
-    write!(stream, "HTTP/1.1 {status}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n")
+fn refuse(out: &mut impl Write, status: &str) -> io::Result<()> {
+    out.write_all(format!("HTTP/1.1 {status}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n").as_bytes())
 }

@@ -153,7 +153,7 @@ pub fn temporary_beside(path: &Path) -> PathBuf {
 /// Copies the chunks of a film up to a time (s); returns the stage of its last frame.
 fn keep(from: &Path, to: &Path, until: f64) -> Result<Option<u32>, FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: from.to_owned(), problem: error.to_string() };
-    let film = File::open(from).map_err(FilmError::at(from))?;
+    let film = chunk::open(from).map_err(FilmError::at(from))?;
     let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
     let mut kept = BufWriter::new(File::create(to).map_err(FilmError::at(to))?);
     kept.write_all(&MAGIC).map_err(FilmError::at(to))?;

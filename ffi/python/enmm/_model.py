@@ -410,7 +410,8 @@ class Model(Closing):
 
         Raises StateError for bytes that are damaged, or of another case or version.
         """
-        whole = bytes(data)
+        # A view refuses what is no buffer, of which `bytes` would make zeros or a copy.
+        whole = bytes(memoryview(data))
         return self._state("enmm_state_deserialize", whole, len(whole))
 
     def _state(self, name: str, *arguments: object) -> State:

@@ -10,7 +10,10 @@ gives `[[1.19]]`. Needs the package `umbridge`. Protocol: L. Seelinger et al., J
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
+from types import SimpleNamespace
 from typing import Any
+from unittest.mock import patch
 
 import umbridge
 
@@ -77,10 +80,17 @@ def serve(
     output: Output = "factor_of_safety",
     port: int = 4242,
     workers: int = 1,
+    host: str = "127.0.0.1",
     **options: Any,
 ) -> None:
     """Serves a case on a port of this machine until it is interrupted, with as many samples at once as `workers`.
 
-    `options` are those of `CaseModel`. Whoever reaches the port can use the model: keep it behind the firewall.
+    `options` are those of `CaseModel`. Only programs on this machine reach the port, unless `host` is another address
+    of it, such as "0.0.0.0" for all: then whoever reaches that can use the model.
     """
-    umbridge.serve_models([CaseModel(case, keys, output, **options)], port, max_workers=workers)
+    model = CaseModel(case, keys, output, **options)
+    # `serve_models` takes no address and would listen at all of them.
+    web = umbridge.um.web
+    here = SimpleNamespace(**{**vars(web), "run_app": partial(web.run_app, host=host)})
+    with patch.object(umbridge.um, "web", here):
+        umbridge.serve_models([model], port, max_workers=workers)
