@@ -16,7 +16,8 @@
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
- * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
+ * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not
+ * have. See enmm_set_threads for models with threads.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header still work. Members that the library does

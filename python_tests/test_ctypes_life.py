@@ -137,6 +137,12 @@ def test_serialised_states_are_equal_and_come_back(slope):
             assert slope.serialize() == data
 
 
+def test_only_buffers_are_states(slope):
+    for other in (8, 10**12, [0, 1], "text", None):
+        with pytest.raises(TypeError):
+            slope.deserialize(other)
+
+
 def test_damaged_states_are_refused(package, slope, incline):
     act(slope, 0, 2)
     data = slope.serialize()

@@ -17,11 +17,14 @@ pub struct Saved {
     state: State,
     grid: Option<Box<State>>,
     progress: Progress,
+    /// Whether it is of a model of this process, or was found to be as if it were; bytes from elsewhere are not.
+    #[serde(skip)]
+    checked: bool,
 }
 
 impl Saved {
     pub(super) fn of(state: &State, hash: &str) -> Self {
-        Self { hash: hash.to_owned(), state: state.clone(), grid: None, progress: Progress::default() }
+        Self { hash: hash.to_owned(), state: state.clone(), grid: None, progress: Progress::default(), checked: true }
     }
 
     /// Takes another state of the same model, into the memory of the old one.
@@ -51,25 +54,35 @@ impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
         let (state, grid) = (self.simulation.state().clone(), self.grid.clone());
-        Saved { hash: self.hash.clone(), state, grid, progress: self.progress }
+        Saved { hash: self.hash.clone(), state, grid, progress: self.progress, checked: true }
     }
 
-    /// Goes back to a saved state of this model.
+    /// Goes back to a saved state of this model. The numbers of one that [`Cosimulation::save`] made, or that was
+    /// checked before, are not checked again.
     ///
     /// # Errors
     /// As [`Cosimulation::check`].
     pub fn restore(&mut self, saved: &Saved) -> Result<(), CosimulationError> {
-        self.check(saved)?;
+        self.check_case(saved)?;
+        if !saved.checked {
+            self.check_numbers(saved)?;
+        }
         self.return_to(saved);
         Ok(())
     }
 
-    /// Whether a saved state can be one of this model.
+    /// Whether a saved state can be one of this model; notes in the state that it can.
     ///
     /// # Errors
     /// The state is of another model, or one of its numbers, indices or lengths cannot be.
-    pub fn check(&self, saved: &Saved) -> Result<(), CosimulationError> {
+    pub fn check(&self, saved: &mut Saved) -> Result<(), CosimulationError> {
         self.check_case(saved)?;
+        self.check_numbers(saved)?;
+        saved.checked = true;
+        Ok(())
+    }
+
+    fn check_numbers(&self, saved: &Saved) -> Result<(), CosimulationError> {
         self.check_saved(saved).map_err(|unfit| BytesError::Damaged(unfit.to_string()).into())
     }
 
@@ -81,7 +94,7 @@ impl Cosimulation {
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
-        let Saved { hash: _, state, grid, progress } = saved;
+        let Saved { hash: _, state, grid, progress, checked: _ } = saved;
         let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, told } = *progress;
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
@@ -126,8 +139,8 @@ impl Cosimulation {
     /// # Errors
     /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        let saved = bytes::decode(bytes, &self.hash)?;
-        self.check(&saved)?;
+        let mut saved = bytes::decode(bytes, &self.hash)?;
+        self.check(&mut saved)?;
         Ok(saved)
     }
 }

@@ -7,8 +7,8 @@
 //! dereferenced, so that a handle which is NULL, dead or made up is an error and never a crash. The table
 //! is the only thing that the process shares; it is locked for the look-up alone.
 #![deny(unsafe_op_in_unsafe_fn)]
-// C sees the names of this crate as they are. What each pointer must be is said once, at the head of the header.
-#![allow(non_camel_case_types, clippy::missing_safety_doc)]
+// C sees the names of this crate as they are.
+#![allow(non_camel_case_types)]
 
 pub mod abi;
 pub mod safe;

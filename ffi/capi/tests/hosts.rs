@@ -62,6 +62,21 @@ fn a_forked_process_goes_on_with_threads_of_its_own() {
     succeed(&mut Command::new(host("ffi/capi/tests/c/fork.c")));
 }
 
+/// Ten thousand forks with `ENMM_LONG=1`, six hundred otherwise; 4 of 23 hung when the tables were not waited for.
+#[test]
+fn long_forks_beside_threads_in_the_library_do_not_hang() {
+    let forks = if std::env::var_os("ENMM_LONG").is_some() { "10000" } else { "600" };
+    say(&succeed(Command::new(host("ffi/capi/tests/c/forks.c")).args([SMALL, forks])));
+}
+
+#[test]
+fn lanes_that_no_processor_has_are_refused() {
+    let mut forks = Command::new(host("ffi/capi/tests/c/forks.c"));
+    let refused = run(forks.env("ENMM_LANES", "avx1024").args([SMALL, "0"]));
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(!refused.status.success() && told.contains("ENMM_LANES: is \"avx1024\""), "{told}");
+}
+
 #[test]
 fn no_call_that_fails_changes_a_byte_of_the_state() {
     succeed(Command::new(host("ffi/capi/tests/c/unchanged.c")).arg(SMALL));

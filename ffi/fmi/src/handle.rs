@@ -2,10 +2,10 @@
 //! instance is free again, so that a callback may call back. Those of a step wait for its end, or for that of an
 //! intermediate update; [`Phase::Stepping`](crate::phase::Phase) refuses what a callback must not do.
 
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError, TryLockResult};
+use std::sync::{Mutex, MutexGuard, TryLockError, TryLockResult};
+
+use enmm_handles::Table;
 
 use crate::instance::{Instance, Step, Update};
 use crate::log::{Message, Status};
@@ -51,6 +51,7 @@ impl<H: Host> Handle<H> {
         (t, h): (f64, f64),
         mut update: Option<&mut dyn FnMut(Update) -> Option<f64>>,
     ) -> Ended {
+        let process = std::process::id();
         let mut begun: Option<Step> = None;
         let mut time = t;
         let (mut status, mut held) = attempt(self.instance.try_lock(), |instance| {
@@ -69,7 +70,7 @@ impl<H: Host> Handle<H> {
             let mut last_told = time;
             while status == Status::Ok && !step.is_done() {
                 let mut told = None;
-                status = self.go_on(&mut held, |instance| {
+                status = self.go_on(process, &mut held, |instance| {
                     let status = instance.advance_step(&mut step);
                     let news = status == Status::Ok && update.is_some() && instance.time_of_model() > last_told;
                     told = news.then(|| instance.enter_update(&step));
@@ -79,7 +80,7 @@ impl<H: Host> Handle<H> {
                 let (Some(told), Some(update)) = (told, update.as_mut()) else { continue };
                 last_told = told.time;
                 let wanted = update(told).filter(|_| told.can_return_early);
-                status = self.go_on(&mut held, |instance| {
+                status = self.go_on(process, &mut held, |instance| {
                     let status = instance.leave_update(&mut step, wanted);
                     time = instance.time();
                     status
@@ -93,8 +94,12 @@ impl<H: Host> Handle<H> {
     }
 
     /// Goes on with a step that has begun. Another thread can have the instance only to be refused, or to read within
-    /// an update: that is waited for.
-    fn go_on(&self, held: &mut Vec<Message>, work: impl FnOnce(&mut Instance) -> Status) -> Status {
+    /// an update: that is waited for, but not in a process that was forked within the update, which has no such thread.
+    fn go_on(&self, process: u32, held: &mut Vec<Message>, work: impl FnOnce(&mut Instance) -> Status) -> Status {
+        if std::process::id() != process {
+            held.push(Message::error("a step ends in the process that began it, not in one forked during an update"));
+            return Status::Error;
+        }
         let (status, messages) = attempt(self.instance.lock().map_err(TryLockError::from), work);
         held.extend(messages);
         status
@@ -140,45 +145,22 @@ fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a message")
 }
 
-/// All live instances of a library by number. A number that is freed or was never given is not found.
-#[derive(Debug)]
-pub struct Live<H> {
-    handles: RwLock<BTreeMap<usize, Arc<Handle<H>>>>,
-    next: AtomicUsize,
-}
+/// Instances of a library that are alive, by numbers that importers take for pointers.
+pub type Live<H> = Table<Handle<H>>;
 
-impl<H> Live<H> {
-    /// None yet.
-    #[expect(clippy::new_without_default, reason = "made once, in a static")]
-    pub const fn new() -> Self {
-        Self { handles: RwLock::new(BTreeMap::new()), next: AtomicUsize::new(1) }
-    }
-
-    /// Adds an instance and returns its number, never 0.
-    pub fn insert(&self, instance: Instance, host: H) -> usize {
-        let number = self.next.fetch_add(1, Ordering::Relaxed);
-        let handle = Arc::new(Handle { instance: Mutex::new(instance), host });
-        self.handles.write().unwrap_or_else(PoisonError::into_inner).insert(number, handle);
-        number
-    }
-
-    /// The instance with a number.
-    pub fn get(&self, number: usize) -> Option<Arc<Handle<H>>> {
-        self.handles.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned()
-    }
-
-    /// Ends the instance with a number.
-    pub fn remove(&self, number: usize) {
-        let removed = self.handles.write().unwrap_or_else(PoisonError::into_inner).remove(&number);
-        drop(removed);
-    }
+/// Adds an instance and returns its number; 0, and a message, when millions are alive.
+pub fn enter<H: Host + Send + Sync>(live: &'static Live<H>, instance: Instance, host: H) -> usize {
+    live.insert(Handle { instance: Mutex::new(instance), host }).unwrap_or_else(|handle| {
+        handle.host.log(&Message::error("too many instances are alive: free those that are no longer needed"));
+        0
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::instance::Plan;
-    use crate::table::{Table, Version};
+    use crate::table::{self, Version};
 
     #[derive(Default)]
     struct Listener(Mutex<Vec<Message>>);
@@ -195,7 +177,7 @@ mod tests {
         std::fs::write(folder.join(crate::resource::FILE), crate::resource::encode(&loaded, "incline").unwrap())
             .unwrap();
         let model = loaded.cosimulation().unwrap();
-        let token = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, Version::Three).token;
+        let token = table::Table::new(&loaded.case, model.block_states().len(), &loaded.hash, Version::Three).token;
         let plan = Plan {
             version: Version::Three,
             name: "a",
@@ -210,17 +192,17 @@ mod tests {
     #[test]
     fn a_panic_is_fatal_and_logged_and_other_instances_go_on() {
         let folder = tempfile::tempdir().unwrap();
-        let live = Live::new();
-        let numbers = [0, 1].map(|_| live.insert(instance(folder.path()), Listener::default()));
-        let handle = live.get(numbers[0]).unwrap();
+        static LIVE: Live<Listener> = Live::new(0x50);
+        let numbers = [0, 1].map(|_| enter(&LIVE, instance(folder.path()), Listener::default()));
+        let handle = LIVE.find(numbers[0]).unwrap();
         assert_eq!(handle.call("f", |_| panic!("broken")), Status::Fatal);
         assert_eq!(handle.call("g", |instance| instance.terminate()), Status::Fatal);
         let texts: Vec<String> = handle.host().0.lock().unwrap().iter().map(|m| m.text.clone()).collect();
         assert_eq!(texts[0], "f: panic: broken");
         assert!(texts[1].starts_with("g: the instance is lost"));
-        live.remove(numbers[0]);
-        assert!(live.get(numbers[0]).is_none() && live.get(0).is_none());
-        let other = live.get(numbers[1]).unwrap();
+        LIVE.remove(numbers[0]).unwrap();
+        assert!(LIVE.find(numbers[0]).is_err() && LIVE.find(0).is_err());
+        let other = LIVE.find(numbers[1]).unwrap();
         assert_eq!(other.call("f", |instance| instance.enter_initialization(None)), Status::Ok);
         assert_eq!(other.call("f", |_| other.call("g", |_| Status::Ok)), Status::Error, "an instance within a call");
     }

@@ -65,7 +65,7 @@ pub fn load(folder: &Path) -> Result<LoadedCase, ResourceError> {
     let path = folder.join(FILE);
     let named = path.display().to_string();
     let damaged = |problem: String| ResourceError::Damaged { path: named.clone(), problem };
-    let bytes = std::fs::read(&path)
+    let bytes = enmm_io::files::read_input(&path)
         .map_err(|error| ResourceError::Unreadable { path: named.clone(), problem: error.to_string() })?;
     let resource: Resource = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
     if resource.format != FORMAT || resource.engine != enmm::engine_version() {

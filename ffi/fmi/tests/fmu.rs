@@ -226,12 +226,8 @@ fn odd_names_go_through() {
     for version in VERSIONS {
         let (table, files) = packed(CASES[0], version);
         let names: Vec<&str> = table.variables.iter().map(|v| v.name.as_str()).collect();
-        for name in [
-            "rock.<\"&'ü>\\u{9}\\u{1}.density",
-            "joint_law.<\"&'ü>.friction",
-            "monitor.<\"&'ü>\\u{a}.velocity_y",
-            "water_level",
-        ] {
+        for name in ["rock.<\"&'ü>.density", "joint_law.<\"&'ü>.friction", "monitor.<\"&'ü>.velocity_y", "water_level"]
+        {
             assert!(names.contains(&name), "{name}");
         }
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());

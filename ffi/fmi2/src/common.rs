@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 use std::path::PathBuf;
 
-use enmm_fmi::handle::Host;
+use enmm_fmi::handle::{Host, enter};
 use enmm_fmi::instance::{Instance, Plan};
 use enmm_fmi::location;
 use enmm_fmi::log::Message;
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         match instance(name, kind, guid, location, logging != 0) {
             Ok(mut instance) => {
                 instance.take_messages().iter().for_each(|message| importer.log(message));
-                std::ptr::without_provenance_mut(LIVE.insert(instance, importer))
+                std::ptr::without_provenance_mut(enter(&LIVE, instance, importer))
             }
             Err(reason) => {
                 importer.log(&Message::error(format!("fmi2Instantiate: {reason}")));
@@ -94,7 +94,9 @@ fn instance(
 pub extern "C" fn fmi2FreeInstance(c: Component) {
     let free = call(c, "fmi2FreeInstance", |instance| instance.permits(Call::Free));
     if free != Status::Error {
-        guarded((), || LIVE.remove(c.addr()));
+        guarded((), || {
+            let _ = LIVE.remove(c.addr());
+        });
     }
 }
 
@@ -130,10 +132,9 @@ pub extern "C" fn fmi2Reset(c: Component) -> Status {
     call(c, "fmi2Reset", Instance::reset)
 }
 
-// SAFETY, of all calls of states: the importer gives pointers that can be read and written, for `size` bytes.
-
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: Component, state: *mut FmuState) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2GetFMUstate", |instance| unsafe { states::save(instance, state) })
 }
 
@@ -144,16 +145,19 @@ pub extern "C" fn fmi2SetFMUstate(c: Component, state: FmuState) -> Status {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: Component, state: *mut FmuState) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2FreeFMUstate", |instance| unsafe { states::free(instance, state) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Component, state: FmuState, size: *mut usize) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2SerializedFMUstateSize", |instance| unsafe { states::size(instance, state, size) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, state: FmuState, out: *mut Byte, size: usize) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2SerializeFMUstate", |instance| unsafe { states::serialize(instance, state, out.cast(), size) })
 }
 
@@ -164,5 +168,6 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: usize,
     state: *mut FmuState,
 ) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2DeSerializeFMUstate", |instance| unsafe { states::deserialize(instance, bytes.cast(), size, state) })
 }

@@ -92,7 +92,7 @@ impl Host for Importer {
 }
 
 /// All instances of this library.
-pub(crate) static LIVE: Live<Importer> = Live::new();
+pub(crate) static LIVE: Live<Importer> = Live::new(0x30);
 
 /// Does `work` on the importer's instance.
 pub(crate) fn call(c: Component, name: &str, work: impl FnOnce(&mut Instance) -> Status) -> Status {
@@ -100,7 +100,7 @@ pub(crate) fn call(c: Component, name: &str, work: impl FnOnce(&mut Instance) ->
 }
 
 pub(crate) fn with_handle(c: Component, work: impl FnOnce(&Arc<Handle<Importer>>) -> Status) -> Status {
-    guarded(Status::Fatal, || LIVE.get(c.addr()).map_or(Status::Error, |handle| work(&handle)))
+    guarded(Status::Fatal, || LIVE.find(c.addr()).map_or(Status::Error, |handle| work(&handle)))
 }
 
 /// Keeps a panic from the importer.

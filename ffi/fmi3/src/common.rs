@@ -3,7 +3,7 @@
 use std::ffi::c_void;
 use std::path::Path;
 
-use enmm_fmi::handle::Host;
+use enmm_fmi::handle::{Host, enter};
 use enmm_fmi::instance::{Instance, Plan};
 use enmm_fmi::log::Message;
 use enmm_fmi::phase::Call;
@@ -96,7 +96,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         match instance(texts, (event_mode, early_return, logging), required) {
             Ok(mut instance) => {
                 instance.take_messages().iter().for_each(|message| importer.log(message));
-                std::ptr::without_provenance_mut::<c_void>(LIVE.insert(instance, importer))
+                std::ptr::without_provenance_mut::<c_void>(enter(&LIVE, instance, importer))
             }
             Err(reason) => {
                 importer.log(&Message::error(format!("fmi3InstantiateCoSimulation: {reason}")));
@@ -136,7 +136,9 @@ fn instance(
 pub extern "C" fn fmi3FreeInstance(instance: InstancePointer) {
     let free = call(instance, "fmi3FreeInstance", |instance| instance.permits(Call::Free));
     if free != Status::Error {
-        guarded((), || LIVE.remove(instance.addr()));
+        guarded((), || {
+            let _ = LIVE.remove(instance.addr());
+        });
     }
 }
 

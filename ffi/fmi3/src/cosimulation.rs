@@ -20,9 +20,8 @@ pub unsafe extern "C" fn fmi3DoStep(
     last_successful_time: *mut f64,
 ) -> Status {
     with_handle(instance, |handle| {
-        if [event_handling_needed, terminate, early_return].iter().any(|p| p.is_null())
-            || last_successful_time.is_null()
-        {
+        let flags = [event_handling_needed, terminate, early_return];
+        if !(flags.into_iter().all(raw::is_place) && raw::is_place(last_successful_time)) {
             return handle.call("fmi3DoStep", |instance| instance.refuse(MISSING));
         }
         let mut update = |update| intermediate_update(handle.host(), update);

@@ -4,10 +4,9 @@ use enmm_fmi::raw::states;
 
 use crate::types::{FmuState, InstancePointer, Status, call};
 
-// SAFETY, of all calls: the importer gives pointers that can be read and written, for `size` bytes.
-
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetFMUState(instance: InstancePointer, state: *mut FmuState) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3GetFMUState", |instance| unsafe { states::save(instance, state) })
 }
 
@@ -18,6 +17,7 @@ pub extern "C" fn fmi3SetFMUState(instance: InstancePointer, state: FmuState) ->
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3FreeFMUState(instance: InstancePointer, state: *mut FmuState) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3FreeFMUState", |instance| unsafe { states::free(instance, state) })
 }
 
@@ -27,6 +27,7 @@ pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
     state: FmuState,
     size: *mut usize,
 ) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3SerializedFMUStateSize", |instance| unsafe { states::size(instance, state, size) })
 }
 
@@ -37,6 +38,7 @@ pub unsafe extern "C" fn fmi3SerializeFMUState(
     out: *mut u8,
     size: usize,
 ) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3SerializeFMUState", |instance| unsafe { states::serialize(instance, state, out, size) })
 }
 
@@ -47,5 +49,6 @@ pub unsafe extern "C" fn fmi3DeserializeFMUState(
     size: usize,
     state: *mut FmuState,
 ) -> Status {
+    // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3DeserializeFMUState", |instance| unsafe { states::deserialize(instance, bytes, size, state) })
 }

@@ -59,7 +59,7 @@ impl Host for Importer {
 }
 
 /// All instances of this library.
-pub(crate) static LIVE: Live<Importer> = Live::new();
+pub(crate) static LIVE: Live<Importer> = Live::new(0x40);
 
 /// Does `work` on the importer's instance.
 pub(crate) fn call(pointer: InstancePointer, name: &str, work: impl FnOnce(&mut Instance) -> Status) -> Status {
@@ -67,7 +67,7 @@ pub(crate) fn call(pointer: InstancePointer, name: &str, work: impl FnOnce(&mut 
 }
 
 pub(crate) fn with_handle(pointer: InstancePointer, work: impl FnOnce(&Arc<Handle<Importer>>) -> Status) -> Status {
-    guarded(Status::Fatal, || LIVE.get(pointer.addr()).map_or(Status::Error, |handle| work(&handle)))
+    guarded(Status::Fatal, || LIVE.find(pointer.addr()).map_or(Status::Error, |handle| work(&handle)))
 }
 
 /// Keeps a panic from the importer.

@@ -135,3 +135,21 @@ fn energy_from_nowhere_is_a_warning_in_the_log() {
     assert_eq!(doubts(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
     assert_eq!(doubts(&Fmu::boxed()), []);
 }
+
+#[test]
+fn places_for_the_end_of_a_step_are_looked_at_before_the_step() {
+    let fmu = Fmu::boxed();
+    let mut bytes = [0_u64; 2];
+    let odd = bytes.as_mut_ptr().cast::<u8>().wrapping_add(1).cast::<f64>();
+    for place in [odd, std::ptr::null_mut()] {
+        let instance = fmu.instance();
+        assert_eq!(fmi3EnterInitializationMode(instance.pointer, false, 0.0, 0.0, false, 0.0), OK);
+        assert_eq!(fmi3ExitInitializationMode(instance.pointer), OK);
+        let mut flags = [true; 3];
+        let [event, terminate, early] = &mut flags;
+        let refused = unsafe { fmi3DoStep(instance.pointer, 0.0, 0.001, true, event, terminate, early, place) };
+        // A step that is done writes all that it can.
+        assert_eq!((refused, flags), (ERROR, [true; 3]), "{place:?}");
+    }
+    assert_eq!(bytes, [0; 2]);
+}

@@ -29,7 +29,8 @@ const INTRODUCTION: &str = "\
  * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
- * another thread was using at the fork stays ENMM_BUSY there. See enmm_set_threads for models with threads.
+ * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not
+ * have. See enmm_set_threads for models with threads.
  *
  * Structures begin with struct_size, which the caller sets to sizeof the structure. The library writes no more than
  * that, so that structures can grow and programs built with an older header still work. Members that the library does
@@ -37,6 +38,9 @@ const INTRODUCTION: &str = "\
  *
  * Texts are UTF-8 and end with a zero byte.
  */";
+
+/// Section of the functions for readers in Rust, which the introduction says for all.
+const SAFETY: &str = " *\n * # Safety\n * Every pointer is as the head of the header states.\n";
 
 /// Root of the repository.
 pub fn root() -> PathBuf {
@@ -80,5 +84,6 @@ pub fn generate() -> Result<String, String> {
     let mut bytes = Vec::new();
     bindings.write(&mut bytes);
     let text = String::from_utf8(bytes).map_err(|error| error.to_string())?;
-    Ok(text.lines().map(|line| line.trim_end().to_owned() + "\n").collect())
+    let text: String = text.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
+    Ok(text.replace(SAFETY, ""))
 }

@@ -2,7 +2,7 @@
 
 // The files of the C ABI: its library is called `enmm` as the engine is, and so cannot be a Rust library as well.
 #[path = "../../../ffi/capi/src/abi/mod.rs"]
-#[allow(missing_docs, clippy::missing_safety_doc)]
+#[allow(missing_docs)]
 pub mod abi;
 pub mod buffer;
 #[allow(clippy::not_unsafe_ptr_arg_deref, reason = "a saved state is a number in the form of a pointer")]

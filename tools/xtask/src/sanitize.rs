@@ -1,6 +1,7 @@
 //! Memory under the eyes of other tools: valgrind and the sanitizers of the C compiler over the hosts in C, the address
-//! sanitizer of the nightly compiler over the share of fuzzing, its thread sanitizer over the claim of equal bits. What
-//! is missing is reported with the command that installs it, and is no failure.
+//! sanitizer of the nightly compiler over the share of fuzzing, its thread sanitizer over the claim of equal bits and
+//! over the tables of handles, and its interpreter Miri over these tables. What is missing is reported with the command
+//! that installs it, and is no failure.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -37,11 +38,13 @@ enum Verdict {
 /// Name of a tool with what it looks at, and how it is run.
 type Tool = (&'static str, fn(&Repository) -> Result<Verdict, String>);
 
-const TOOLS: [Tool; 4] = [
+const TOOLS: [Tool; 6] = [
     ("valgrind, hosts in C", valgrind),
     ("sanitizers of the C compiler, hosts in C", hosts),
     ("address sanitizer, share of fuzzing", addresses),
     ("thread sanitizer, equal bits at any number of threads", threads),
+    ("thread sanitizer, handle tables", tables_with_threads),
+    ("Miri, handle tables", tables_in_miri),
 ];
 
 /// Runs all tools that are there; fails when one finds something.
@@ -78,14 +81,14 @@ fn run_tools(repository: &Repository, tools: &[Tool]) -> Result<(), String> {
     if bad.is_empty() { Ok(()) } else { Err(format!("something was found by {}: see above", bad.join("; "))) }
 }
 
-fn is_there(program: &str, argument: &str) -> bool {
+fn is_there(program: &str, arguments: &[&str]) -> bool {
     let mut ask = Command::new(program);
-    ask.arg(argument).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    ask.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     ask.status().is_ok_and(|status| status.success())
 }
 
 fn valgrind(repository: &Repository) -> Result<Verdict, String> {
-    if !is_there("valgrind", "--version") {
+    if !is_there("valgrind", &["--version"]) {
         return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
     }
     let libraries = libraries(repository)?;
@@ -182,6 +185,27 @@ fn addresses(repository: &Repository) -> Result<Verdict, String> {
 }
 
 fn threads(repository: &Repository) -> Result<Verdict, String> {
+    with_threads(repository, &["--test", "engine", "determinism"], "tests/determinism.rs")
+}
+
+fn tables_with_threads(repository: &Repository) -> Result<Verdict, String> {
+    with_threads(repository, &["--package", "enmm-handles", "--lib"], "threads that make, find and remove objects")
+}
+
+/// The handle tables interpreted, where every access to memory and every lock is looked at.
+fn tables_in_miri(repository: &Repository) -> Result<Verdict, String> {
+    if !is_there("rustup", &["run", "nightly", "cargo", "miri", "--version"]) {
+        return Ok(Verdict::Missing("Miri is not there (rustup component add miri --toolchain nightly)"));
+    }
+    let mut miri = repository.command("rustup");
+    miri.args(["run", "nightly", "cargo", "miri", "test", "--package", "enmm-handles", "--lib"]);
+    repository::run(miri.env("CARGO_TARGET_DIR", place(repository)).stdout(Stdio::null()))?;
+    clear(repository)?;
+    Ok(Verdict::Clean("threads that make, find and remove objects".to_owned()))
+}
+
+/// Runs tests that the nightly compiler has built with its thread sanitizer.
+fn with_threads(repository: &Repository, tests: &[&str], seen: &str) -> Result<Verdict, String> {
     let sources = |nightly: &Nightly| nightly.system.join("lib/rustlib/src/rust/library").is_dir();
     let Some(nightly) = Nightly::find().filter(sources) else {
         return Ok(Verdict::Missing(
@@ -189,11 +213,8 @@ fn threads(repository: &Repository) -> Result<Verdict, String> {
              (rustup component add rust-src --toolchain nightly)",
         ));
     };
-    repository::run(&mut nightly.cargo(
-        repository,
-        "thread",
-        &["test", "-Zbuild-std", "--test", "engine", "determinism"],
-    ))?;
+    let arguments = [&["test", "-Zbuild-std"], tests].concat();
+    repository::run(&mut nightly.cargo(repository, "thread", &arguments))?;
     clear(repository)?;
-    Ok(Verdict::Clean("tests/determinism.rs".to_owned()))
+    Ok(Verdict::Clean(seen.to_owned()))
 }

@@ -42,6 +42,9 @@ pub extern "C" fn enmm_set_block_force(
 /// its last values count. Blocks that are not named keep their force.
 ///
 /// Errors: as enmm_set_block_force, for the first block that is refused; ENMM_NULL_ARGUMENT when `n` is not 0.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_set_block_forces(
     model: *mut enmm_model,
@@ -138,6 +141,9 @@ pub extern "C" fn enmm_set_interpolation(model: *mut enmm_model, mode: i32) -> e
 /// Returns how inputs vary within a communication step: a value of enmm_interpolation.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_interpolation(model: *mut enmm_model, mode: *mut i32) -> enmm_status {
     // SAFETY: promised by the host.

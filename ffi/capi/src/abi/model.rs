@@ -16,6 +16,9 @@ use crate::types::{enmm_log_callback, enmm_log_level, enmm_model, enmm_status, e
 /// which enmm_destroy frees, or NULL on failure.
 ///
 /// Errors: ENMM_FILE_ERROR, ENMM_INVALID_CASE with file, line and key, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_create_from_file(case_path: *const c_char, out: *mut *mut enmm_model) -> enmm_status {
     guard(|| {
@@ -34,6 +37,9 @@ pub unsafe extern "C" fn enmm_create_from_file(case_path: *const c_char, out: *m
 /// handle, which enmm_destroy frees, or NULL on failure.
 ///
 /// Errors: as enmm_create_from_file; the text is called "case" in messages.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_create_from_string(
     toml: *const c_char,
@@ -57,6 +63,9 @@ pub unsafe extern "C" fn enmm_create_from_string(
 /// `base_dir` is the directory of the files that the case names; NULL stands for the current one.
 ///
 /// Errors: as enmm_create_from_string.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_check_case(toml: *const c_char, base_dir: *const c_char) -> enmm_status {
     guard(|| {
@@ -104,6 +113,9 @@ pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
 /// Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
 /// with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
 /// also computes the initial equilibrium, and discards it when the step fails.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_do_step(
     model: *mut enmm_model,
@@ -126,6 +138,9 @@ pub unsafe extern "C" fn enmm_do_step(
 /// Returns the time of the model (s): 0 at the start of the first dynamic stage.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_time(model: *mut enmm_model, time: *mut f64) -> enmm_status {
     // SAFETY: promised by the host.
@@ -135,6 +150,9 @@ pub unsafe extern "C" fn enmm_get_time(model: *mut enmm_model, time: *mut f64) -
 /// Returns the internal step (s), an integer fraction of a tenth of the communication step.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_internal_step(model: *mut enmm_model, step: *mut f64) -> enmm_status {
     // SAFETY: promised by the host.
@@ -144,6 +162,9 @@ pub unsafe extern "C" fn enmm_get_internal_step(model: *mut enmm_model, step: *m
 /// Returns the communication step (s) that the case suggests; hosts may use any other.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_communication_step(model: *mut enmm_model, step: *mut f64) -> enmm_status {
     // SAFETY: promised by the host.
@@ -153,6 +174,9 @@ pub unsafe extern "C" fn enmm_get_communication_step(model: *mut enmm_model, ste
 /// Returns the time (s) at which the stages of the case end; hosts may continue.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_stop_time(model: *mut enmm_model, time: *mut f64) -> enmm_status {
     // SAFETY: promised by the host.
@@ -179,6 +203,9 @@ pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> en
 /// For the end of the model see enmm_destroy.
 ///
 /// Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_set_log_callback(
     model: *mut enmm_model,
@@ -219,6 +246,9 @@ fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_cha
 /// that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_case_hash(
     model: *mut enmm_model,

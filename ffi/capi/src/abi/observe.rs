@@ -11,6 +11,9 @@ use crate::types::*;
 /// Returns the number of blocks, excavated ones included. It never changes.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
     with_model(model.addr(), |model| {
@@ -26,6 +29,9 @@ pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut us
 /// `*written` gets their number. With `out` NULL and `capacity` 0 the call returns only that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_block_states(
     model: *mut enmm_model,
@@ -40,6 +46,9 @@ pub unsafe extern "C" fn enmm_get_block_states(
 /// Writes energies and works. `out->struct_size` must be set.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_energies(model: *mut enmm_model, out: *mut enmm_energies) -> enmm_status {
     // SAFETY: promised by the host.
@@ -49,6 +58,9 @@ pub unsafe extern "C" fn enmm_get_energies(model: *mut enmm_model, out: *mut enm
 /// Writes sums and extremes over the model. `out->struct_size` must be set.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_totals(model: *mut enmm_model, out: *mut enmm_totals) -> enmm_status {
     // SAFETY: promised by the host.
@@ -58,6 +70,9 @@ pub unsafe extern "C" fn enmm_get_totals(model: *mut enmm_model, out: *mut enmm_
 /// Writes the contacts with the forces of the last internal step, those without force included.
 ///
 /// Buffer and errors as enmm_get_block_states.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_contacts(
     model: *mut enmm_model,
@@ -73,6 +88,9 @@ pub unsafe extern "C" fn enmm_get_contacts(
 /// restores its events. An event does not change between reads, its time included.
 ///
 /// Buffer and errors as enmm_get_block_states.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_events(
     model: *mut enmm_model,
@@ -93,6 +111,9 @@ pub unsafe extern "C" fn enmm_get_events(
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a block that does not exist; ENMM_NOT_FOUND for one that
 /// has been excavated; ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_block_polygon(
     model: *mut enmm_model,
@@ -108,6 +129,9 @@ pub unsafe extern "C" fn enmm_get_block_polygon(
 /// Returns the number of holes of a block.
 ///
 /// Errors: as enmm_get_block_polygon.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_block_hole_count(model: *mut enmm_model, block: u32, count: *mut usize) -> enmm_status {
     with_model(model.addr(), |model| {
@@ -120,6 +144,9 @@ pub unsafe extern "C" fn enmm_block_hole_count(model: *mut enmm_model, block: u3
 /// Writes the current outline of hole `hole` (from 0) of a block, clockwise; buffer as enmm_get_block_polygon.
 ///
 /// Errors: as enmm_get_block_polygon; ENMM_INVALID_ARGUMENT for a hole that does not exist.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_block_hole(
     model: *mut enmm_model,
@@ -157,6 +184,9 @@ unsafe fn outline(
 ///
 /// Errors: ENMM_NOT_FOUND where there is no rock; ENMM_INVALID_ARGUMENT for values that are not finite;
 /// ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_find_block_at(model: *mut enmm_model, x: f64, y: f64, block: *mut u32) -> enmm_status {
     with_model(model.addr(), |model| {
@@ -169,6 +199,9 @@ pub unsafe extern "C" fn enmm_find_block_at(model: *mut enmm_model, x: f64, y: f
 /// Returns the number of ports that the case names by `[[port]]`.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_port_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
     // SAFETY: promised by the host.
@@ -178,6 +211,9 @@ pub unsafe extern "C" fn enmm_port_count(model: *mut enmm_model, count: *mut usi
 /// Returns the port with a name.
 ///
 /// Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_find_port(model: *mut enmm_model, name: *const c_char, port: *mut u32) -> enmm_status {
     // SAFETY: promised by the host.
@@ -193,6 +229,9 @@ pub unsafe extern "C" fn enmm_find_port(model: *mut enmm_model, name: *const c_c
 /// that number.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_port_name(
     model: *mut enmm_model,
@@ -208,6 +247,9 @@ pub unsafe extern "C" fn enmm_port_name(
 /// Returns the kind of a port.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_port_kind(model: *mut enmm_model, port: u32, kind: *mut enmm_port_type) -> enmm_status {
     // SAFETY: promised by the host.
@@ -217,6 +259,9 @@ pub unsafe extern "C" fn enmm_port_kind(model: *mut enmm_model, port: u32, kind:
 /// Returns the block of a port: its own, or that of the first edge of a boundary or joint.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_port_block(model: *mut enmm_model, port: u32, block: *mut u32) -> enmm_status {
     // SAFETY: promised by the host.
@@ -227,6 +272,9 @@ pub unsafe extern "C" fn enmm_port_block(model: *mut enmm_model, port: u32, bloc
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or a struct_size that no version had,
 /// ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_get_port_state(
     model: *mut enmm_model,

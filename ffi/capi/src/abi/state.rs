@@ -12,6 +12,9 @@ use crate::types::{enmm_model, enmm_state, enmm_status};
 /// model.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut enmm_state) -> enmm_status {
     // SAFETY: promised by the host. Without a model there is no state either; a NULL is reported below.
@@ -47,6 +50,9 @@ pub extern "C" fn enmm_state_free(state: *mut enmm_state) -> enmm_status {
 /// `capacity` 0 the call returns only that number.
 ///
 /// Errors: ENMM_BUFFER_TOO_SMALL, ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_serialize(
     model: *mut enmm_model,
@@ -68,6 +74,9 @@ pub unsafe extern "C" fn enmm_state_serialize(
 ///
 /// Errors: ENMM_WRONG_STATE for bytes that are damaged, of another case or version, or with an invalid value (a number
 /// that is not finite or out of range, an index or a length), which the message names; ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_state_deserialize(
     model: *mut enmm_model,

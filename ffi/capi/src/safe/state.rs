@@ -1,6 +1,6 @@
 //! Saved states behind handles.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use engine::cosimulation::Saved;
 
@@ -47,14 +47,15 @@ impl Model {
     /// A dead state, one of another case, or what `copy` says.
     pub fn serialize(&self, state: usize, asked: bool, copy: impl FnOnce(&[u8]) -> Outcome) -> Outcome {
         let kept = STATES.find(state)?;
-        let mut bytes = kept.bytes.lock().unwrap_or_else(PoisonError::into_inner);
-        let own = match bytes.take() {
+        // Another thread that serializes the same state has the lock, or had it when this process was forked.
+        let mut bytes = kept.bytes.try_lock().ok();
+        let own = match bytes.as_mut().and_then(|bytes| bytes.take()) {
             Some(own) => own,
             None => self.inner.serialize(&kept.saved)?,
         };
         let outcome = copy(&own);
-        if asked || outcome.is_err() {
-            *bytes = Some(own);
+        if let Some(bytes) = bytes.as_mut().filter(|_| asked || outcome.is_err()) {
+            **bytes = Some(own);
         }
         outcome
     }

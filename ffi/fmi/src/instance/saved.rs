@@ -125,7 +125,7 @@ impl Instance {
     }
 
     /// Whether all that a state from outside holds can be of this FMU.
-    fn check_all(&self, state: &Whole) -> Result<(), Failure> {
+    fn check_all(&self, state: &mut Whole) -> Result<(), Failure> {
         self.check_whole(state)?;
         let times =
             [("start time", state.start), ("stop time", state.stop.unwrap_or(state.start)), ("time", state.time)];
@@ -136,7 +136,7 @@ impl Instance {
         }
         self.values.with(&state.values).check(&self.table).map_err(|problem| format!("the saved state: {problem}"))?;
         let other = if same_bits(&state.built, &self.built) { None } else { Some(self.model_of(&state.built)?) };
-        other.as_ref().unwrap_or(&self.model).check(&state.model).map_err(|error| error.to_string())
+        other.as_ref().unwrap_or(&self.model).check(&mut state.model).map_err(|error| error.to_string())
     }
 
     fn check_whole(&self, state: &Whole) -> Result<Phase, Failure> {
@@ -187,8 +187,8 @@ impl Instance {
         let legal = self.allow(Call::State);
         let outcome = legal.and_then(|()| {
             let decoded = bytes::decode(bytes, &self.table.token);
-            let state: Whole = decoded.map_err(|error| format!("these bytes are no state of this FMU: {error}"))?;
-            self.check_all(&state)?;
+            let mut state: Whole = decoded.map_err(|error| format!("these bytes are no state of this FMU: {error}"))?;
+            self.check_all(&mut state)?;
             self.states.put(number, state)
         });
         outcome.map_err(|failure| self.complain(failure))

@@ -48,12 +48,17 @@ fn fits<T>(n: usize) -> bool {
     n.checked_mul(size_of::<T>()).is_some_and(|bytes| isize::try_from(bytes).is_ok())
 }
 
+/// Whether a value can be written to a pointer: it is neither NULL nor misaligned.
+pub fn is_place<T>(pointer: *mut T) -> bool {
+    !pointer.is_null() && pointer.is_aligned()
+}
+
 /// Writes a value to a pointer; false when it is missing.
 ///
 /// # Safety
 /// A pointer that is neither NULL nor misaligned may be written to.
 pub unsafe fn put<T>(pointer: *mut T, value: T) -> bool {
-    let there = !pointer.is_null() && pointer.is_aligned();
+    let there = is_place(pointer);
     if there {
         // SAFETY: by the contract of this function.
         unsafe { pointer.write(value) };
