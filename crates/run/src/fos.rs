@@ -20,7 +20,7 @@ use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
 use enmm_report::PAGE;
 use enmm_stability::strength_reduction::{
-    End, FACTOR_RANGE, FailingBlock, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
+    End, FACTOR_RANGE, FailingBlock, HELD, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
     TOLERANCE, Trial, mechanisms,
 };
 
@@ -236,7 +236,7 @@ fn search_record(reduction: &Reduction) -> Value {
         "factor_of_safety": reduction.factor(),
         "at_least": reduction.at_least(),
         "bracket": { "stable": reduction.low, "unstable": reduction.high },
-        "rest": { "strength_factor": reduction.rest_factor, "time": reduction.rest.0, "steps": reduction.rest.1 },
+        "rest": { "strength_factor": HELD, "time": reduction.rest.0, "steps": reduction.rest.1 },
         "trials": reduction.trials.iter().map(trial_record).collect::<Vec<_>>(),
         "failing": failing.map(|trial| json!({
             "verdict": trial.verdict.name(),

@@ -5,11 +5,10 @@ use super::{End, Verdict};
 /// Ratio of neighbouring trials until the limit is bracketed.
 const STRIDE: f64 = 1.5;
 
-/// The first pair of factors: the given limits, or those about the strength under which the slope rests.
-pub fn start(rest_factor: f64, low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
-    let rests = 1.0 / rest_factor;
-    let first = low.unwrap_or_else(|| rests.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
-    let second = high.unwrap_or(if rest_factor > 1.0 { 1.0 } else { STRIDE * first });
+/// The first pair of factors: the given limits, or the strength of the case and less.
+pub fn start(low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
+    let first = low.unwrap_or_else(|| 1f64.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
+    let second = high.unwrap_or(STRIDE * first);
     [first, second.clamp(first, range[1]).max(first)]
 }
 
@@ -150,10 +149,9 @@ mod tests {
 
     #[test]
     fn the_start_lies_in_the_range() {
-        assert_eq!(start(1.0, None, None, [0.05, 20.0]), [1.0, 1.5]);
-        assert_eq!(start(4.0, None, None, [0.05, 20.0]), [0.25, 1.0]);
-        assert_eq!(start(1.0, Some(1.2), Some(1.3), [1.2, 1.3]), [1.2, 1.3]);
-        assert_eq!(start(1.0, Some(2.0), None, [2.0, 20.0]), [2.0, 3.0]);
-        assert_eq!(start(1.0, None, Some(0.5), [0.05, 0.5]), [0.5 / 1.5, 0.5]);
+        assert_eq!(start(None, None, [0.05, 20.0]), [1.0, 1.5]);
+        assert_eq!(start(Some(1.2), Some(1.3), [1.2, 1.3]), [1.2, 1.3]);
+        assert_eq!(start(Some(2.0), None, [2.0, 20.0]), [2.0, 3.0]);
+        assert_eq!(start(None, Some(0.5), [0.05, 0.5]), [0.5 / 1.5, 0.5]);
     }
 }

@@ -24,6 +24,9 @@ pub use slip::slide;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
+/// Factor on the strength with which a slope comes to rest before the trials: its joints hold, so that they neither slip
+/// nor lose their peak strength.
+pub const HELD: f64 = 1000.0;
 /// Width of the final bracket, relative to F, when none is given.
 pub const TOLERANCE: f64 = 5e-3;
 
@@ -149,8 +152,6 @@ pub struct Reduction {
     pub high: Option<f64>,
     /// How the search ended.
     pub end: End,
-    /// Factor on the strength under which the slope came to rest before the trials: 1 unless it fails by itself.
-    pub rest_factor: f64,
     /// Time (s) and steps that coming to rest took.
     pub rest: (f64, u64),
     /// Area (m²) of all blocks that can move and have no support.
@@ -232,7 +233,7 @@ pub fn factor_of_safety(
     let base = trial::Base::new(rest.simulation, options.tolerance);
     let run = |factor: f64| base.run(factor, options.interrupt);
     let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
-    let start = bracket::start(rest.factor, options.low, options.high, range);
+    let start = bracket::start(options.low, options.high, range);
     let mut search = bracket::Search::new(start, range, options.tolerance);
     let mut trials: Vec<Trial> = Vec::new();
     let mut unstable: Option<(f64, Simulation)> = None;
@@ -270,9 +271,8 @@ pub fn factor_of_safety(
     let [low, high] = search.bracket();
     let free_area = base.free_area();
     let simulation = unstable.map_or(base.simulation, |(_, simulation)| simulation);
-    let (rest_factor, effort, warnings) = (rest.factor, rest.effort, rest.warnings);
     let mut reduction =
-        Reduction { trials, low, high, end, rest_factor, rest: effort, free_area, bound, warnings, simulation };
+        Reduction { trials, low, high, end, rest: rest.effort, free_area, bound, warnings: rest.warnings, simulation };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);
     Ok(reduction)

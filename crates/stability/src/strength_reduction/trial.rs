@@ -16,8 +16,10 @@ use enmm::step::{StepError, StepReport, block_motion, mass_of_few};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
 const WINDOWS_PER_FALL: f64 = 10.0;
-/// Ways of a shear wave through the height of the model in a window, and in the fall of the strength.
-const WAVES: [f64; 2] = [2.0, 8.0];
+/// Ways of a shear wave through the height of the model in a window.
+const WAVES: f64 = 2.0;
+/// Windows in which the strength falls.
+const FALLING: f64 = 10.0;
 /// Times √(H/g) after which a trial ends undecided.
 const FALLS_MAX: f64 = 12.0;
 /// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
@@ -31,6 +33,40 @@ pub enum Stop {
     Interrupted,
     /// A numerical failure before anything had failed.
     Failed(StepError),
+}
+
+/// The fall of the strength in a trial: from [`Fall::DEPTH`] times its end down to that, by equal ratios in equal times,
+/// so that joints take up their load one after the other and nothing is thrown (Eq. 61).
+struct Fall {
+    /// When it begins (s).
+    start: f64,
+    /// How long it takes (s).
+    time: f64,
+    /// Strength factor at its end.
+    end: f64,
+}
+
+impl Fall {
+    /// Strength at its beginning over that at its end.
+    const DEPTH: f64 = 10.0;
+
+    /// Strength factor at a time (s).
+    fn strength(&self, time: f64) -> f64 {
+        let left = 1.0 - ((time - self.start) / self.time).clamp(0.0, 1.0);
+        self.end * libm::pow(Self::DEPTH, left)
+    }
+
+    /// Gives the next step of a model its strength.
+    fn act(&self, simulation: &mut Simulation) {
+        let (time, dt) = (simulation.time(), simulation.model().dt);
+        if time >= self.start + self.time {
+            return;
+        }
+        let drive = simulation.drive();
+        drive.from.copy_from(&drive.to);
+        (drive.from.strength_factor, drive.to.strength_factor) = (self.strength(time), self.strength(time + dt));
+        (drive.since, drive.until) = (time, time + dt);
+    }
 }
 
 /// Common start of all trials.
@@ -101,18 +137,14 @@ impl Base {
     pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
         let clock = Instant::now();
         let mut simulation = self.simulation.clone();
-        let start = simulation.time();
-        let drive = simulation.drive();
-        drive.from.copy_from(&drive.to);
-        drive.to.strength_factor = 1.0 / factor;
-        (drive.since, drive.until) = (start, start + self.scales.ramp);
+        let fall = Fall { start: simulation.time(), time: self.scales.ramp, end: 1.0 / factor };
         let mut samples = Vec::new();
         let mut positions = self.positions(&simulation);
         let steps = simulation.steps_in(self.scales.window);
         let mut first = None;
         let (mut judged, mut last) = (None, StepReport::default());
         while judged.is_none() {
-            match window(&mut simulation, steps, interrupt)? {
+            match window(&mut simulation, steps, &fall, interrupt)? {
                 Ok(report) => last = report,
                 Err(error) => {
                     judged = Some(given_up(&samples, &self.scales).ok_or(Stop::Failed(error))?);
@@ -235,6 +267,7 @@ fn free(simulation: &Simulation) -> Vec<bool> {
 fn window(
     simulation: &mut Simulation,
     steps: u64,
+    fall: &Fall,
     interrupt: Option<&AtomicBool>,
 ) -> Result<Result<StepReport, StepError>, Stop> {
     let mut report = StepReport::default();
@@ -242,6 +275,7 @@ fn window(
         if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Stop::Interrupted);
         }
+        fall.act(simulation);
         match simulation.advance(step == steps) {
             Ok(made) => report = made,
             Err(error) => return Ok(Err(error)),
@@ -263,7 +297,7 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let (height, gravity) = height_and_gravity(simulation);
     let wave = height / model.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
     let fall = (height / gravity).sqrt();
-    let window = (fall / WINDOWS_PER_FALL).max(WAVES[0] * wave);
+    let window = (fall / WINDOWS_PER_FALL).max(WAVES * wave);
     let still_speed = STILL * tolerance * gravity * window;
     let free = (0..model.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
     let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
@@ -271,8 +305,8 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let elastic = (ELASTIC * height).max(given_way);
     Scales {
         window,
-        ramp: (WAVES[1] * wave).max(2.0 * window),
-        time_max: FALLS_MAX * fall + WAVES[1] * wave,
+        ramp: FALLING * window,
+        time_max: FALLS_MAX * fall + FALLING * window,
         still_speed,
         still_kinetic: 0.5 * mass * still_speed * still_speed,
         elastic,
