@@ -52,7 +52,7 @@ fn dense_lines_with_room_between_them_are_cut() {
 }
 
 #[test]
-fn a_case_too_long_to_read_at_once_names_the_file_for_its_traces() {
+fn a_huge_case_names_the_file_for_its_traces() {
     let traces = "[[joint]]\npoints = [[0.0, 1.0], [1.0, 1.0]]\n".repeat(250_000);
     let told = parse_case(&traces, "long.toml", Path::new("")).expect_err("too long").to_string();
     assert!(told.contains("the limit is 8388608") && told.contains("geometry_file"), "{told}");
