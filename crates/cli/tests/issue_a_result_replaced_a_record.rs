@@ -79,3 +79,55 @@ fn every_file_of_a_run_has_the_name_of_a_result() {
     let others: Vec<_> = names.iter().filter(|name| !enmm_run::is_result(Path::new(name))).collect();
     assert!(others.is_empty(), "not looked at before a run: {others:?}");
 }
+
+/// The lock of the folder went through a link into the file that it led to, and what looked like a file of a killed
+/// run was swept away.
+#[cfg(unix)]
+#[test]
+fn neither_a_lock_nor_a_sweep_reaches_an_input() {
+    let place = place("quake.csv");
+    std::os::unix::fs::symlink("quake.csv", place.path(".enmm.lock")).expect("linked");
+    place.enmm(&["check", "case.toml", "-o", "."]).assert_bad_input(&[".enmm.lock", "no file of its own"]);
+    fs::remove_file(place.path(".enmm.lock")).expect("removed");
+    fs::hard_link(place.path("case.toml"), place.path(".enmm.lock")).expect("linked");
+    place.enmm(&["run", "case.toml", "-o", "."]).assert_bad_input(&[".enmm.lock", "no file of its own"]);
+    fs::remove_file(place.path(".enmm.lock")).expect("removed");
+    assert_eq!(fs::read_to_string(place.path("quake.csv")).expect("kept"), "0,0\n1,0\n");
+    assert!(fs::read_to_string(place.path("case.toml")).expect("kept").contains("title"));
+    let place = self::place(".history.csv.123-4.tmp");
+    let refused = place.enmm(&["run", "case.toml", "-o", "."]);
+    refused.assert_bad_input(&[".history.csv.123-4.tmp", "a result would replace this"]);
+    assert!(place.path(".history.csv.123-4.tmp").exists());
+}
+
+/// SQLite keeps files beside the store; a store is a file of its own, whatever its name.
+#[test]
+fn the_files_beside_a_store_are_looked_at_and_a_store_is_a_file() {
+    let place = Place::with(&(case(0.01) + RANDOM));
+    let sample = |store: &str| place.enmm(&["sample", "case.toml", "-n", "1", "-o", "out", "--store", store]);
+    for end in ["wal", "shm", "journal"] {
+        fs::hard_link(place.path("case.toml"), place.path(&format!("store-{end}"))).expect("linked");
+        sample("store").assert_bad_input(&[&format!("store-{end}"), "which is the input"]);
+        fs::remove_file(place.path(&format!("store-{end}"))).expect("removed");
+    }
+    sample("out/ensemble.csv").assert_bad_input(&["ensemble.csv", "another result has this name", "--store"]);
+    sample(":memory:");
+    assert!(place.path(":memory:").is_file(), "a name and no memory: {:?}", place.names());
+}
+
+/// A link named as the film led the film into another file, and a checkpoint that was linked there was lost.
+#[cfg(unix)]
+#[test]
+fn a_film_replaces_a_link_and_no_checkpoint() {
+    let place = Place::with(&case(0.01));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "first"]).status, Some(0));
+    fs::create_dir(place.path("second")).expect("made");
+    fs::hard_link(place.path("first/checkpoint.enmm"), place.path("second/film.bin")).expect("linked");
+    let resume = ["run", "case.toml", "--resume", "first/checkpoint.enmm", "-o", "second"];
+    place.enmm(&resume).assert_bad_input(&["film.bin", "which is the input"]);
+    fs::remove_file(place.path("second/film.bin")).expect("removed");
+    fs::write(place.path("precious"), "kept").expect("written");
+    std::os::unix::fs::symlink("../precious", place.path("second/film.bin")).expect("linked");
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "second"]).status, Some(0));
+    assert_eq!(fs::read_to_string(place.path("precious")).expect("kept"), "kept");
+}

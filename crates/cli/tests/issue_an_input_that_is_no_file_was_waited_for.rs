@@ -52,3 +52,13 @@ fn a_name_that_no_result_can_have_is_found_at_the_start() {
     pipe(&place, "packed.fmu");
     place.enmm(&["fmu", "case.toml", "-o", "packed.fmu"]).assert_bad_input(&["packed.fmu", "no regular file"]);
 }
+
+/// A resume copies what lies beside its checkpoint.
+#[test]
+fn no_pipe_beside_a_checkpoint_is_waited_for() {
+    let place = Place::with(&case(0.01));
+    assert_eq!(place.enmm(&["run", "case.toml", "-o", "first"]).status, Some(0));
+    pipe(&place, "first/stage9_joints.png");
+    let answer = place.enmm(&["run", "case.toml", "--resume", "first/checkpoint.enmm", "-o", "second"]);
+    answer.assert_bad_input(&["stage9_joints.png", "a pipe or a device"]);
+}

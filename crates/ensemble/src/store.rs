@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use rusqlite::{Connection, OptionalExtension, params};
+use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use serde_json::{Map, Value as Json};
 
 use crate::draw::Value;
@@ -66,7 +66,9 @@ impl Store {
     /// The file cannot be made or opened, or is none of SQLite.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let open = || {
-            let database = Connection::open(path)?;
+            // A path is the name of a file, also where SQLite would take it for an address or for memory.
+            let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE;
+            let database = Connection::open_with_flags(Path::new(".").join(path), flags)?;
             database.busy_timeout(WAIT)?;
             database.pragma_update(None, "journal_mode", "wal")?;
             database.pragma_update(None, "synchronous", "full")?;

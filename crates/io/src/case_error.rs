@@ -69,6 +69,11 @@ pub(super) fn is_numeric(text: &str) -> bool {
     text.chars().all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ';' | 'e' | 'E' | ' ' | '\t'))
 }
 
+/// Whether a text is a number with a slip in it, such as `0.1g`, or too short to give anything away.
+pub(super) fn is_nearly_numeric(text: &str) -> bool {
+    text.len() <= 3 || text.len() <= 24 && text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
 /// Largest input file (bytes).
 const SIZE_MAX: u64 = 1 << 28;
 

@@ -73,6 +73,35 @@ pub fn read_input(path: &Path) -> io::Result<Vec<u8>> {
 /// Kinds of files that runs and searches leave.
 const KINDS: [&str; 8] = ["bin", "csv", "enmm", "html", "json", "png", "pvd", "vtu"];
 
+/// Whether a file name is one that programs of ours give to files which they have not finished.
+pub fn is_temporary(name: &str) -> bool {
+    writer_of_temporary(name).is_some()
+}
+
+/// Copies a regular file to a place of its own: a link of that name is replaced and not followed.
+///
+/// # Errors
+/// As [`open_input`], or what the file system refuses at the other end.
+pub fn copy_file(from: &Path, to: &Path) -> io::Result<()> {
+    let mut input = open_input(from).map_err(at_path(from))?;
+    remove_if_there(to)
+        .and_then(|()| File::create_new(to))
+        .and_then(|mut out| io::copy(&mut input, &mut out))
+        .map_err(at_path(to))?;
+    Ok(())
+}
+
+/// Removes a file or a link, but not what the link leads to.
+///
+/// # Errors
+/// What the file system refuses; a file that is not there is none.
+pub fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        removed => removed,
+    }
+}
+
 /// Removes temporary files that killed programs left in a directory; a missing directory has none.
 ///
 /// # Errors

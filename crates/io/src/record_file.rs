@@ -1,6 +1,6 @@
 //! Reader of records: CSV files whose first two columns are time (s) and value.
 
-use super::case_error::{CaseError, is_numeric, shown};
+use super::case_error::{CaseError, is_nearly_numeric, is_numeric, shown};
 use enmm::model::case::TimeTable;
 
 /// A record and the line of each of its rows.
@@ -30,8 +30,7 @@ pub fn parse(file: &str, text: &str) -> Result<Record, CaseError> {
             return Err(CaseError::at(file, k, "", message));
         }
         let mut fields = line.split([',', ';', '\t', ' ']).filter(|field| !field.is_empty());
-        let begun = !record.rows.is_empty();
-        match [fields.next(), fields.next()].map(|field| number(field, begun)) {
+        match [fields.next(), fields.next()].map(number) {
             [Ok(time), Ok(value)] => {
                 record.rows.push([time, value]);
                 record.lines.push(k);
@@ -50,10 +49,10 @@ pub fn parse(file: &str, text: &str) -> Result<Record, CaseError> {
     Ok(record)
 }
 
-/// The number of a column; `begun` when lines before it have numbers, so that the file looks like a record.
-fn number(field: Option<&str>, begun: bool) -> Result<f64, String> {
+/// The number of a column; a message shows no word, which may be of any other file.
+fn number(field: Option<&str>) -> Result<f64, String> {
     let field = field.ok_or("the line has fewer than 2 columns")?;
-    let is_none = |fault: &str| match begun || is_numeric(field) {
+    let is_none = |fault: &str| match is_nearly_numeric(field) {
         true => format!("{field:?} is {fault}"),
         false => format!("a column is {fault}"),
     };

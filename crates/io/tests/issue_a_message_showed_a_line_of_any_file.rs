@@ -32,6 +32,14 @@ fn no_reader_shows_a_line_of_a_file_that_is_none_of_its_kind() {
         fs::write(path(file), "\"root password\"").expect("written");
         is_silent(&incline(file).expect_err("no geometry").to_string());
     }
+    for (file, text) in [
+        ("b.geojson", "{\"type\": \"password hash\", \"root\": 1}"),
+        ("b.dxf", "12345\nroot\npassword\n"),
+        ("b.csv", "user,x,y,trace\nroot,hash,1,2\n"),
+    ] {
+        fs::write(path(file), text).expect("written");
+        is_silent(&incline(file).expect_err("no geometry").to_string());
+    }
     fs::write(path("plain"), SECRET).expect("written");
     is_silent(&load_case(&path("plain")).expect_err("no case").to_string());
     let shaken = example("shaken_slope.toml").replace("synthetic_record.csv", "plain");
@@ -69,6 +77,14 @@ fn names_that_do_harm_are_refused() {
         let message = refused(monitor(name));
         assert!(message.contains("monitor[") && message.contains(told), "{message}");
     }
+    let set = |name: &str| format!("{case}\n[[joint_set]]\nname = \"{name}\"\nangle_deg = 30\nspacing = 1\n");
+    let message = refused(set("=cmd()"));
+    assert!(message.contains("joint_set[0].name") && message.contains("begins with `=`"), "{message}");
+    let message = refused(set("a\\u202eb"));
+    assert!(message.contains("control character"), "{message}");
+    let title = case.lines().find(|line| line.starts_with("title")).expect("a title");
+    let message = refused(case.replace(title, "title = \"a\\u001b[2J\""));
+    assert!(message.contains("title") && message.contains("control character"), "{message}");
     let law = refused(case.clone() + "\n[joint_law.\"=1+1\"]\nfriction_deg = 30\n");
     assert!(law.contains("joint_law") && law.contains("begins with `=`"), "{law}");
     let rock = refused(case.clone() + "\n[rock.\"@a\"]\ndensity = 1\nyoung = 1e9\npoisson = 0.2\nblocks = [[1, 1]]\n");

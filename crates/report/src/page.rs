@@ -9,7 +9,7 @@ use base64::write::EncoderWriter;
 
 use crate::chunk::{self, Chunks, MAGIC};
 use crate::error::FilmError;
-use crate::writer::temporary_beside;
+use crate::writer::{forget, temporary_beside};
 
 const PAGE: &str = include_str!("../viewer/viewer.html");
 const STYLE: &str = include_str!("../viewer/viewer.css");
@@ -33,13 +33,21 @@ const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
 /// # Errors
 /// A file that is no film, or what the file system refuses.
 pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
+    let temporary = temporary_beside(page);
+    let written = fill(film, &temporary);
+    written
+        .and_then(|()| std::fs::rename(&temporary, page).map_err(FilmError::at(page)))
+        .inspect_err(|_| forget(&temporary))
+}
+
+/// Writes the page of a film into a file.
+fn fill(film: &Path, temporary: &Path) -> Result<(), FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: film.to_owned(), problem: error.to_string() };
     let mut chunks = chunk::open(film)
         .map_err(FilmError::at(film))
         .and_then(|file| Chunks::new(BufReader::new(file)).map_err(no_film))?;
-    let temporary = temporary_beside(page);
-    let at = FilmError::at(&temporary);
-    let mut out = BufWriter::new(File::create(&temporary).map_err(&at)?);
+    let at = FilmError::at(temporary);
+    let mut out = BufWriter::new(File::create(temporary).map_err(&at)?);
     let [before, after] = halves();
     out.write_all(before.as_bytes()).map_err(&at)?;
     out.write_all(b"<script type=\"application/octet-stream;base64\" id=\"film\">").map_err(&at)?;
@@ -52,8 +60,7 @@ pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
     drop(text);
     out.write_all(b"</script>").map_err(&at)?;
     out.write_all(after.as_bytes()).map_err(&at)?;
-    out.into_inner().map_err(|error| at(error.into_error()))?;
-    std::fs::rename(&temporary, page).map_err(FilmError::at(page))
+    out.into_inner().map(drop).map_err(|error| at(error.into_error()))
 }
 
 /// The page without a film, which requests one from its server.

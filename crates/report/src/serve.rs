@@ -22,6 +22,8 @@ const PIECE: u64 = 8 * 1024 * 1024;
 const ASKING: Duration = Duration::from_secs(5);
 /// How long it may take over our whole answer.
 const ANSWERING: Duration = Duration::from_secs(60);
+/// Pause after a connection that could not be taken.
+const PAUSE: Duration = Duration::from_millis(50);
 /// Browsers that are answered side by side; others wait for their turn.
 const CLIENTS_MAX: usize = 64;
 
@@ -58,7 +60,14 @@ impl Server {
         thread::scope(|scope| {
             loop {
                 let turn = turns.take();
-                let (stream, _) = self.listener.accept()?;
+                let stream = match self.listener.accept() {
+                    Ok((stream, _)) => stream,
+                    Err(error) if passes(&error) => {
+                        thread::sleep(PAUSE);
+                        continue;
+                    }
+                    Err(error) => return Err(error),
+                };
                 let answer = move || {
                     let _turn = turn;
                     let _ = self.answer(&stream);
@@ -116,6 +125,13 @@ impl Server {
         file.seek(SeekFrom::Start(from)).map_err(|_| BEHIND)?;
         Ok(Piece { file: Some(file), length: left.min(PIECE) })
     }
+}
+
+/// Whether an error of a new connection goes by: its other end has gone, or the process has no file to spare (EMFILE,
+/// ENFILE and WSAEMFILE).
+fn passes(error: &io::Error) -> bool {
+    let is_full = error.raw_os_error().is_some_and(|code| [23, 24, 10024].contains(&code));
+    is_full || matches!(error.kind(), io::ErrorKind::ConnectionAborted | io::ErrorKind::Interrupted)
 }
 
 /// A piece of a film; nothing without a file.

@@ -34,7 +34,12 @@ impl FilmWriter {
     /// A number that is not finite, or what the file system refuses.
     pub fn create(path: &Path, head: &Head, outlines: &[Outline]) -> Result<Self, FilmError> {
         let (bytes, shape) = checked(head, outlines)?;
-        let mut file = File::create(path).map_err(FilmError::at(path))?;
+        // A link of that name is replaced and not followed.
+        match std::fs::remove_file(path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(FilmError::at(path)(error)),
+            _ => {}
+        }
+        let mut file = File::create_new(path).map_err(FilmError::at(path))?;
         file.write_all(&MAGIC).map_err(FilmError::at(path))?;
         let mut film = Self::of(path, file, shape, head);
         film.append(Kind::Head, 0.0, &json(head, path)?)?;
@@ -52,7 +57,7 @@ impl FilmWriter {
         }
         let (_, shape) = checked(head, outlines)?;
         let shortened = temporary_beside(path);
-        let stage = keep(path, &shortened, until)?;
+        let stage = keep(path, &shortened, until).inspect_err(|_| forget(&shortened))?;
         std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
         let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
         Ok(Self { stage, ..Self::of(path, file, shape, head) })
@@ -148,6 +153,11 @@ fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError
 pub fn temporary_beside(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{name}.{}-0.tmp", std::process::id()))
+}
+
+/// Removes a file that is not finished; one that cannot be removed is left for the next run to sweep.
+pub fn forget(temporary: &Path) {
+    let _ = std::fs::remove_file(temporary);
 }
 
 /// Copies the chunks of a film up to a time (s); returns the stage of its last frame.

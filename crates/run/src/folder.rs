@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use enmm_io::files::{at_path, sweep_temporaries};
+use enmm_io::files::{at_path, is_temporary, sweep_temporaries};
 use same_file::Handle;
 
 /// Name of the file by which a process holds a folder.
@@ -64,8 +64,10 @@ impl Folder {
         if !path.is_dir() {
             return Err(taken(path, "is no directory"));
         }
+        let inputs = handles(inputs);
+        check_lock(&path.join(LOCK), &inputs)?;
         folder.lock = Some(Lock::take(path)?);
-        check(path, inputs)?;
+        check(path, &inputs)?;
         sweep_temporaries(path)?;
         sweep_temporaries(&path.join(FRAMES))?;
         Ok(folder)
@@ -114,8 +116,10 @@ impl Lock {
             }
             // The process that held it may have removed it between the two calls above.
             if Handle::from_path(&path).is_ok_and(|there| file.try_clone().is_ok_and(|own| is_same(own, &there))) {
-                file.set_len(0).and_then(|()| write!(file, "{}", std::process::id())).map_err(at_path(&path))?;
-                return Ok(Self { path, _file: file });
+                let written = file.set_len(0).and_then(|()| write!(file, "{}", std::process::id()));
+                let lock = Self { path, _file: file };
+                written.map_err(at_path(&lock.path))?;
+                return Ok(lock);
             }
         }
     }
@@ -156,15 +160,34 @@ fn is_stage_picture(name: &str) -> bool {
     rest.and_then(|rest| rest.split_once('_')).is_some_and(|(number, _)| number.parse::<u32>().is_ok())
 }
 
-/// Looks at all that has the name of a result.
-fn check(folder: &Path, inputs: &[PathBuf]) -> io::Result<()> {
-    let inputs = handles(inputs);
+/// Looks at the place of the lock, into which a number is written: a link would lead it into another file.
+fn check_lock(path: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
+    let Ok(metadata) = fs::symlink_metadata(path) else { return Ok(()) };
+    if !metadata.is_file() || has_other_names(&metadata) {
+        return Err(taken(path, "is no file of its own, but a lock goes into a file of this name"));
+    }
+    check_against(path, inputs)
+}
+
+#[cfg(unix)]
+fn has_other_names(metadata: &fs::Metadata) -> bool {
+    std::os::unix::fs::MetadataExt::nlink(metadata) > 1
+}
+
+#[cfg(not(unix))]
+fn has_other_names(_: &fs::Metadata) -> bool {
+    false
+}
+
+/// Looks at all that has the name of a result, or of one that is not finished, which is removed.
+fn check(folder: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
     let frames = folder.join(FRAMES);
     if frames.exists() && !frames.is_dir() {
         return Err(taken(&frames, "is no directory, but frames go into one of this name"));
     }
-    let results = names(folder)?.into_iter().filter(|name| is_result(name));
-    results.map(|name| folder.join(name)).try_for_each(|path| check_against(&path, &inputs))
+    let goes = |name: &PathBuf| is_result(name) || name.file_name().and_then(|n| n.to_str()).is_some_and(is_temporary);
+    let results = names(folder)?.into_iter().filter(goes);
+    results.map(|name| folder.join(name)).try_for_each(|path| check_against(&path, inputs))
 }
 
 /// Looks at the place of a result that is not in a folder of its own, such as an FMU.

@@ -27,6 +27,8 @@ pub extern "C" fn fmi2GetVersion() -> Text {
     c"2.0".as_ptr()
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(c: Component, on: Boolean, n: usize, categories: *const Text) -> Status {
     call(c, "fmi2SetDebugLogging", |instance| {
@@ -38,6 +40,8 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(c: Component, on: Boolean, n: usize
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     name: Text,
@@ -132,6 +136,8 @@ pub extern "C" fn fmi2Reset(c: Component) -> Status {
     call(c, "fmi2Reset", Instance::reset)
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: Component, state: *mut FmuState) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
@@ -143,24 +149,32 @@ pub extern "C" fn fmi2SetFMUstate(c: Component, state: FmuState) -> Status {
     call(c, "fmi2SetFMUstate", |instance| instance.restore_state(state.addr()))
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: Component, state: *mut FmuState) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2FreeFMUstate", |instance| unsafe { states::free(instance, state) })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Component, state: FmuState, size: *mut usize) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2SerializedFMUstateSize", |instance| unsafe { states::size(instance, state, size) })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Component, state: FmuState, out: *mut Byte, size: usize) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(c, "fmi2SerializeFMUstate", |instance| unsafe { states::serialize(instance, state, out.cast(), size) })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: Component,

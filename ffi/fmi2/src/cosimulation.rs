@@ -43,6 +43,8 @@ unsafe fn tell<T>(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStatus(c: Component, kind: c_int, value: *mut Status) -> Status {
     let answer = |phase| if phase == Phase::StepFailed { Status::Discard } else { Status::Ok };
@@ -50,24 +52,32 @@ pub unsafe extern "C" fn fmi2GetStatus(c: Component, kind: c_int, value: *mut St
     unsafe { tell(c, "fmi2GetStatus", value, |i| (kind == DO_STEP_STATUS).then(|| answer(i.phase()))) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: Component, kind: c_int, value: *mut Real) -> Status {
     // SAFETY: the importer gives room for a value.
     unsafe { tell(c, "fmi2GetRealStatus", value, |i| (kind == LAST_SUCCESSFUL_TIME).then(|| i.time())) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetIntegerStatus(c: Component, _kind: c_int, value: *mut Integer) -> Status {
     // SAFETY: the importer gives room for a value.
     unsafe { tell(c, "fmi2GetIntegerStatus", value, |_| None) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(c: Component, kind: c_int, value: *mut Boolean) -> Status {
     // SAFETY: the importer gives room for a value.
     unsafe { tell(c, "fmi2GetBooleanStatus", value, |_| (kind == TERMINATED).then_some(0)) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStringStatus(c: Component, _kind: c_int, value: *mut Text) -> Status {
     // SAFETY: the importer gives room for a value.

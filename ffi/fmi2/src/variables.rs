@@ -6,6 +6,8 @@ use enmm_fmi::table::Type;
 use crate::types::{Boolean, Component, Integer, Real, Status, Text, ValueReference, call};
 use enmm_fmi::raw::{self, MISSING};
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetReal(
     c: Component,
@@ -47,6 +49,8 @@ unsafe fn get_as<T>(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetInteger(
     c: Component,
@@ -58,6 +62,8 @@ pub unsafe extern "C" fn fmi2GetInteger(
     unsafe { get_as((c, "fmi2GetInteger", Type::Integer), (references, n), values, |number| number as Integer) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBoolean(
     c: Component,
@@ -87,6 +93,8 @@ pub extern "C" fn fmi2GetString(
     no_strings(c, "fmi2GetString", Call::Get, n)
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetReal(
     c: Component,
@@ -129,6 +137,8 @@ unsafe fn set_whole(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetInteger(
     c: Component,
@@ -140,6 +150,8 @@ pub unsafe extern "C" fn fmi2SetInteger(
     unsafe { set_whole(c, "fmi2SetInteger", (references, n), values, Type::Integer) }
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetBoolean(
     c: Component,
@@ -190,6 +202,8 @@ pub extern "C" fn fmi2SetRealInputDerivatives(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: Component,

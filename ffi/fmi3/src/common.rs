@@ -20,6 +20,8 @@ pub extern "C" fn fmi3GetVersion() -> Text {
     c"3.0".as_ptr()
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SetDebugLogging(
     instance: InstancePointer,
@@ -36,6 +38,8 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     _name: Text,
@@ -49,6 +53,8 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     refuse_kind("fmi3InstantiateModelExchange", environment, log_message)
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     _name: Text,
@@ -73,6 +79,8 @@ fn refuse_kind(function: &str, environment: Environment, log_message: Option<Log
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     name: Text,

@@ -8,6 +8,8 @@ use enmm_fmi::table::Type;
 use crate::types::{Importer, InstancePointer, ValueReference, call, with_handle};
 use enmm_fmi::raw::{self, MISSING};
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
     instance: InstancePointer,
@@ -53,6 +55,8 @@ fn intermediate_update(importer: &Importer, update: Update) -> Option<f64> {
     (wanted != 0).then_some(if time.is_finite() { time } else { update.time })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetOutputDerivatives(
     instance: InstancePointer,

@@ -3,7 +3,7 @@
 //! An instance is the number of a live one in the form of a pointer, and so is a saved state: one that was freed, or
 //! never made, is refused. Whatever goes wrong inside is a status and a log line; nothing unwinds into the importer.
 #![allow(non_snake_case, reason = "names of the standard")]
-#![allow(missing_docs, clippy::missing_safety_doc, reason = "the standard documents its functions and their contracts")]
+#![allow(missing_docs, reason = "the standard documents its functions and their contracts")]
 
 mod common;
 mod cosimulation;

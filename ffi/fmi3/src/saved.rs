@@ -4,6 +4,8 @@ use enmm_fmi::raw::states;
 
 use crate::types::{FmuState, InstancePointer, Status, call};
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetFMUState(instance: InstancePointer, state: *mut FmuState) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
@@ -15,12 +17,16 @@ pub extern "C" fn fmi3SetFMUState(instance: InstancePointer, state: FmuState) ->
     call(instance, "fmi3SetFMUState", |instance| instance.restore_state(state.addr()))
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3FreeFMUState(instance: InstancePointer, state: *mut FmuState) -> Status {
     // SAFETY: the importer gives pointers that can be read and written, for `size` bytes where there is one.
     call(instance, "fmi3FreeFMUState", |instance| unsafe { states::free(instance, state) })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
     instance: InstancePointer,
@@ -31,6 +37,8 @@ pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
     call(instance, "fmi3SerializedFMUStateSize", |instance| unsafe { states::size(instance, state, size) })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SerializeFMUState(
     instance: InstancePointer,
@@ -42,6 +50,8 @@ pub unsafe extern "C" fn fmi3SerializeFMUState(
     call(instance, "fmi3SerializeFMUState", |instance| unsafe { states::serialize(instance, state, out, size) })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DeserializeFMUState(
     instance: InstancePointer,

@@ -6,6 +6,8 @@ use enmm_fmi::table::Type;
 use crate::types::{Binary, InstancePointer, Status, Text, ValueReference, call};
 use enmm_fmi::raw::{self, MISSING};
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetFloat64(
     instance: InstancePointer,
@@ -19,6 +21,8 @@ pub unsafe extern "C" fn fmi3GetFloat64(
     unsafe { get_as(what, (references, n), (values, n_values), |number| number) }
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SetFloat64(
     instance: InstancePointer,
@@ -92,6 +96,8 @@ unsafe fn set_as<T: Copy>(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetInt32(
     instance: InstancePointer,
@@ -105,6 +111,8 @@ pub unsafe extern "C" fn fmi3GetInt32(
     unsafe { get_as(what, (references, n), (values, n_values), |number| number as i32) }
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SetInt32(
     instance: InstancePointer,
@@ -118,6 +126,8 @@ pub unsafe extern "C" fn fmi3SetInt32(
     unsafe { set_as(what, (references, n), (values, n_values), f64::from) }
 }
 
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetBoolean(
     instance: InstancePointer,
@@ -132,6 +142,8 @@ pub unsafe extern "C" fn fmi3GetBoolean(
 }
 
 /// A byte of the importer need not be a `bool` of Rust.
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SetBoolean(
     instance: InstancePointer,
@@ -147,6 +159,8 @@ pub unsafe extern "C" fn fmi3SetBoolean(
 }
 
 /// The bytes belong to the instance and stay until the next call of this function.
+/// # Safety
+/// Pointers are as FMI 3 states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetBinary(
     instance: InstancePointer,

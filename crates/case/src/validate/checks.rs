@@ -233,13 +233,18 @@ pub fn table(key: &Key, rows: &TimeTable) -> Check {
     Ok(())
 }
 
+/// Characters without a sign of their own, which turn or hide a text.
+const HIDDEN: [std::ops::RangeInclusive<char>; 4] =
+    ['\u{200b}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2060}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
+
 /// Checks that a name does no harm where it is shown: terminals obey control characters, and spreadsheets take a text
 /// that begins with `=`, `+`, `-` or `@` for a formula.
 ///
 /// # Errors
 /// It has one of these.
 pub fn harmless(key: &Key, name: &str) -> Check {
-    if let Some(sign) = name.chars().find(|c| c.is_control()) {
+    let is_hidden = |c: &char| c.is_control() || HIDDEN.iter().any(|range| range.contains(c));
+    if let Some(sign) = name.chars().find(is_hidden) {
         return fail(key, format!("{name:?} has the control character {sign:?}, which no name must have; remove it"));
     }
     match name.trim_start().chars().next().filter(|c| "=+-@".contains(*c)) {

@@ -38,6 +38,10 @@ impl Case {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.must_be_expanded()?;
         let root = Key::root();
+        harmless(&root.field("title"), &self.title)?;
+        let sets = self.joint_sets.iter().map(|set| set.name.as_deref()).enumerate();
+        sets.filter_map(|(k, name)| Some((k, name?)))
+            .try_for_each(|(k, name)| harmless(&root.field("joint_set").index(k).field("name"), name))?;
         self.rocks.keys().try_for_each(|name| harmless(&root.field("rock"), name))?;
         self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name))?;
         domain(&root.field("domain"), &self.domain)?;

@@ -9,7 +9,7 @@
 
 use super::wkt;
 use super::{Geometry, Trace};
-use crate::case_error::CaseError;
+use crate::case_error::{CaseError, is_nearly_numeric};
 use enmm::model::case::PointList;
 use enmm::model::case::key::{Key, list};
 
@@ -182,6 +182,7 @@ fn number(row: &csv::StringRecord, column: usize) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
     value.ok_or_else(|| {
         let comma = if text.contains(',') { "; write a decimal point" } else { "; correct it" };
-        format!("{text:?} is no finite number{comma}")
+        let text = if is_nearly_numeric(text) || text.is_empty() { format!("{text:?}") } else { "a column".to_owned() };
+        format!("{text} is no finite number{comma}")
     })
 }

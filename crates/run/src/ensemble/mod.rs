@@ -7,7 +7,7 @@ mod record;
 
 use std::collections::BTreeMap;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key,
 use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
-use crate::folder::{Folder, check_output};
+use crate::folder::{Folder, check_output, is_result};
 use crate::fos::FosOptions;
 
 pub use answer::{answer, columns};
@@ -149,14 +149,29 @@ pub fn ensemble(
     let clock = Instant::now();
     let inputs = loaded.source.inputs();
     let held = Folder::open(&options.directory, inputs);
-    let _held =
-        held.and_then(|held| check_output(&options.store, inputs).map(|()| held)).map_err(EnsembleError::Directory)?;
+    let _held = held.and_then(|held| check_store(options, inputs).map(|()| held)).map_err(EnsembleError::Directory)?;
     let located = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let samples = draw(&loaded.case).map_err(located)?;
     let rows = rows(loaded, options, &samples, ask, hear)?;
     let result = EnsembleResult::of(loaded, samples, rows)?;
     result.write(loaded, options, clock.elapsed().as_secs_f64()).map_err(EnsembleError::Output)?;
     Ok(result)
+}
+
+/// Looks at the places of the store and of the files that SQLite keeps beside it while it is open.
+fn check_store(options: &EnsembleOptions, inputs: &[PathBuf]) -> io::Result<()> {
+    let name = options.store.file_name().unwrap_or_default().to_os_string();
+    let folder = options.store.parent().unwrap_or(Path::new(""));
+    let is_here = folder.canonicalize().ok() == options.directory.canonicalize().ok();
+    if is_here && is_result(Path::new(&name)) && name != "ensemble.sqlite" {
+        let message = format!("{}: another result has this name", options.store.display());
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    ["", "-wal", "-shm", "-journal"].iter().try_for_each(|end| {
+        let mut name = name.clone();
+        name.push(end);
+        check_output(&folder.join(name), inputs)
+    })
 }
 
 /// The answers to all samples, from the store or worked out.

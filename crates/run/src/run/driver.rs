@@ -1,7 +1,7 @@
 //! The loop over stages and steps, with outputs at their times.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -135,7 +135,7 @@ struct Driver<'a> {
 /// Runs all stages; see [`super::run`].
 pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observer) -> Result<Summary, RunError> {
     let clock = Instant::now();
-    let _held = Folder::open(&options.directory, loaded.source.inputs()).map_err(RunError::Directory)?;
+    let _held = Folder::open(&options.directory, &inputs(loaded, options)).map_err(RunError::Directory)?;
     let invalid = |invalid: Invalid| RunError::Case(loaded.source.locate(&invalid.key, &invalid.message));
     let mut simulation =
         enmm_implicit::build(loaded.case.clone(), &mut |stage| observer.build(stage)).map_err(invalid)?;
@@ -143,11 +143,18 @@ pub fn run(loaded: &LoadedCase, options: &RunOptions, observer: &mut dyn Observe
     let saved = options.resume.as_deref().map(|path| load(path, &simulation, &loaded.hash)).transpose()?;
     let mut driver = Driver::open(loaded, options, observer, simulation, saved, clock)?;
     driver.run(invalid).map_err(|error| match error {
-        RunError::Output(error) if driver.saved => {
+        RunError::Output(error) if driver.saved && options.directory.join(CHECKPOINT).is_file() => {
             RunError::OutputAfter { error, checkpoint: options.directory.join(CHECKPOINT) }
         }
         other => other,
     })
+}
+
+/// Files that are read: a checkpoint of the folder itself is replaced by later ones.
+fn inputs(loaded: &LoadedCase, options: &RunOptions) -> Vec<PathBuf> {
+    let own = options.directory.join(CHECKPOINT).canonicalize().ok();
+    let is_foreign = |path: &&PathBuf| path.canonicalize().ok() != own;
+    loaded.source.inputs().iter().chain(options.resume.iter().filter(is_foreign)).cloned().collect()
 }
 
 fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {

@@ -9,7 +9,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::case::PictureKind;
 use enmm::model::snapshot::Polygons;
 use enmm::model::{Case, Simulation, Snapshot};
-use enmm_io::files::at_path;
+use enmm_io::files::{at_path, copy_file};
 use enmm_picture::joints::Joints;
 use enmm_picture::structures::water_surface;
 use enmm_picture::{
@@ -104,7 +104,7 @@ pub fn bring_past(checkpoint: &Path, directory: &Path) -> io::Result<Past> {
     clear(directory)?;
     let copy = |path: &Path| -> io::Result<()> {
         let to = directory.join(path.strip_prefix(beside).unwrap_or(path));
-        fs::copy(path, &to).map(drop).map_err(at_path(&to))
+        copy_file(path, &to)
     };
     copy(&beside.join("history.csv"))?;
     let film = beside.join(FILM);

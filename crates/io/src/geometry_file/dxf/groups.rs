@@ -37,7 +37,8 @@ impl<'a> Groups<'a> {
                 if code.is_empty() && lines.all(|(_, rest)| rest.is_empty()) {
                     break;
                 }
-                let code = shown(code, !groups.all.is_empty());
+                let is_drawing = groups.all.first().is_some_and(|group| group.code == 999 || group.value == "SECTION");
+                let code = shown(code, is_drawing);
                 return groups.syntax(line, format!("{code} is no group code of DXF, a whole number; save it again"));
             };
             let Some((line, value)) = lines.next() else {
