@@ -6,6 +6,9 @@ use std::ops::Range;
 use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
 use crate::geometry::{Point, TraceId, Vector, id};
 
+use super::EntranceRule;
+use super::constants::BOUNDARY_ROUND_OFF;
+
 id! {
     /// A node of the boundary: a point of it that may touch edges.
     NodeId: plain
@@ -26,23 +29,6 @@ pub enum Corner {
     Convex,
     /// Rock within more than half a turn, crack tips included.
     Reflex,
-}
-
-/// Angles and lengths that shape the boundary.
-#[derive(Debug, Clone, Copy)]
-pub struct BoundaryOptions {
-    /// Turn (rad) from which a boundary point is a corner.
-    pub corner_angle: f64,
-    /// Turn (rad) from which a boundary point is a node.
-    pub kink_angle: f64,
-    /// Turn (rad) summed along a side at which the side ends.
-    pub side_turn: f64,
-}
-
-impl Default for BoundaryOptions {
-    fn default() -> Self {
-        Self { corner_angle: 0.05, kink_angle: 1e-3, side_turn: 0.3 }
-    }
 }
 
 /// Boundary points in loop order. Edge `k` runs from point `k` to point `next[k]` inside one element, rock on its left.
@@ -113,12 +99,12 @@ struct Station {
 
 impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    pub fn new(covers: &Covers, outlines: &Outlines, options: &BoundaryOptions) -> Self {
+    pub fn new(covers: &Covers, outlines: &Outlines, rule: &EntranceRule) -> Self {
         let mut boundary = Self::default();
         let carrier = covers.carriers();
         for k in 0..outlines.len() {
-            let mut stations = stations(outlines.of_loop(k), options);
-            place_nodes(&mut stations, covers.mesh.size);
+            let mut stations = stations(outlines.of_loop(k), rule);
+            place_nodes(&mut stations, covers.mesh.size, rule);
             boundary.push_loop(covers, &carrier, outlines.loop_block[k], &stations);
         }
         boundary.measure_blocks(covers);
@@ -260,11 +246,11 @@ fn ring<I>(previous: &mut Vec<I>, next: &mut Vec<I>, indices: Range<usize>, id: 
 fn turn(before: &BoundaryPiece, after: &BoundaryPiece) -> f64 {
     let (d, e) = (before.b - before.a, after.b - after.a);
     let angle = libm::atan2(d.perp(&e), d.dot(&e));
-    if angle.abs() > std::f64::consts::PI - 1e-6 { -std::f64::consts::PI } else { angle }
+    if angle.abs() > std::f64::consts::PI - BOUNDARY_ROUND_OFF { -std::f64::consts::PI } else { angle }
 }
 
 /// Pieces of a loop with their turns, corners marked, beginning at a corner.
-fn stations(pieces: &[BoundaryPiece], options: &BoundaryOptions) -> Vec<Station> {
+fn stations(pieces: &[BoundaryPiece], rule: &EntranceRule) -> Vec<Station> {
     let n = pieces.len();
     let mut stations: Vec<Station> = (0..n)
         .map(|k| {
@@ -272,8 +258,8 @@ fn stations(pieces: &[BoundaryPiece], options: &BoundaryOptions) -> Vec<Station>
             Station {
                 piece: pieces[k],
                 turn,
-                node: turn.abs() > options.kink_angle,
-                corner: turn.abs() > options.corner_angle,
+                node: turn.abs() > rule.kink_angle,
+                corner: turn.abs() > rule.corner_angle,
             }
         })
         .collect();
@@ -283,7 +269,7 @@ fn stations(pieces: &[BoundaryPiece], options: &BoundaryOptions) -> Vec<Station>
     let mut along = 0.0;
     for station in &mut stations[1..] {
         along = if station.corner { 0.0 } else { along + station.turn };
-        if along.abs() > options.side_turn {
+        if along.abs() > rule.side_turn {
             station.corner = true;
             along = 0.0;
         }
@@ -295,7 +281,7 @@ fn stations(pieces: &[BoundaryPiece], options: &BoundaryOptions) -> Vec<Station>
 }
 
 /// Adds nodes so that none are farther apart than `size` (m), on existing points where one is near.
-fn place_nodes(stations: &mut Vec<Station>, size: f64) {
+fn place_nodes(stations: &mut Vec<Station>, size: f64, rule: &EntranceRule) {
     let mut placed = Vec::with_capacity(stations.len() + 8);
     let old = std::mem::take(stations);
     let mut spans = old.into_iter().peekable();
@@ -304,21 +290,21 @@ fn place_nodes(stations: &mut Vec<Station>, size: f64) {
         while let Some(next) = spans.next_if(|s| !s.node) {
             span.push(next);
         }
-        divide(span, size, &mut placed);
+        divide(span, size, rule.node_snap, &mut placed);
     }
     *stations = placed;
 }
 
-/// Divides one span between two nodes evenly: a node lies on the nearest point within a tenth of a part, or else on a
-/// new one. The same from either end.
-fn divide(mut span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
+/// Divides one span between two nodes evenly: a node lies on the nearest point within a share `snap` of a part, or
+/// else on a new one. The same from either end.
+fn divide(mut span: Vec<Station>, size: f64, snap: f64, placed: &mut Vec<Station>) {
     let mut at = vec![0.0];
     at.extend(span.iter().scan(0.0, |sum, station| {
         *sum += (station.piece.b - station.piece.a).norm();
         Some(*sum)
     }));
     let length = at[span.len()];
-    let parts = (length / size - 1e-6).ceil().max(1.0) as usize;
+    let parts = (length / size - BOUNDARY_ROUND_OFF).ceil().max(1.0) as usize;
     let step = length / parts as f64;
     let mut cuts = Vec::new();
     for target in (1..parts).map(|part| part as f64 * step) {
@@ -326,7 +312,7 @@ fn divide(mut span: Vec<Station>, size: f64, placed: &mut Vec<Station>) {
         let behind = at[1..span.len()].partition_point(|&at| at < target) + 1;
         let either = [behind - 1, behind].into_iter().filter(|k| (1..span.len()).contains(k));
         let nearest = either.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        match nearest.filter(|k| distance(k) <= 0.1 * step) {
+        match nearest.filter(|k| distance(k) <= snap * step) {
             Some(near) => span[near].node = true,
             None => cuts.push(target),
         }

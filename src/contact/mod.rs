@@ -6,6 +6,7 @@ mod bolt;
 mod boundary;
 mod broad_phase;
 mod buckets;
+mod constants;
 mod frame;
 mod law;
 mod narrow_phase;
@@ -14,15 +15,15 @@ mod solver;
 mod spring;
 mod support;
 mod vertex_edge;
+mod vertex_rule;
 
 pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
-pub use boundary::{Boundary, BoundaryOptions, Corner, EdgeId, NodeId, SideEnd, SideId};
+pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
+pub use constants::EntranceRule;
 pub use frame::Frames;
 pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
-pub use narrow_phase::{
-    AcceptedPairs, ContactCache, EntranceRule, NarrowPhase, NearSides, PenetratingContacts, entrance_edges,
-};
+pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, entrance_edges, prefiltered};
 pub use pair::Pair;
 #[doc(hidden)]
 pub use solver::reference;
@@ -30,3 +31,4 @@ pub use solver::{Approach, BlockImpulse, OpenClose, OtherConstraints, SolverOpti
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
 pub use vertex_edge::{ContactHistory, ContactSetting, ContactState, VertexEdge};
+pub use vertex_rule::{ContactCache, ContactCandidate, PenetratingContacts, VertexRule};

@@ -53,6 +53,14 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
+impl ContactHistory {
+    /// Gap (m) at which the spring is unloaded; infinite where a bonded joint pulls, which no gap ends.
+    pub(super) fn unloaded_gap(&self) -> f64 {
+        let is_pulled = self.intact && self.normal_force < 0.0;
+        if is_pulled { f64::INFINITY } else { self.rest - self.offset }
+    }
+}
+
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
 /// and the law of its joint, is in the [`ContactSetting`].
 #[doc(alias = "contact")]

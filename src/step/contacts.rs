@@ -2,17 +2,10 @@
 
 use std::time::Instant;
 
-use crate::contact::{self, EdgeId, NarrowPhase, SearchView};
+use crate::contact::{self, EdgeId, NarrowPhase, SearchView, VertexRule};
 use crate::geometry::Point;
 
 use super::Step;
-
-/// Distance beyond the search cutoff, relative to the mesh size, that nodes may move before the next search.
-const SKIN: f64 = 0.1;
-/// Distance, relative to the mesh size, within which pairs are kept.
-pub const CUTOFF: f64 = 0.25;
-/// Gap, relative to the mesh size, within which a resting contact takes part in the iteration.
-pub const REACH: f64 = 0.005;
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
@@ -39,11 +32,11 @@ impl Step<'_> {
         let (model, workspace) = (self.model, &mut *self.workspace);
         let boundary = &model.boundary;
         let size = model.covers.mesh.size;
-        if self.state.neighbours.is_stale(boundary, &workspace.frames, SKIN * size) {
+        if self.state.neighbours.is_stale(boundary, &workspace.frames, model.entrance.skin() * size) {
             let view = SearchView {
                 boundary,
                 frames: &workspace.frames,
-                cutoff: CUTOFF * size,
+                cutoff: model.entrance.cutoff * size,
                 removed: &self.state.removed,
                 fixed: &workspace.mass_matrix.fixed,
                 serial: workspace.serial,
@@ -65,23 +58,26 @@ impl Step<'_> {
         workspace.near_sides.list(&state.neighbours.pairs);
         workspace.contact_cache.index(&state.contacts, model.boundary.node_count());
         workspace.penetrating.index(&model.boundary, &workspace.frames, &state.contacts);
-        let narrow = NarrowPhase {
+        let rule = VertexRule {
             boundary: &model.boundary,
             frames: &workspace.frames,
+            history: &state.contacts,
+            cache: &workspace.contact_cache,
+            penetrating: &workspace.penetrating,
+            size,
+            constants: model.entrance,
+            flush_cosine: model.entrance.flush_cosine(),
+            reach,
+        };
+        let narrow = NarrowPhase {
+            rule,
             star: &model.covers.star_position,
             displacement: &state.displacement,
             laws: &state.laws,
             trace_law: &workspace.trace_law,
             default_law: state.law_switch[model.default_law],
             velocity: &state.velocity,
-            history: &state.contacts,
-            cache: &workspace.contact_cache,
-            penetrating: &workspace.penetrating,
             dt,
-            size,
-            rule: model.entrance,
-            flush_cosine: model.entrance.flush_cosine(),
-            reach,
             first: state.step == 0,
             in_situ: model.in_situ.as_ref(),
             serial: workspace.serial,

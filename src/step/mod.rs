@@ -15,7 +15,6 @@ mod settle;
 mod times;
 
 pub use applied::{acceleration, push_forces};
-pub use contacts::{CUTOFF, REACH};
 pub use guard::{Failure, StepError};
 pub use integrator::Integrator;
 pub use prepare::{begin_stage, prepare};

@@ -44,10 +44,11 @@ pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
     reports
 }
 
-/// Constants of contact with one of them halved or doubled, and which.
+/// Constants of contact with one of them halved or doubled, and which. Those of the boundary are not among them: a
+/// model is built with them, and `contact_boundary.rs` varies them.
 pub fn varied_rules() -> Vec<(String, EntranceRule)> {
     type Constant = fn(&mut EntranceRule) -> &mut f64;
-    let constants: [(&str, Constant); 10] = [
+    let constants: [(&str, Constant); 17] = [
         ("ledge", |rule| &mut rule.ledge),
         ("closure_most", |rule| &mut rule.closure_most),
         ("flush_sine", |rule| &mut rule.flush_sine),
@@ -58,6 +59,13 @@ pub fn varied_rules() -> Vec<(String, EntranceRule)> {
         ("wedge_ratio", |rule| &mut rule.wedge_ratio),
         ("stiffness_floor", |rule| &mut rule.stiffness_floor),
         ("hardens", |rule| &mut rule.hardens),
+        ("corner_tolerance", |rule| &mut rule.corner_tolerance),
+        ("tie_tolerance", |rule| &mut rule.tie_tolerance),
+        ("length_floor", |rule| &mut rule.length_floor),
+        ("share_floor", |rule| &mut rule.share_floor),
+        ("reach", |rule| &mut rule.reach),
+        ("reach_steps", |rule| &mut rule.reach_steps),
+        ("cutoff", |rule| &mut rule.cutoff),
     ];
     let vary = |(name, constant): (&str, Constant)| {
         [0.5, 2.0].map(|factor| {

@@ -7,9 +7,7 @@ use enmm::contact::VertexEdge;
 use enmm::geometry::Vector;
 use enmm::mechanics::MassMatrix;
 use enmm::state::{Buffers, Model, State, Workspace};
-use enmm::step::{
-    CUTOFF, Integrator, REACH, Regime, Step, StepReport, Window, acceleration, base_motion, push_forces, ramp,
-};
+use enmm::step::{Integrator, Regime, Step, StepReport, Window, acceleration, base_motion, push_forces, ramp};
 
 use super::buffers::ImplicitBuffers;
 use super::choices::{Implicit, Rule};
@@ -179,8 +177,9 @@ impl Substep<'_, '_> {
         }
         let workspace = &mut *self.step.workspace;
         workspace.speed_max = self.step.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let reach = REACH * self.step.model.covers.mesh.size + REACH_STEPS * dt * workspace.speed_max;
-        self.step.entrance(reach.min(CUTOFF * self.step.model.covers.mesh.size), 0.0);
+        let (rule, size) = (&self.step.model.entrance, self.step.model.covers.mesh.size);
+        let reach = rule.reach * size + REACH_STEPS * dt * workspace.speed_max;
+        self.step.entrance(reach.min(rule.cutoff * size), 0.0);
         self.step.load_supports(self.step.times(dt));
         let buffers = &mut self.buffers;
         buffers.forces_before.clear();

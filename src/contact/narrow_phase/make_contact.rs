@@ -9,7 +9,7 @@ use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
-use super::{CORNER_TOLERANCE, ContactCandidate, GRAIN, NarrowPhase};
+use super::{ContactCandidate, GRAIN, NarrowPhase};
 
 /// Makes contacts from accepted candidates: compiled for every kind of lanes.
 struct Make<'a> {
@@ -47,9 +47,9 @@ impl NarrowPhase<'_> {
 
     #[inline(always)]
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
-        let (boundary, node) = (self.boundary, candidate.node);
+        let (boundary, node) = (self.rule.boundary, candidate.node);
         let (point, edge) = (boundary.node_point[node], candidate.edge);
-        let p = self.node_position(node);
+        let p = self.rule.position(node);
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
@@ -59,8 +59,8 @@ impl NarrowPhase<'_> {
         let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
         let history = match candidate.held {
-            Some(known) => self.history[known as usize],
-            None => self.first_sight(node, candidate, length, closure, stiffness[1], normal),
+            Some(known) => self.rule.history[known as usize],
+            None => self.first_sight(candidate, length, (closure, stiffness[1]), normal),
         };
         let history = ContactHistory { edge: candidate.edge, share, ..history };
         let gap = candidate.gap + history.offset;
@@ -91,14 +91,15 @@ impl NarrowPhase<'_> {
     #[inline(always)]
     fn hardening(&self, gap: f64, rate: f64) -> f64 {
         let reached = gap + rate * self.dt;
-        1.0 + (reached.min(0.0) / (self.rule.hardens * self.size)).powi(2)
+        1.0 + (reached.min(0.0) / (self.rule.constants.hardens * self.rule.size)).powi(2)
     }
 
     /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off
     /// decides there which of two edges is nearer.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [CoverId; 3] {
-        let (boundary, edge, band) = (self.boundary, candidate.edge, CORNER_TOLERANCE * self.size);
+        let (boundary, edge, band) =
+            (self.rule.boundary, candidate.edge, self.rule.constants.corner_tolerance * self.rule.size);
         if candidate.along.abs() < band {
             boundary.covers[edge]
         } else if (candidate.length - candidate.along).abs() < band {
@@ -122,7 +123,7 @@ impl NarrowPhase<'_> {
     /// Law of the joint between a node and an edge: that of the edge, of the node's own face, or the default.
     #[inline(always)]
     fn law(&self, node: NodeId, edge: EdgeId) -> LawId {
-        let trace = self.boundary.trace[edge].or_else(|| self.boundary.node_trace(node));
+        let trace = self.rule.boundary.trace[edge].or_else(|| self.rule.boundary.node_trace(node));
         trace.map_or(self.default_law, |trace| self.trace_law[trace])
     }
 
@@ -130,33 +131,18 @@ impl NarrowPhase<'_> {
     #[inline(never)]
     fn first_sight(
         &self,
-        node: NodeId,
         candidate: &ContactCandidate,
         length: f64,
-        closure: Closure,
-        shear_stiffness: f64,
+        (closure, shear_stiffness): (Closure, f64),
         normal: Vector,
     ) -> ContactHistory {
-        let mut history = ContactHistory {
-            node,
-            side: candidate.side,
-            edge: candidate.edge,
-            normal_force: 0.0,
-            shear_force: 0.0,
-            trend: [0.0; 2],
-            sheared: 0.0,
-            offset: 0.0,
-            rest: 0.0,
-            slip: 0.0,
-            share: 0.0,
-            state: ContactState::Open,
-            intact: self.first,
-        };
-        if self.is_deep(node, candidate, candidate.gap) {
+        let ContactCandidate { node, side, edge, .. } = *candidate;
+        let mut history = ContactHistory { node, side, edge, intact: self.first, ..ContactHistory::default() };
+        if self.rule.is_deep(candidate) {
             history.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
-            let [xx, yy, xy] = stress.at(self.boundary.reference[self.boundary.node_point[node]]);
+            let [xx, yy, xy] = stress.at(self.rule.boundary.reference[self.rule.boundary.node_point[node]]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);

@@ -69,11 +69,9 @@ pub(super) struct NearRun<'a> {
 impl NearSides {
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.near_sides.as_slice())
-            + size_of_val(self.batches.as_slice())
-            + size_of_val(self.places.as_slice())
-            + size_of_val(self.ends.as_slice())
-            + size_of_val(self.order.as_slice())
+        let Self { near_sides, batches, places, ends, order, .. } = self;
+        let of_batches = size_of_val(&batches[..]) + size_of_val(&places[..]);
+        size_of_val(&near_sides[..]) + of_batches + size_of_val(&ends[..]) + size_of_val(&order[..])
     }
 
     /// Makes the next step renew the list: the near pairs have changed.
@@ -187,10 +185,8 @@ impl NearRun<'_> {
 
     /// Nodes from the first to the one after the last.
     pub fn nodes(&self) -> [usize; 2] {
-        let [first, .., last] = self.near_sides else {
-            return self.near_sides.first().map_or([0; 2], |only| [only.node.index(), only.node.index() + 1]);
-        };
-        [first.node.index(), last.node.index() + 1]
+        let ends = self.near_sides.first().zip(self.near_sides.last());
+        ends.map_or([0; 2], |(first, last)| [first.node.index(), last.node.index() + 1])
     }
 
     /// The near side of a contact of the last step, counted from the first of the run; `guess` is one to try first.

@@ -1,12 +1,10 @@
 //! Tributary length of a contact: the share of the joint length that belongs to it (Eq. 13).
 
-use crate::contact::{Corner, NodeId};
+use crate::contact::constants::CORNER_SHARE;
+use crate::contact::vertex_rule::End;
+use crate::contact::{Corner, EntranceRule, NodeId};
 
-use super::vertex_rule::End;
 use super::{ContactCandidate, NarrowPhase};
-
-/// Least tributary length, relative to the mean of the neighbouring node segments: avoids a division by zero.
-const LENGTH_FLOOR: f64 = 1e-9;
 
 /// Lengths over which a node acts on an edge.
 #[derive(Debug, Clone, Copy)]
@@ -38,15 +36,16 @@ impl NarrowPhase<'_> {
     #[inline(always)]
     pub(super) fn tributary(&self, node: NodeId, candidate: &ContactCandidate) -> Tributary {
         let [start, finish] = candidate.overlap;
-        let ramp = |overlap: f64| (overlap / (self.rule.ledge * self.size) - 1.0).clamp(0.0, 1.0);
+        let EntranceRule { ledge, length_floor, stiffness_floor, .. } = self.rule.constants;
+        let ramp = |overlap: f64| (overlap / (ledge * self.rule.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(start.min(finish));
         let Facing { flush, oblique } = self.facing(node, candidate);
         let share = at_ends.max(ramp(flush));
-        let distance = self.frames.node(node).distance;
+        let distance = self.rule.frames.node(node).distance;
         let span = 0.5 * (distance[0] + distance[1]);
-        let least = LENGTH_FLOOR * span;
+        let least = length_floor * span;
         let (length, bonded) = ((0.5 * (flush + at_ends * oblique)).max(least), (0.5 * flush).max(least));
-        let penalty = length.max(self.rule.stiffness_floor * span * share);
+        let penalty = length.max(stiffness_floor * span * share);
         let at_corner = self.share_at_corner(node, candidate);
         Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share }
     }
@@ -55,17 +54,17 @@ impl NarrowPhase<'_> {
     /// side no farther than the overlap at its ends.
     #[inline(always)]
     fn facing(&self, node: NodeId, candidate: &ContactCandidate) -> Facing {
-        let boundary = self.boundary;
-        let frame = self.frames.node(node);
+        let boundary = self.rule.boundary;
+        let frame = self.rule.frames.node(node);
         let p = frame.position.dot(&candidate.tangent);
         let before = boundary.node_before[candidate.edge];
         let after = boundary.node_next[before];
-        let position = |n: NodeId| self.node_position(n).dot(&candidate.tangent);
+        let position = |n: NodeId| self.rule.position(n).dot(&candidate.tangent);
         let (from, to) = (position(before), position(after));
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
         let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(position);
         let [low, high] = self.tie_shares(node, candidate, before, [p - from, to - p]);
-        let flush_cosine = self.flush_cosine;
+        let flush_cosine = self.rule.flush_cosine;
         let mut facing = Facing::default();
         let mut add = |over: f64, along: f64, distance: f64, overlap: f64| {
             if along > flush_cosine * distance {
@@ -94,7 +93,7 @@ impl NarrowPhase<'_> {
     /// from those ends: 1 at an inner node of the other side, 0 beyond the band in which that node takes over.
     #[inline(always)]
     fn tie_shares(&self, node: NodeId, candidate: &ContactCandidate, before: NodeId, distances: [f64; 2]) -> [f64; 2] {
-        let (boundary, band) = (self.boundary, self.rule.held_beyond * self.size);
+        let (boundary, band) = (self.rule.boundary, self.rule.constants.held_beyond * self.rule.size);
         if !boundary.node_convex[node] {
             return [0.0; 2];
         }
@@ -115,7 +114,7 @@ impl NarrowPhase<'_> {
     /// edge.
     #[inline(always)]
     fn reach_beyond(&self, far: NodeId, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
-        let far = self.node_position(far).dot(&candidate.tangent);
+        let far = self.rule.position(far).dot(&candidate.tangent);
         if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 
@@ -124,18 +123,19 @@ impl NarrowPhase<'_> {
     /// fades with that overlap.
     #[inline(always)]
     fn share_at_corner(&self, node: NodeId, candidate: &ContactCandidate) -> f64 {
-        let band = self.rule.held_beyond * self.size;
-        let least = if self.boundary.node_convex[node] { 0.5 } else { 0.0 };
+        let EntranceRule { held_beyond, share_floor, .. } = self.rule.constants;
+        let band = held_beyond * self.rule.size;
+        let least = if self.rule.boundary.node_convex[node] { CORNER_SHARE } else { 0.0 };
         let mut share = 1.0f64;
         for (end, within) in [(End::Start, candidate.along), (End::Finish, candidate.length - candidate.along)] {
-            let at = self.boundary.side_ends[candidate.side][end as usize];
+            let at = self.rule.boundary.side_ends[candidate.side][end as usize];
             if within < band && at.edge == candidate.edge && at.corner == Corner::Convex {
                 let kept = |overlap: f64| within.max((overlap - band).min(0.0));
                 let is_past = candidate.is_held && within < 0.0;
-                let within = if is_past { kept(self.overlap_at(node, candidate, end)) } else { within };
+                let within = if is_past { kept(self.rule.overlap_at(candidate, end)) } else { within };
                 share = share.min(least + (1.0 - least) * within / band);
             }
         }
-        share.clamp(1e-3, 1.0)
+        share.clamp(share_floor, 1.0)
     }
 }

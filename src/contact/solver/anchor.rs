@@ -45,22 +45,11 @@ impl Accumulators<'_> {
 
     /// The runs before and from a block whose first cover is `cover` on.
     pub fn split(&mut self, block: BlockId, cover: CoverId) -> (Accumulators<'_>, Accumulators<'_>) {
-        let (cover_impulse, cover_impulse_rest) =
-            self.cover_impulse.split_at_mut(cover.index() - self.first_cover.index());
-        let (block_impulse, block_impulse_rest) =
-            self.block_impulse.split_at_mut(block.index() - self.first_block.index());
-        let first =
-            Accumulators { cover_impulse, block_impulse, first_cover: self.first_cover, first_block: self.first_block };
-        let (first_cover, first_block) = (cover, block);
-        (
-            first,
-            Accumulators {
-                cover_impulse: cover_impulse_rest,
-                block_impulse: block_impulse_rest,
-                first_cover,
-                first_block,
-            },
-        )
+        let Accumulators { first_cover, first_block, .. } = *self;
+        let (cover_impulse, covers) = self.cover_impulse.split_at_mut(cover.index() - first_cover.index());
+        let (block_impulse, blocks) = self.block_impulse.split_at_mut(block.index() - first_block.index());
+        let before = Accumulators { cover_impulse, first_cover, block_impulse, first_block };
+        (before, Accumulators { cover_impulse: covers, first_cover: cover, block_impulse: blocks, first_block: block })
     }
 }
 

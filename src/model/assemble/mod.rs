@@ -14,9 +14,7 @@ mod slips;
 mod stage;
 mod warnings;
 
-use crate::contact::{
-    BoltState, Boundary, BoundaryOptions, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support,
-};
+use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support};
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
@@ -136,7 +134,7 @@ fn model(
     let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, outlines, &BoundaryOptions::default());
+    let boundary = Boundary::new(&covers, outlines, &EntranceRule::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;

@@ -17,7 +17,6 @@ use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
 use crate::state::Model;
 
-use super::contacts::REACH;
 use super::integrator::Integrator;
 use super::{Regime, Step, StepReport, StepTimes, Window, applied, guard, ramp, records, report};
 

@@ -5,12 +5,13 @@ use std::time::Instant;
 use crate::contact::{Approach, BoltView, OtherConstraints, SolverOptions, SolverReport};
 use crate::state::Workspace;
 
-use super::{REACH, Regime, Step, StepTimes};
+use super::{Regime, Step, StepTimes};
 
 impl Step<'_> {
     /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
     fn reach(&self, dt: f64) -> f64 {
-        REACH * self.model.covers.mesh.size + 8.0 * dt * self.workspace.speed_max
+        let rule = &self.model.entrance;
+        rule.reach * self.model.covers.mesh.size + rule.reach_steps * dt * self.workspace.speed_max
     }
 
     /// Contacts that take part in an explicit sub-step, and how they answer.

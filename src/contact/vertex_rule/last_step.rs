@@ -1,9 +1,42 @@
-//! Contacts of the last step in penetration. The vertex rule subtracts the compression of their springs from depths.
+//! Contacts of the last step, by node, and those of them in penetration. The vertex rule asks them who carried force,
+//! and subtracts the compression of their springs from depths.
 
-use crate::contact::{Boundary, ContactHistory, NodeId, SideId, buckets};
+use std::ops::Range;
+
+use crate::contact::{Boundary, ContactHistory, ContactState, NodeId, SideId, buckets};
 use crate::geometry::Vector;
 
-use super::{Frames, NarrowPhase};
+use super::{Frames, VertexRule};
+
+/// Index of the contacts of the last step by node; their list is ordered by node and side.
+#[doc(alias = "persistent manifold")]
+#[derive(Debug, Clone, Default)]
+pub struct ContactCache {
+    /// First contact of each node, and the number of contacts.
+    first: Vec<u32>,
+}
+
+impl ContactCache {
+    /// Bytes of the buffer.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.first.as_slice())
+    }
+
+    /// Indexes contacts by their nodes, of which there are `nodes`.
+    pub fn index(&mut self, history: &[ContactHistory], nodes: usize) {
+        self.first.clear();
+        for (k, contact) in history.iter().enumerate() {
+            self.first.resize(self.first.len().max(contact.node.index() + 1), k as u32);
+        }
+        self.first.resize(nodes + 1, history.len() as u32);
+    }
+
+    /// Contacts of the nodes from the first to the one after the last.
+    #[inline(always)]
+    pub(in crate::contact) fn of_nodes(&self, [first, end]: [usize; 2]) -> Range<usize> {
+        self.first[first] as usize..self.first[end] as usize
+    }
+}
 
 /// A contact of the last step that is in penetration at the current positions.
 #[derive(Debug, Clone, Copy)]
@@ -82,27 +115,24 @@ impl PenetratingContacts {
     }
 }
 
-impl NarrowPhase<'_> {
-    /// Contacts of a node in the last step.
-    #[inline(always)]
-    pub(super) fn known(&self, node: NodeId) -> &[ContactHistory] {
-        &self.history[self.cache.of_node(node)]
+impl VertexRule<'_> {
+    /// Whether a node carried force against a side in the last step.
+    pub(super) fn carries(&self, node: NodeId, side: SideId) -> bool {
+        let known = &self.history[self.cache.of_nodes([node.index(), node.index() + 1])];
+        known.iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 
     /// Compression (m) of the contact of a node with a side; 0 if there was none in the last step.
     #[inline(always)]
     pub(super) fn closure_with(&self, node: NodeId, side: SideId) -> f64 {
-        self.penetrating
-            .of_node(node)
-            .iter()
-            .find(|contact| contact.side == side)
-            .map_or(0.0, |contact| contact.closure)
+        let contacts = self.penetrating.of_node(node);
+        contacts.iter().find(|contact| contact.side == side).map_or(0.0, |contact| contact.closure)
     }
 
     /// Compression (m), along a direction, of the contacts of a node and of the faces next to it, except those with the
     /// sides `others`: the node would move so far if their springs were unloaded.
     #[inline(always)]
-    pub(super) fn let_in(&self, node: NodeId, direction: Vector, others: [SideId; 2]) -> f64 {
+    pub(super) fn closure_along(&self, node: NodeId, direction: Vector, others: [SideId; 2]) -> f64 {
         let mut depth = 0.0f64;
         for contact in self.penetrating.of_node(node) {
             if !others.contains(&contact.side) {

@@ -1,57 +1,80 @@
-//! The nearest edge of every near side, and whether the node is near and faces it: eight near sides at once.
+//! The nearest edge of every near side, and which near sides the node cannot enter: eight at once. The vertex rule
+//! decides on all others. `tests/vertex_rule.rs` holds both together.
 
-use enmm_lanes::{Kernel, LANES, Lanes, Pair, Places};
+use enmm_lanes::{Kernel, LANES, Lanes, Pair, Places, dispatch};
 
-use super::NarrowPhase;
-use super::near_sides::{Batch, NearRun};
+use crate::contact::constants::SQUARES_ROUND_OFF;
+use crate::contact::vertex_rule::distance;
+use crate::contact::{ContactState, VertexRule};
 
-/// Relative difference of squared distances above which rounding does not decide which is the larger.
-const ROUNDING: f64 = 1e-12;
+use super::near_sides::{Batch, NearRun, NearSides};
 
-/// Bit of a verdict: the node is over the edge.
-pub(super) const OVER: u8 = 1;
-/// Bit of a verdict: the node is nearer than the reach, and may enter the edge by rule 1.
-pub(super) const ENTERS: u8 = 2;
-/// Bit of a verdict: the contact of the last step carried force.
-pub(super) const CARRIED: u8 = 4;
+/// No contact of the last step.
+const NONE: u32 = u32::MAX;
 
 /// Results for the near sides of a run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
-    /// Distance of each node along its nearest edge, gap, and distance beyond the end of the edge (m).
-    pub along: Vec<f64>,
-    pub gap: Vec<f64>,
-    pub beyond: Vec<f64>,
-    /// The edge, counted from the first near edge of the side.
+    /// The nearest edge, counted from the first near edge of the side.
     pub edge: Vec<u32>,
-    /// [`OVER`], [`ENTERS`] and [`CARRIED`].
-    pub verdict: Vec<u8>,
-    /// Gap (m) of an unloaded spring; infinite where a bonded joint pulls.
-    pub rest: Vec<f64>,
+    /// Whether the node may enter it: 0 or 1. Before the edges are found: whether the contact carried force.
+    pub may_enter: Vec<u8>,
+    /// Contact of the last step, or [`NONE`].
+    known: Vec<u32>,
+    /// Gap (m) at which its spring is unloaded.
+    rest: Vec<f64>,
 }
 
 impl Nearest {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * 4 * self.gap.len() + size_of_val(self.edge.as_slice()) + self.verdict.len()
+        let numbers = size_of_val(self.edge.as_slice()) + size_of_val(self.known.as_slice());
+        numbers + size_of_val(self.rest.as_slice()) + self.may_enter.len()
     }
 
-    /// Sizes the buffers for so many near sides, without contacts of the last step.
-    pub fn begin(&mut self, count: usize) {
-        for list in [&mut self.along, &mut self.gap, &mut self.beyond] {
-            list.resize(count, 0.0);
+    /// The contact of the last step of a near side.
+    #[inline(always)]
+    pub fn held(&self, k: usize) -> Option<u32> {
+        (self.known[k] != NONE).then_some(self.known[k])
+    }
+
+    /// Finds the nearest edges of a run, which of them nodes may enter, and their contacts of the last step;
+    /// `near_side_last` are the near sides of these, as a rule.
+    pub fn fill(&mut self, rule: &VertexRule, run: NearRun, near_side_last: &[u32]) {
+        let (count, Self { edge, may_enter, known, rest }) = (run.near_sides.len(), &mut *self);
+        edge.resize(count, 0);
+        known.clear();
+        known.resize(count, NONE);
+        may_enter.clear();
+        may_enter.resize(count, 0);
+        rest.clear();
+        rest.resize(count, 0.0);
+        for k in rule.cache.of_nodes(run.nodes()) {
+            let contact = &rule.history[k];
+            let guess = near_side_last.get(k).map_or(usize::MAX, |&guess| (guess as usize).wrapping_sub(run.first));
+            if let Some(at) = run.of(contact, guess) {
+                known[at] = k as u32;
+                may_enter[at] = u8::from(contact.state != ContactState::Open);
+                rest[at] = contact.unloaded_gap();
+            }
         }
-        self.edge.resize(count, 0);
-        self.verdict.clear();
-        self.verdict.resize(count, 0);
-        self.rest.clear();
-        self.rest.resize(count, 0.0);
+        dispatch(Prefilter { rule, run, nearest: self });
     }
 }
 
+/// Whether each near side is left to the vertex rule.
+pub fn prefiltered(rule: &VertexRule, near_sides: &NearSides) -> Vec<bool> {
+    let (mut nearest, mut left) = (Nearest::default(), Vec::new());
+    for k in 0..near_sides.runs() {
+        nearest.fill(rule, near_sides.run(k), &[]);
+        left.extend(nearest.may_enter.iter().map(|&may_enter| may_enter != 0));
+    }
+    left
+}
+
 /// Finds the nearest edges of a run: compiled for every kind of lanes.
-pub(super) struct FindNearest<'a> {
-    pub narrow: &'a NarrowPhase<'a>,
+pub(super) struct Prefilter<'a> {
+    pub rule: &'a VertexRule<'a>,
     pub run: NearRun<'a>,
     pub nearest: &'a mut Nearest,
 }
@@ -66,12 +89,11 @@ struct Nodes<L: Lanes> {
 /// Eight nodes over an edge each.
 struct OverEdges<L: Lanes> {
     tangent: [L::F; 2],
-    along: L::F,
     gap: L::F,
     beyond: L::F,
 }
 
-impl Kernel for FindNearest<'_> {
+impl Kernel for Prefilter<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -85,10 +107,10 @@ impl Kernel for FindNearest<'_> {
     }
 }
 
-impl FindNearest<'_> {
+impl Prefilter<'_> {
     #[inline(always)]
     fn batch<L: Lanes>(&mut self, lanes: L, batch: &Batch, edges: &[Places]) {
-        let frames = self.narrow.frames;
+        let frames = self.rule.frames;
         let (node_pairs, edge_pairs) = (frames.node_pairs(), frames.edge_pairs());
         let nodes = Nodes::<L> {
             position: lanes.gather_from(node_pairs, &batch.nodes),
@@ -106,7 +128,6 @@ impl FindNearest<'_> {
                     lanes.select(bits, other.tangent[0], best.tangent[0]),
                     lanes.select(bits, other.tangent[1], best.tangent[1]),
                 ],
-                along: lanes.select(bits, other.along, best.along),
                 gap: lanes.select(bits, other.gap, best.gap),
                 beyond: lanes.select(bits, other.beyond, best.beyond),
             };
@@ -118,50 +139,35 @@ impl FindNearest<'_> {
     #[inline(always)]
     fn leave<L: Lanes>(&mut self, lanes: L, batch: &Batch, nodes: &Nodes<L>, best: &OverEdges<L>, which: L::F) {
         let at = batch.near_sides.map(|k| k as usize);
-        let mut rest = [0.0; LANES];
-        for lane in 0..LANES {
-            rest[lane] = self.nearest.rest[at[lane]];
-        }
-        let near = less(lanes, best.gap - lanes.load(&rest), lanes.splat(self.narrow.reach));
-        let enters = near & self.enters(lanes, nodes, best.tangent);
+        let rest = at.map(|k| self.nearest.rest[k]);
+        let near = less(lanes, best.gap - lanes.load(&rest), lanes.splat(self.rule.reach));
+        let enters = near & self.is_outside(lanes, nodes, best.tangent);
         let is_over = self.is_over(lanes, best);
-        let [mut along, mut gap, mut beyond, mut edge] = [[0.0; LANES]; 4];
-        lanes.store(best.along, &mut along);
-        lanes.store(best.gap, &mut gap);
-        lanes.store(best.beyond, &mut beyond);
+        let mut edge = [0.0; LANES];
         lanes.store(which, &mut edge);
         for (lane, k) in at.into_iter().enumerate() {
-            self.nearest.along[k] = along[lane];
-            self.nearest.gap[k] = gap[lane];
-            self.nearest.beyond[k] = beyond[lane];
             self.nearest.edge[k] = edge[lane] as u32;
-            self.nearest.verdict[k] |= ((is_over >> lane & 1) * OVER) | ((enters >> lane & 1) * ENTERS);
+            let is_considered = self.nearest.may_enter[k] | is_over >> lane & 1;
+            self.nearest.may_enter[k] = is_considered & enters >> lane & 1;
         }
     }
 
     /// Lanes whose node misses the edge by little, if at all, where the boundary bends.
     #[inline(always)]
     fn is_over<L: Lanes>(&self, lanes: L, best: &OverEdges<L>) -> u8 {
-        let rule = &self.narrow.rule;
+        let rule = &self.rule.constants;
         let size = lanes.max(best.gap, -best.gap);
-        let held = lanes.splat(rule.held_beyond * self.narrow.size);
+        let held = lanes.splat(rule.held_beyond * self.rule.size);
         lanes.at_most(best.beyond, lanes.splat(rule.wedge_ratio) * size + held)
     }
 
-    /// Rule 1: both neighbours of the node lie outside the edge or hardly inside, and its own rock faces the edge.
+    /// Lanes in which both neighbours of the node lie outside the edge or hardly inside.
     #[inline(always)]
-    fn enters<L: Lanes>(&self, lanes: L, nodes: &Nodes<L>, [x, y]: [L::F; 2]) -> u8 {
+    fn is_outside<L: Lanes>(&self, lanes: L, nodes: &Nodes<L>, [x, y]: [L::F; 2]) -> u8 {
         let ([previous, next], [before, after]) = (nodes.to, nodes.distance);
-        let (sine, zero) = (lanes.splat(self.narrow.rule.flush_sine), lanes.splat(0.0));
-        let outside = lanes.at_most(-sine * before, previous[0] * y - previous[1] * x)
-            & lanes.at_most(-sine * after, next[0] * y - next[1] * x);
-        let cross = next[0] * previous[1] - next[1] * previous[0];
-        let dot = next[0] * previous[0] + next[1] * previous[1];
-        let is_convex = less(lanes, zero, cross) & (less(lanes, zero, dot) | less(lanes, sine * before * after, cross));
-        let chord = [next[0] - previous[0], next[1] - previous[1]];
-        let length = lanes.sqrt(chord[0] * chord[0] + chord[1] * chord[1]);
-        let faces = less(lanes, -sine * length, -(chord[0] * x) - chord[1] * y);
-        outside & (is_convex | faces)
+        let sine = lanes.splat(self.rule.constants.flush_sine);
+        lanes.at_most(-sine * before, previous[0] * y - previous[1] * x)
+            & lanes.at_most(-sine * after, next[0] * y - next[1] * x)
     }
 }
 
@@ -175,7 +181,7 @@ fn over<L: Lanes>(lanes: L, position: &[L::F; 2], edges: &[Pair], at: &Places) -
     let along = from[0] * tangent[0] + from[1] * tangent[1];
     let gap = from[0] * tangent[1] - from[1] * tangent[0];
     let beyond = lanes.max(lanes.max(-along, along - length), zero);
-    OverEdges { tangent, along, gap, beyond }
+    OverEdges { tangent, gap, beyond }
 }
 
 /// Lanes in which the first edge is the nearer one.
@@ -184,7 +190,7 @@ fn nearer<L: Lanes>(lanes: L, a: &OverEdges<L>, b: &OverEdges<L>) -> u8 {
     let own = a.beyond * a.beyond + a.gap * a.gap;
     let others = b.beyond * b.beyond + b.gap * b.gap;
     let difference = own - others;
-    let clear = less(lanes, lanes.splat(ROUNDING) * others, lanes.max(difference, -difference));
+    let clear = less(lanes, lanes.splat(SQUARES_ROUND_OFF) * others, lanes.max(difference, -difference));
     let bits = less(lanes, own, others);
     if clear == u8::MAX {
         return bits;
@@ -203,11 +209,6 @@ fn nearer<L: Lanes>(lanes: L, a: &OverEdges<L>, b: &OverEdges<L>) -> u8 {
 fn tied([beyond, gap, others_beyond, others_gap]: &[[f64; LANES]; 4]) -> u8 {
     let is_nearer = |k: usize| distance(beyond[k], gap[k]) < distance(others_beyond[k], others_gap[k]);
     (0..LANES).fold(0, |bits, k| bits | u8::from(is_nearer(k)) << k)
-}
-
-/// Distance (m) from an edge.
-fn distance(beyond: f64, gap: f64) -> f64 {
-    if beyond > 0.0 { libm::hypot(beyond, gap) } else { gap.abs() }
 }
 
 /// Lanes in which the first is less than the second.
@@ -229,14 +230,10 @@ mod tests {
         type Output = u8;
 
         fn run<L: Lanes>(self, lanes: L) -> u8 {
-            let zero = lanes.splat(0.0);
-            let over = |k: usize| OverEdges::<L> {
-                tangent: [zero; 2],
-                along: zero,
-                beyond: lanes.load(&self.0[k]),
-                gap: lanes.load(&self.0[k + 1]),
-            };
-            nearer(lanes, &over(0), &over(2))
+            let [beyond, gap, others_beyond, others_gap] = self.0.map(|sizes| lanes.load(&sizes));
+            let tangent = [lanes.splat(0.0); 2];
+            let others = OverEdges::<L> { tangent, beyond: others_beyond, gap: others_gap };
+            nearer(lanes, &OverEdges { tangent, beyond, gap }, &others)
         }
     }
 
@@ -245,14 +242,11 @@ mod tests {
         let sizes = [0.0, 1e-17, 3e-9, 0.3, 0.4, 0.5, f64::next_up(0.5), 1e5];
         let size = |k: usize| sizes[k % sizes.len()];
         for k in 0..8 * sizes.len().pow(2) {
-            let beyond = std::array::from_fn(|lane| size(k + lane));
-            let gap = std::array::from_fn(|lane| -size(k / 8 + 3 * lane));
-            let others_beyond = std::array::from_fn(|lane| size(k / 64 + 5 * lane));
-            let others_gap = std::array::from_fn(|lane| size(k / 8 + k + lane));
-            let expected = (0..LANES).fold(0, |bits, lane| {
-                let own = distance(beyond[lane], gap[lane]);
-                bits | u8::from(own < distance(others_beyond[lane], others_gap[lane])) << lane
-            });
+            let at = |shift: usize, step: usize| std::array::from_fn(|lane| size(shift + step * lane));
+            let [beyond, gap, others_beyond, others_gap] =
+                [at(k, 1), at(k / 8, 3).map(|gap: f64| -gap), at(k / 64, 5), at(k / 8 + k, 1)];
+            let is_nearer = |k: usize| distance(beyond[k], gap[k]) < distance(others_beyond[k], others_gap[k]);
+            let expected = (0..LANES).fold(0, |bits, lane| bits | u8::from(is_nearer(lane)) << lane);
             for path in Path::all() {
                 let found = dispatch_on(path, Compare([beyond, gap, others_beyond, others_gap]));
                 assert_eq!(found, expected, "{path:?}, case {k}");
