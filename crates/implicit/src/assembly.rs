@@ -7,9 +7,9 @@ use enmm::mechanics::Deformation;
 
 use super::consistent::{PAIRS, stiffness_block};
 use super::cover_matrix::{NotPositive, UNCOUPLED};
-use super::substep::{Inertia, Substep};
+use super::step::{ImplicitStep, Inertia};
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// The pattern, when the near pairs are new, and the slots of this sub-step's contacts in it.
     ///
     /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
@@ -17,7 +17,7 @@ impl Substep<'_, '_> {
         if self.buffers.matrix.is_empty() {
             self.set_pattern();
         }
-        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         let matrix = &buffers.matrix;
         buffers.contact_slots.clear();
@@ -31,8 +31,8 @@ impl Substep<'_, '_> {
     }
 
     fn set_pattern(&mut self) {
-        let covers = &self.step.model.covers;
-        let boundary = &self.step.model.boundary;
+        let covers = &self.model.covers;
+        let boundary = &self.model.boundary;
         let buffers = &mut self.buffers;
         let free = |i: CoverId| !(buffers.held[2 * i.index()] && buffers.held[2 * i.index() + 1]);
         let pairs = &mut buffers.pairs;
@@ -45,7 +45,7 @@ impl Substep<'_, '_> {
         for ids in &covers.element_covers {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
-        for near in &self.step.state.neighbours.pairs {
+        for near in &self.state.neighbours.pairs {
             let node = boundary.covers[boundary.node_point[near.node]];
             for a in node {
                 boundary.covers_on(near.edge).for_each(|b| couple(a, b));
@@ -79,13 +79,13 @@ impl Substep<'_, '_> {
         if buffers.any_held {
             buffers.matrix.hold(&buffers.held);
         }
-        self.step.state.counters.factorisations += 1;
+        self.state.counters.factorisations += 1;
         buffers.matrix.factorise()
     }
 
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, element_mass: &[[f64; 6]], mass: f64, stiffness: f64) {
-        let (model, state) = (self.step.model, &*self.step.state);
+        let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.buffers);
         for (e, slots) in buffers.element_slots.iter().enumerate() {
             let ids = covers.element_covers[e];
@@ -107,7 +107,7 @@ impl Substep<'_, '_> {
 
     /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
     fn add_contacts(&mut self) {
-        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         buffers.factored.clear();
         for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
@@ -130,9 +130,9 @@ impl Substep<'_, '_> {
     }
 
     fn add_supports(&mut self) {
-        let model = self.step.model;
+        let model = self.model;
         let matrix = &mut self.buffers.matrix;
-        for row in &self.step.workspace.rows {
+        for row in &self.workspace.supports.rows {
             let support = &model.supports[row.support as usize];
             let d = support.direction;
             let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);
