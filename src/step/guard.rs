@@ -53,12 +53,7 @@ pub(super) fn speed_limit(model: &Model) -> f64 {
 }
 
 /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
-pub(super) fn check(
-    model: &Model,
-    state: &State,
-    workspace: &Workspace,
-    outcome: &StepOutcome,
-) -> Result<(), StepError> {
+pub fn check(model: &Model, state: &State, workspace: &Workspace, outcome: &StepOutcome) -> Result<(), StepError> {
     let failed = |block: BlockId, position: Point, failure: Failure| {
         Err(StepError { block: block.number(), position, time: outcome.end, failure })
     };

@@ -28,7 +28,7 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     works.external_work += external_work(step.kick, velocities, forces, &workspace.load_force);
     let report = if step.report { start_report(model, state, step, &works, workspace) } else { StepReport::default() };
     let Workspace { mass_matrix, motion, sums, supports, sweep, .. } = workspace;
-    capture_stage_force(model, state, step, mass_matrix, motion);
+    keep_stage_force(model, state, step, mass_matrix, motion);
     move_columns(step, &motion.columns, &mut state.columns);
     if step.report {
         drift(step.dt, &motion.predicted, &mut state.displacement, sums);
@@ -161,18 +161,12 @@ fn unbalanced(
 }
 
 /// The forces out of balance in the first step of a static stage that begins under full load.
-fn capture_stage_force(
-    model: &Model,
-    state: &mut State,
-    step: &Substep,
-    mass_matrix: &MassMatrix,
-    motion: &mut MotionBuffers,
-) {
+fn keep_stage_force(model: &Model, state: &mut State, step: &Substep, masses: &MassMatrix, motion: &mut MotionBuffers) {
     if state.stage_step > 0 || !matches!(step.regime, Regime::Static { ramp: 0.0 }) {
         return;
     }
     let mass = &model.mass_matrix.mass;
     let mut stage_force = std::mem::take(&mut state.stage_force);
-    each_change(model, state, mass_matrix, motion, |i, change| stage_force[i] = change * (mass[i] / step.kick));
+    each_change(model, state, masses, motion, |i, change| stage_force[i] = change * (mass[i] / step.kick));
     state.stage_force = stage_force;
 }

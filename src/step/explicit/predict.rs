@@ -75,10 +75,10 @@ fn damping_of(model: &Model, state: &State, step: &Substep) -> Damping {
         Regime::Dynamic { damping } => Damping::Deformation(damping * step.dt),
         Regime::Static { .. } => {
             let (mut work, mut inertia) = (0.0, 0.0);
-            for i in 0..state.displacement.len() {
-                let moved = state.displacement[i] - state.stage_displacement[i];
-                work += state.stage_force[i].dot(&moved);
-                inertia += model.mass_matrix.mass[i] * moved.norm_squared();
+            let moved = state.displacement.iter().zip(&state.stage_displacement).map(|(u, start)| u - start);
+            for ((moved, force), mass) in moved.zip(&state.stage_force).zip(model.mass_matrix.mass.iter()) {
+                work += force.dot(&moved);
+                inertia += mass * moved.norm_squared();
             }
             let rate = 2.0 * (ramp_of(state, step) * work.max(0.0) / inertia.max(f64::MIN_POSITIVE)).sqrt();
             Damping::Mass(libm::exp(-(rate * step.dt).min(DECAY_MAX)))

@@ -37,18 +37,12 @@ pub(super) fn answer(
 }
 
 /// Bolts that carry force in this step.
-fn load_bolts(
-    model: &Model,
-    state: &State,
-    mass_matrix: &MassMatrix,
-    motion: &MotionBuffers,
-    bolts: &mut Vec<BoltRow>,
-) {
+fn load_bolts(model: &Model, state: &State, masses: &MassMatrix, motion: &MotionBuffers, bolts: &mut Vec<BoltRow>) {
     let view = BoltView {
         star: &model.covers.star_position,
         displacement: &state.displacement,
         predicted: &motion.predicted,
-        mass_matrix,
+        mass_matrix: masses,
         motion: &motion.blocks,
     };
     let rows = model.bolts.iter().zip(&state.bolts).enumerate();
