@@ -20,8 +20,8 @@ impl ImplicitStep<'_> {
         let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         let matrix = &buffers.matrix;
-        buffers.contact_slots.clear();
-        buffers.contact_slots.extend(workspace.contacts.iter().map(|contact| {
+        buffers.slots.contacts.clear();
+        buffers.slots.contacts.extend(workspace.contacts.iter().map(|contact| {
             let ids = six(&contact.pair(boundary));
             std::array::from_fn(|k| {
                 let (row, column) = (ids[k / 6], ids[k % 6]);
@@ -35,7 +35,7 @@ impl ImplicitStep<'_> {
         let boundary = &self.model.boundary;
         let buffers = &mut self.buffers;
         let free = |i: CoverId| !(buffers.held[2 * i.index()] && buffers.held[2 * i.index() + 1]);
-        let pairs = &mut buffers.pairs;
+        let pairs = &mut buffers.slots.pairs;
         pairs.clear();
         let mut couple = |a: CoverId, b: CoverId| {
             if a != b && free(a) && free(b) {
@@ -55,8 +55,8 @@ impl ImplicitStep<'_> {
         pairs.dedup();
         buffers.matrix.set_pattern(covers.cover_count(), pairs);
         let matrix = &buffers.matrix;
-        buffers.element_slots.clear();
-        buffers.element_slots.extend(
+        buffers.slots.elements.clear();
+        buffers.slots.elements.extend(
             covers
                 .element_covers
                 .iter()
@@ -87,7 +87,7 @@ impl ImplicitStep<'_> {
     pub(super) fn add_elements(&mut self, element_mass: &[[f64; 6]], mass: f64, stiffness: f64) {
         let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.buffers);
-        for (e, slots) in buffers.element_slots.iter().enumerate() {
+        for (e, slots) in buffers.slots.elements.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &model.rocks[model.element_rock[e] as usize];
@@ -110,7 +110,7 @@ impl ImplicitStep<'_> {
         let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         buffers.factored.clear();
-        for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
+        for (contact, slots) in workspace.contacts.iter().zip(&buffers.slots.contacts) {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,

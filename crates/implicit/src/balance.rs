@@ -94,7 +94,7 @@ impl ImplicitStep<'_> {
     pub(super) fn start_balance(&mut self) {
         self.push_bearing();
         let buffers = &mut self.buffers;
-        let others = buffers.applied_before.iter().zip(&buffers.internal_before);
+        let others = buffers.start.applied.iter().zip(&buffers.start.internal);
         buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
         self.drop_held();
     }

@@ -67,7 +67,7 @@ impl ImplicitStep<'_> {
         let mut works = self.bearing_works(inertia);
         works.external_work = self.load_work(inertia);
         let buffers = &self.buffers;
-        let change = buffers.internal_before.iter().zip(&buffers.internal).zip(&buffers.moved);
+        let change = buffers.start.internal.iter().zip(&buffers.internal).zip(&buffers.moved);
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
@@ -86,7 +86,7 @@ impl ImplicitStep<'_> {
         let mut works = Ledger::default();
         let setting = workspace.setting(self.model, self.state);
         let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
-        for (contact, before) in workspace.contacts.iter().zip(&buffers.forces_before) {
+        for (contact, before) in workspace.contacts.iter().zip(&buffers.start.contacts) {
             let [opened, sheared] = contact.relative(setting.boundary, &buffers.moved);
             let shear = mean(contact.history.shear_force, before[1]) * sheared;
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
@@ -96,7 +96,7 @@ impl ImplicitStep<'_> {
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }
         }
-        for (row, before) in workspace.supports.rows.iter().zip(&buffers.bearing_before) {
+        for (row, before) in workspace.supports.rows.iter().zip(&buffers.start.supports) {
             let support = &self.model.supports[row.support as usize];
             works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
@@ -110,7 +110,7 @@ impl ImplicitStep<'_> {
         for (i, moved) in buffers.moved.iter().enumerate() {
             let mut force = buffers.applied[i] * inertia.end;
             if inertia.end < 1.0 {
-                force += buffers.applied_before[i] * (1.0 - inertia.end);
+                force += buffers.start.applied[i] * (1.0 - inertia.end);
             }
             work += (force - model.gravity * model.mass_matrix.row_sum[i]).dot(moved);
         }
@@ -148,7 +148,7 @@ impl ImplicitStep<'_> {
     fn implicit_unbalanced(&mut self) -> f64 {
         self.start_balance();
         let (state, buffers) = (&*self.state, &self.buffers);
-        let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
+        let applied = norm(&buffers.start.applied).max(norm(&state.stage_force));
         unbalanced(norm(&buffers.residual), applied)
     }
 }

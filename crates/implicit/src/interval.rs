@@ -32,9 +32,9 @@ impl Integrator for Implicit {
             &mut buffers.moved,
             &mut buffers.offset,
             &mut buffers.applied,
-            &mut buffers.applied_before,
+            &mut buffers.start.applied,
             &mut buffers.internal,
-            &mut buffers.internal_before,
+            &mut buffers.start.internal,
             &mut buffers.residual,
             &mut buffers.field,
         ] {
@@ -178,7 +178,7 @@ impl ImplicitStep<'_> {
         self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
         self.implicit_internal();
         let buffers = &mut self.buffers;
-        buffers.internal_before.copy_from_slice(&buffers.internal);
+        buffers.start.internal.copy_from_slice(&buffers.internal);
         if loaded_at_once {
             self.start_balance();
             self.state.stage_force.copy_from_slice(&self.buffers.residual);
@@ -213,11 +213,11 @@ impl ImplicitStep<'_> {
         seconds.entrance += (clock.elapsed() - searched + located).as_secs_f64();
         load_supports(model, state, &step, motion, &mut supports.rows);
         let buffers = &mut self.buffers;
-        buffers.forces_before.clear();
+        buffers.start.contacts.clear();
         let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
-        buffers.forces_before.extend(forces);
-        buffers.bearing_before.clear();
-        buffers.bearing_before.extend(self.workspace.supports.rows.iter().map(|row| row.force));
+        buffers.start.contacts.extend(forces);
+        buffers.start.supports.clear();
+        buffers.start.supports.extend(self.workspace.supports.rows.iter().map(|row| row.force));
         buffers.moved.fill(Vector::zeros());
     }
 
@@ -225,7 +225,7 @@ impl ImplicitStep<'_> {
     fn implicit_loads(&mut self, before: bool, dt: f64) {
         let buffers = &mut *self.buffers;
         for (wanted, force, time) in
-            [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.applied_before, self.time)]
+            [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.start.applied, self.time)]
         {
             if !wanted {
                 continue;

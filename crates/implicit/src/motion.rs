@@ -40,8 +40,8 @@ impl ImplicitStep<'_> {
     pub(super) fn implicit_start_acceleration(&mut self, implicit: &Implicit) {
         self.update_contacts();
         let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
-        self.buffers.forces_before.clear();
-        self.buffers.forces_before.extend(forces);
+        self.buffers.start.contacts.clear();
+        self.buffers.start.contacts.extend(forces);
         self.start_balance();
         let buffers = &mut self.buffers;
         buffers.matrix.zero();

@@ -191,7 +191,7 @@ fn bytes(simulation: &Simulation) -> usize {
 fn of_implicit(buffers: &ImplicitBuffers) -> usize {
     let [matrix, factor] = buffers.matrix.bytes();
     let fields = [&buffers.moved, &buffers.offset, &buffers.applied].map(|v| v.len()).iter().sum::<usize>();
-    let places = buffers.contact_slots.len() * 144 + buffers.element_slots.len() * 24;
+    let places = buffers.slots.contacts.len() * 144 + buffers.slots.elements.len() * 24;
     matrix + factor + fields * size_of::<Vector>() + places
 }
 
