@@ -75,13 +75,13 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
     let (kick, theta) = (0.5 * (state.dt_last + dt), model.theta);
     let options = SolverOptions { dt, kick, theta, tolerance: SETTLED, sweeps_max: 100_000, serial: true };
     let approach = Approach {
-        predicted: &workspace.predicted,
+        predicted: &workspace.motion.predicted,
         velocity: &state.velocity,
         dt_last: state.dt_last,
         forward: model.theta_in(dt),
         damping: (state.stage > 0).then_some(0.1),
-        setting: model.contact_setting(&state.laws, &workspace.frames, workspace.strength),
-        motion: &workspace.motion,
+        setting: model.contact_setting(&state.laws, &workspace.frames, workspace.selection.strength),
+        motion: &workspace.motion.blocks,
     };
     let mut plain = workspace.contacts.clone();
     assert!(
@@ -93,12 +93,12 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
 
     let mut solver = OpenClose::default();
     solver.prepare(masses, &[], &[]);
-    let near = (&state.neighbours.pairs[..], &workspace.near_sides);
-    solver.arrange(&model.boundary, near, masses, &model.covers.block_covers, &workspace.accepted.near_side);
+    let near = (&state.neighbours.pairs[..], &workspace.selection.near_sides);
+    solver.arrange(&model.boundary, near, masses, &model.covers.block_covers, &workspace.selection.accepted.near_side);
     let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
     let report = solver.run(masses, &options, &approach, &mut workspace.contacts, &mut others);
     assert!(report.unsettled <= SETTLED, "the solver has not settled: {report:?}");
-    solver.impulses(masses, &mut workspace.increment, &mut workspace.push);
+    solver.impulses(masses, &mut workspace.sweep.increment, &mut workspace.sweep.push);
 
     let largest = plain.iter().map(|contact| contact.history.normal_force).fold(0.0, f64::max);
     for (k, (found, plain)) in workspace.contacts.iter().zip(&plain).enumerate() {
@@ -108,11 +108,11 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         assert_eq!(found.state, plain.state, "contact {k}: {found:?} instead of {plain:?}");
     }
     let fastest = expected.increment.iter().map(|v| v.norm()).fold(0.0, f64::max);
-    for (i, (found, plain)) in workspace.increment.iter().zip(&expected.increment).enumerate() {
+    for (i, (found, plain)) in workspace.sweep.increment.iter().zip(&expected.increment).enumerate() {
         assert!((found - plain).norm() <= TOLERANCE * fastest, "cover {i}: {found} instead of {plain}");
     }
     let hardest = expected.block_impulse.iter().map(|b| b.impulse.norm()).fold(0.0, f64::max);
-    for (block, (found, plain)) in workspace.push.iter().zip(&expected.block_impulse).enumerate() {
+    for (block, (found, plain)) in workspace.sweep.push.iter().zip(&expected.block_impulse).enumerate() {
         let apart = (found.impulse - plain.impulse).norm().max((found.weighted - plain.weighted).norm());
         assert!(apart <= TOLERANCE * hardest, "block {block}: {found:?} instead of {plain:?}");
         assert!((found.moment - plain.moment).abs() <= TOLERANCE * hardest * model.covers.mesh.size, "block {block}");

@@ -21,14 +21,14 @@ fn compare(simulation: &Simulation, case: &str) -> Counts {
         boundary: &model.boundary,
         frames: &workspace.frames,
         history: &state.contacts,
-        cache: &workspace.contact_cache,
-        penetrating: &workspace.penetrating,
+        cache: &workspace.selection.cache,
+        penetrating: &workspace.selection.penetrating,
         size,
         constants,
         flush_cosine: constants.flush_cosine(),
-        reach: constants.reach * size + constants.reach_steps * dt * workspace.speed_max,
+        reach: constants.reach * size + constants.reach_steps * dt * workspace.motion.speed_max,
     };
-    let (pairs, near_sides) = (&state.neighbours.pairs, &workspace.near_sides);
+    let (pairs, near_sides) = (&state.neighbours.pairs, &workspace.selection.near_sides);
     let nearest = |k: usize| -> ContactCandidate {
         let pairs = near_sides.pairs_of(pairs, k);
         let key = (pairs[0].node, pairs[0].side);

@@ -222,7 +222,7 @@ impl<F: Arithmetic> Tally<F> {
 /// Common velocity of all covers of a block, which depends only on their position and mass:
 /// a + (μ/m)·b + spin·J90·q + widening·q.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Common {
+pub struct RigidVelocity {
     /// a (m/s).
     pub velocity: Vector,
     /// b (m/s).
@@ -233,7 +233,7 @@ pub struct Common {
     pub widening: f64,
 }
 
-impl Common {
+impl RigidVelocity {
     /// A spin about a position q, and a translation.
     pub fn about(velocity: Vector, spin: f64, centre: Vector) -> Self {
         Self { velocity: velocity - turned(centre) * spin, spin, ..Self::default() }
@@ -241,26 +241,26 @@ impl Common {
 
     /// The same in all lanes, for a loop over covers.
     #[inline(always)]
-    fn shared<L: Lanes>(&self, lanes: L) -> Shared<L::F> {
+    fn shared<L: Lanes>(&self, lanes: L) -> RigidLanes<L::F> {
         let (velocity, weighted) = (splat(lanes, self.velocity), splat(lanes, self.weighted));
         let (spin, widening) = (lanes.splat(self.spin), lanes.splat(self.widening));
         if self.weighted == Vector::zeros() {
             let velocity = [velocity[0] + weighted[0], velocity[1] + weighted[1]];
-            return Shared { velocity, weighted: None, spin, widening };
+            return RigidLanes { velocity, weighted: None, spin, widening };
         }
-        Shared { velocity, weighted: Some(weighted), spin, widening }
+        RigidLanes { velocity, weighted: Some(weighted), spin, widening }
     }
 }
 
-/// A [`Common`] velocity in all lanes; without b where that is zero.
-struct Shared<F> {
+/// A [`RigidVelocity`] in all lanes; without b where that is zero.
+struct RigidLanes<F> {
     velocity: [F; 2],
     weighted: Option<[F; 2]>,
     spin: F,
     widening: F,
 }
 
-impl<F: Arithmetic> Shared<F> {
+impl<F: Arithmetic> RigidLanes<F> {
     /// Its value at some covers.
     #[inline(always)]
     fn at(&self, chunk: &Chunk<F>) -> [F; 2] {
@@ -277,16 +277,16 @@ impl<F: Arithmetic> Shared<F> {
 /// Common velocity of a large block for the covers of one of its chunks. Covers that contacts, supports or bolts may
 /// read get it before the sweep, the others at the end of the step.
 #[derive(Clone, Copy)]
-pub struct Spread<'a> {
+pub struct RigidScatter<'a> {
     /// Common velocity of the block.
-    pub common: &'a Common,
+    pub common: &'a RigidVelocity,
     /// 1/m along x and y unless all covers can move.
     pub inverse: Option<&'a [Vector]>,
     /// Whether contacts, supports or bolts may read each cover.
     pub exposed: &'a [bool],
 }
 
-impl Spread<'_> {
+impl RigidScatter<'_> {
     /// Whether any of some covers may be read.
     #[inline(always)]
     fn is_exposed(&self, range: Range<usize>) -> bool {
@@ -305,7 +305,7 @@ impl Spread<'_> {
 
 /// Terms of the predicted velocity that each cover has by itself, beside the common velocity of its block.
 #[derive(Clone, Copy)]
-pub struct Own<'a> {
+pub struct CoverKick<'a> {
     /// Factor on the velocity.
     pub factor: f64,
     /// Time (s) for which forces act.
@@ -325,7 +325,7 @@ fn mask<L: Lanes>(lanes: L, inverse: L::F) -> L::F {
     -lanes.max(inverse * lanes.splat(-f64::MAX), lanes.splat(-1.0))
 }
 
-impl Own<'_> {
+impl CoverKick<'_> {
     /// Velocities v (m/s) of some covers after damping, with `add` (m/s) and the kick of the forces f (N/m).
     #[inline(always)]
     fn kicked<L: Lanes>(
@@ -366,12 +366,12 @@ impl Span<'_> {
         &self,
         lanes: L,
         from: &Reference,
-        own: &Own,
-        common: &Common,
+        own: &CoverKick,
+        common: &RigidVelocity,
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> f64 {
         let mut speed = lanes.splat(0.0);
-        let (shared, any) = (common.shared(lanes), *common != Common::default());
+        let (shared, any) = (common.shared(lanes), *common != RigidVelocity::default());
         for range in self.chunks() {
             let v = lanes.load_some_pairs(&self.velocity[range.clone()], from.velocity);
             let f = lanes.load_some_pairs(&force[range.clone()], Vector::zeros());
@@ -394,7 +394,7 @@ impl Span<'_> {
         &self,
         lanes: L,
         from: &Reference,
-        own: &Own,
+        own: &CoverKick,
         (force, predicted): (&[Vector], &mut [Vector]),
     ) -> (BlockSums, f64) {
         let (span, count) = (self.even(), self.star.len());
@@ -417,11 +417,11 @@ impl Span<'_> {
 
     /// Adds the common velocity of the block to covers that may be read before the end of the step.
     #[inline(always)]
-    pub fn spread<L: Lanes>(&self, lanes: L, from: &Reference, spread: &Spread, predicted: &mut [Vector]) {
-        let common = spread.common.shared(lanes);
-        for range in self.chunks().filter(|range| spread.is_exposed(range.clone())) {
+    pub fn scatter<L: Lanes>(&self, lanes: L, from: &Reference, scatter: &RigidScatter, predicted: &mut [Vector]) {
+        let common = scatter.common.shared(lanes);
+        for range in self.chunks().filter(|range| scatter.is_exposed(range.clone())) {
             let chunk = self.chunk(lanes, range.clone(), from);
-            let add = spread.given(lanes, range.clone(), common.at(&chunk));
+            let add = scatter.given(lanes, range.clone(), common.at(&chunk));
             let out = lanes.load_some_pairs(&predicted[range.clone()], Vector::zeros());
             lanes.store_some_pairs([out[0] + add[0], out[1] + add[1]], &mut predicted[range]);
         }
@@ -466,7 +466,7 @@ impl AddAssign for WorkSums {
 }
 
 /// Covers of a block, or of the part of it in one chunk, at the end of a step: slices of equal length.
-pub struct End<'a> {
+pub struct FinishSlices<'a> {
     /// Star positions (m).
     pub star: &'a [Point],
     /// Lumped masses m (kg/m).
@@ -484,12 +484,12 @@ pub struct End<'a> {
     /// Displacements (m): before, after the step afterwards.
     pub displacement: &'a mut [Vector],
     /// Common velocity for the covers that have not got it yet.
-    pub spread: Option<Spread<'a>>,
+    pub scatter: Option<RigidScatter<'a>>,
 }
 
 /// Which parts of the end of a step are needed.
 #[derive(Debug, Clone, Copy)]
-pub struct Wants {
+pub struct FinishFlags {
     /// Time (s) for which covers move.
     pub moves_for: f64,
     /// Whether contacts push the block.
@@ -502,7 +502,7 @@ pub struct Wants {
     pub is_loaded: bool,
 }
 
-impl End<'_> {
+impl FinishSlices<'_> {
     /// Adds the impulses of contacts, moves the covers; returns sums for the works, the largest and the sum of all
     /// squares of speeds (m²/s²), and the largest square of a displacement (m²).
     #[inline(always)]
@@ -510,13 +510,13 @@ impl End<'_> {
         &mut self,
         lanes: L,
         from: &Reference,
-        push: &Common,
-        wants: Wants,
+        push: &RigidVelocity,
+        flags: FinishFlags,
     ) -> (WorkSums, [f64; 2], f64) {
-        let (zero, still, moves_for) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(wants.moves_for));
+        let (zero, still, moves_for) = (lanes.splat(0.0), Vector::zeros(), lanes.splat(flags.moves_for));
         let (mut sums, mut row, mut fastest, mut squares, mut farthest) = ([zero; 6], [zero; 2], zero, zero, zero);
         let (push, with) = (push.shared(lanes), splat(lanes, from.velocity));
-        let common = self.spread.map_or(Common::default(), |spread| *spread.common).shared(lanes);
+        let common = self.scatter.map_or(RigidVelocity::default(), |scatter| *scatter.common).shared(lanes);
         let count = self.star.len();
         let (velocity, displacement) = (&mut self.velocity[..count], &mut self.displacement[..count]);
         let (before, increment) = (&self.before[..count], &self.increment[..count]);
@@ -530,25 +530,25 @@ impl End<'_> {
             let old = lanes.load_some_pairs(&before[range.clone()], from.velocity);
             let m = [lanes.load_some(&mass[range.clone()], 1.0), lanes.load_some(&inertial[range.clone()], 0.0)];
             let chunk = Chunk::new(lanes, from, [star, u, old], m);
-            if let Some(spread) = &self.spread
-                && !spread.is_exposed(range.clone())
+            if let Some(scatter) = &self.scatter
+                && !scatter.is_exposed(range.clone())
             {
-                let add = spread.given(lanes, range.clone(), common.at(&chunk));
+                let add = scatter.given(lanes, range.clone(), common.at(&chunk));
                 v = [v[0] + add[0], v[1] + add[1]];
             }
-            if wants.is_touched {
+            if flags.is_touched {
                 let increment = lanes.load_some_pairs(&increment[range.clone()], still);
                 v = [v[0] + increment[0], v[1] + increment[1]];
             }
-            if wants.is_pushed {
+            if flags.is_pushed {
                 let add = push.at(&chunk);
                 v = [v[0] + add[0], v[1] + add[1]];
             }
-            if wants.is_damped {
+            if flags.is_damped {
                 let s = [chunk.w[0] + (v[0] - with[0]), chunk.w[1] + (v[1] - with[1])];
                 add_works(&chunk, lanes.load_some(&mass[range.clone()], 0.0), s, &mut sums);
             }
-            if wants.is_loaded {
+            if flags.is_loaded {
                 let before = lanes.load_some_pairs(&before[range.clone()], still);
                 let row_sum = lanes.load_some(&self.row_sum[range.clone()], 0.0);
                 row = [row[0] + row_sum * (before[0] + v[0]), row[1] + row_sum * (before[1] + v[1])];

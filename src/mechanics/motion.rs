@@ -4,7 +4,7 @@ use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 
 use super::MassMatrix;
-use super::block_lanes::{BlockSums, Common, Reference, WorkSums};
+use super::block_lanes::{BlockSums, Reference, RigidVelocity, WorkSums};
 
 /// J90·v: turned by +90°.
 pub(super) fn turned(v: Vector) -> Vector {
@@ -211,14 +211,14 @@ impl BlockStart {
     }
 
     /// Common velocity that damping and the forces on a block give to all its covers (Eqs. 3, 11, 83).
-    pub fn common(&self, mass_matrix: &MassMatrix, block: BlockId, sums: &BlockSums, step: &KickStep) -> Common {
-        let mut common = Common::default();
+    pub fn common(&self, mass_matrix: &MassMatrix, block: BlockId, sums: &BlockSums, step: &KickStep) -> RigidVelocity {
+        let mut common = RigidVelocity::default();
         if let Damping::Deformation(factor) = step.damping
             && factor < 1.0
         {
             let share = 1.0 - factor;
             let rigid = self.from.velocity + self.velocity;
-            common = Common::about(rigid * share, self.spin() * share, self.centre);
+            common = RigidVelocity::about(rigid * share, self.spin() * share, self.centre);
         }
         if mass_matrix.is_free(block) {
             let share = mass_matrix.inverse_total[block];
@@ -226,7 +226,7 @@ impl BlockStart {
             let mean = (sums.weighted - sums.force * (mass_matrix.square[block] * share)) * share;
             let pushed = sums.force * share - mean + step.acceleration * mass_matrix.lightness;
             let spin = self.motion(mass_matrix, block).spin * torque;
-            let by_force = Common::about(pushed * step.kick, spin * step.kick, self.centre);
+            let by_force = RigidVelocity::about(pushed * step.kick, spin * step.kick, self.centre);
             common.velocity += by_force.velocity;
             common.spin += by_force.spin;
             common.weighted = sums.force * (-share * step.kick);

@@ -4,6 +4,7 @@ use crate::contact::Boundary;
 use crate::cover::Covers;
 use crate::mechanics::MassMatrix;
 
+use super::workspace::SelectionBuffers;
 use super::{Drive, Events, Inputs, Model, State, Workspace};
 
 /// Name of a part of a heap, and its bytes.
@@ -112,19 +113,22 @@ impl Workspace {
 
     /// Bytes of the buffers, by part.
     pub fn memory(&self) -> Vec<Part> {
-        let fields: [&dyn Array; 5] = [&self.load_force, &self.predicted, &self.damped, &self.increment, &self.exposed];
+        let Self { motion, selection, supports, sweep, .. } = self;
+        let fields: [&dyn Array; 5] =
+            [&self.load_force, &motion.predicted, &motion.damped, &sweep.increment, &motion.exposed];
+        let SelectionBuffers { accepted, cache, penetrating, .. } = selection;
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", mass_matrix(&self.mass_matrix)),
-            ("blocks", sum(&[&self.motion, &self.start, &self.sums, &self.push, &self.turns, &self.touching])),
+            ("blocks", sum(&[&motion.blocks, &motion.start, &self.sums, &sweep.push, &motion.turns, &self.touching])),
             ("places", self.frames.bytes()),
-            ("near sides", self.near_sides.bytes()),
-            ("accepted pairs", self.accepted.bytes() + self.contact_cache.bytes() + self.penetrating.bytes()),
-            ("search", self.search.bytes()),
+            ("near sides", selection.near_sides.bytes()),
+            ("accepted pairs", accepted.bytes() + cache.bytes() + penetrating.bytes()),
+            ("search", selection.grid.bytes()),
             ("contacts", sum(&[&self.contacts, &self.outcomes])),
-            ("open–close iteration", self.open_close.bytes()),
-            ("supports and bolts", sum(&[&self.rows, &self.bolts])),
-            ("yielding", self.yielded.bytes()),
+            ("open–close iteration", sweep.open_close.bytes()),
+            ("supports and bolts", sum(&[&supports.rows, &supports.bolts])),
+            ("yielding", self.yielding.energy.bytes()),
             ("implicit", self.of_integrator.as_ref().map_or(0, |buffers| buffers.bytes())),
         ]
     }

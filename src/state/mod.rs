@@ -21,7 +21,10 @@ pub use model::{
     BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
 };
 pub use quantity::Quantity;
-pub use workspace::{ChunkSums, ContactOutcome, Seconds, Workspace};
+pub use workspace::{
+    ChunkSums, ContactOutcome, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, SweepBuffers, Workspace,
+    YieldBuffers,
+};
 
 use serde::{Deserialize, Serialize};
 

@@ -5,12 +5,12 @@ use crate::contact::{
     PenetratingContacts, SearchGrid, SupportRow, VertexEdge,
 };
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{BlockSums, Common, WorkSums};
+use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
 
 use super::{Buffers, Model, State};
 
-/// Buffers, sized at the first step and reused.
+/// Buffers, sized at the first step and reused: what the stages of a step hand on to each other.
 #[doc(alias = "scratch buffers")]
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
@@ -18,12 +18,50 @@ pub struct Workspace {
     pub mass_matrix: MassMatrix,
     /// Forces of loads on covers (N/m); empty where nothing pushes.
     pub load_force: Vec<Vector>,
+    /// Plastic flow.
+    pub yielding: YieldBuffers,
+    /// Motion of covers, blocks and columns.
+    pub motion: MotionBuffers,
+    /// Sums over chunks.
+    pub sums: Vec<ChunkSums>,
+    /// Boundary edges and nodes at their current positions.
+    pub frames: Frames,
+    /// Search and selection of contacts.
+    pub selection: SelectionBuffers,
+    /// Contacts of this step.
+    pub contacts: Vec<VertexEdge>,
+    /// Supports and bolts.
+    pub supports: SupportBuffers,
+    /// Open–close iteration.
+    pub sweep: SweepBuffers,
+    /// Outcomes of the contacts in this step, by run.
+    pub outcomes: Vec<ContactOutcome>,
+    /// Whether each block touches another.
+    pub touching: Vec<bool>,
+    /// Buffers of an integrator other than the explicit one.
+    pub of_integrator: Option<Box<dyn Buffers>>,
+    /// Whether the step keeps to the calling thread; the bits are the same.
+    pub serial: bool,
+    /// Seconds spent in each part of the step.
+    pub seconds: Seconds,
+}
+
+impl Workspace {
+    /// Data that the contacts of this step share.
+    pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
+        model.contact_setting(&state.laws, &self.frames, self.selection.strength)
+    }
+}
+
+/// Motion of covers, blocks and columns in a step.
+#[derive(Debug, Clone, Default)]
+pub struct MotionBuffers {
     /// Velocities without contact forces (m/s); between steps those before the last one.
     pub predicted: Vec<Vector>,
     /// Velocities (m/s) of the covers of one block after damping and before any force.
     pub damped: Vec<Vector>,
     /// Centroid and spin of each block.
-    pub motion: Vec<BlockMotion>,
+    pub blocks: Vec<BlockMotion>,
     /// How each block moved at the start of the step.
     pub start: Vec<BlockStart>,
     /// Damping of each block.
@@ -34,63 +72,60 @@ pub struct Workspace {
     pub movable: Vec<bool>,
     /// Whether contacts, supports or bolts may read the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
-    /// Sums over chunks.
-    pub sums: Vec<ChunkSums>,
-    /// Boundary edges and nodes at their current positions.
-    pub frames: Frames,
+    /// How each block turns at the end of the step; none for one that does not.
+    pub turns: Vec<Option<Turn>>,
+    /// Velocities of free-field columns after this step (m/s).
+    pub columns: Vec<Vec<Vector>>,
+    /// Largest speed of a cover (m/s).
+    pub speed_max: f64,
+}
+
+/// Plastic flow in a step.
+#[derive(Debug, Clone, Default)]
+pub struct YieldBuffers {
+    /// Yield surface of each rock in this step; none for one that never yields.
+    pub surfaces: Vec<Option<YieldSurface>>,
+    /// Energy (J/m) taken by yielding of each run of elements in this step.
+    pub energy: Vec<f64>,
+}
+
+/// Search for near pairs, and selection of contacts among them.
+#[derive(Debug, Clone, Default)]
+pub struct SelectionBuffers {
+    /// Buffers of the search for near pairs.
+    pub grid: SearchGrid,
     /// Near pairs by node and side.
     pub near_sides: NearSides,
     /// Candidates that the vertex rule accepts in this step.
     pub accepted: AcceptedPairs,
     /// Where the contacts of the last step are.
-    pub contact_cache: ContactCache,
+    pub cache: ContactCache,
     /// Those contacts by the node segment that they lie on.
     pub penetrating: PenetratingContacts,
-    /// Buffers of the search for near pairs.
-    pub search: SearchGrid,
+    /// Law of each joint trace after switches.
+    pub trace_law: Vec<LawId>,
     /// Factor on the strength of all joints in this step.
     pub strength: f64,
-    /// Contacts of this step.
-    pub contacts: Vec<VertexEdge>,
-    /// Outcomes of the contacts in this step, by run.
-    pub outcomes: Vec<ContactOutcome>,
+}
+
+/// Supports and bolts of a step.
+#[derive(Debug, Clone, Default)]
+pub struct SupportBuffers {
     /// Supports of this step.
     pub rows: Vec<SupportRow>,
-    /// Velocities of free-field columns after this step (m/s).
-    pub columns: Vec<Vec<Vector>>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
+}
+
+/// Open–close iteration of a step.
+#[derive(Debug, Clone, Default)]
+pub struct SweepBuffers {
     /// Order and buffers of the open–close iteration.
     pub open_close: OpenClose,
     /// Velocity increments of covers by contact impulses (m/s).
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.
     pub push: Vec<BlockImpulse>,
-    /// How each block turns at the end of the step; none for one that does not.
-    pub turns: Vec<Option<Turn>>,
-    /// Law of each joint trace after switches.
-    pub trace_law: Vec<LawId>,
-    /// Yield surface of each rock in this step; none for one that never yields.
-    pub surfaces: Vec<Option<YieldSurface>>,
-    /// Energy (J/m) taken by yielding of each run of elements in this step.
-    pub yielded: Vec<f64>,
-    /// Whether each block touches another.
-    pub touching: Vec<bool>,
-    /// Buffers of an integrator other than the explicit one.
-    pub of_integrator: Option<Box<dyn Buffers>>,
-    /// Largest speed of a cover (m/s).
-    pub speed_max: f64,
-    /// Whether the step keeps to the calling thread; the bits are the same.
-    pub serial: bool,
-    /// Seconds spent in each part of the step.
-    pub seconds: Seconds,
-}
-
-impl Workspace {
-    /// Data that the contacts of this step share.
-    pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
-        model.contact_setting(&state.laws, &self.frames, self.strength)
-    }
 }
 
 /// Outcome of a run of contacts in a step.
@@ -114,7 +149,7 @@ pub struct ChunkSums {
     /// Part of a block: at the start of the step.
     pub block: BlockSums,
     /// Part of a block: what the whole block has in common.
-    pub common: Common,
+    pub common: RigidVelocity,
     /// Part of a block: at the end of the step.
     pub works: WorkSums,
     /// Whole blocks: work of damping (J/m).

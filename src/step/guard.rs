@@ -2,9 +2,9 @@
 
 use crate::cover::{self, BlockId, ElementId};
 use crate::geometry::Point;
-use crate::state::Model;
+use crate::state::{Model, State, Workspace};
 
-use super::Step;
+use super::StepOutcome;
 
 /// Cause of a numerical failure.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -52,64 +52,60 @@ pub(super) fn speed_limit(model: &Model) -> f64 {
     model.rocks.iter().map(|r| (r.confined_modulus() / r.density).sqrt()).fold(0.0, f64::max)
 }
 
-impl Step<'_> {
-    /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
-    pub(super) fn guard(&self) -> Result<(), StepError> {
-        let model = self.model;
-        if self.singular {
-            return Err(self.failed(BlockId::new(0), model.covers.star_position[0], Failure::Singular));
-        }
-        if !self.is_sound {
-            self.guard_speeds()?;
-        }
-        let limit = model.penetration_limit;
-        let workspace = &*self.workspace;
-        if workspace.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
-            return Ok(());
-        }
-        match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
-            Some(contact) => {
-                let position = workspace.frames.position(contact.point);
-                let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
-                Err(self.failed(contact.blocks(&model.boundary)[0], position, failure))
-            }
-            None => Ok(()),
-        }
+/// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
+pub fn check(model: &Model, state: &State, workspace: &Workspace, outcome: &StepOutcome) -> Result<(), StepError> {
+    let failed = |block: BlockId, position: Point, failure: Failure| {
+        Err(StepError { block: block.number(), position, time: outcome.end, failure })
+    };
+    if outcome.is_singular {
+        return failed(BlockId::new(0), model.covers.star_position[0], Failure::Singular);
     }
+    if !outcome.is_sound
+        && let Some((block, position, failure)) = unsound(model, state)
+    {
+        return failed(block, position, failure);
+    }
+    let limit = model.penetration_limit;
+    if workspace.outcomes.iter().all(|outcome| outcome.penetration <= limit) {
+        return Ok(());
+    }
+    match workspace.contacts.iter().find(|contact| contact.loaded_penetration() > limit) {
+        Some(contact) => {
+            let position = workspace.frames.position(contact.point);
+            let failure = Failure::Penetration { depth: contact.loaded_penetration(), limit };
+            failed(contact.blocks(&model.boundary)[0], position, failure)
+        }
+        None => Ok(()),
+    }
+}
 
-    /// A failure now, with its block and position (m).
-    fn failed(&self, block: BlockId, position: Point, failure: Failure) -> StepError {
-        StepError { block: block.number(), position, time: self.time, failure }
-    }
-
-    /// Fails when a velocity is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
-    /// small block has cut lies far from its rock, and turns with it.
-    fn guard_speeds(&self) -> Result<(), StepError> {
-        let (model, limit) = (self.model, speed_limit(self.model));
-        for (i, velocity) in self.state.velocity.iter().enumerate() {
-            let (block, speed) = (model.covers.cover_block[i], velocity.norm());
-            if !speed.is_finite() {
-                return Err(self.failed(block, model.covers.star_position[i], Failure::NotFinite));
-            }
-            if speed > limit
-                && let Some((position, speed)) = self.rock_faster_than(limit, block)
-            {
-                return Err(self.failed(block, position, Failure::Runaway { speed, limit }));
-            }
+/// The first velocity that is not finite, or rock beyond the wave speed. Covers may be faster: the star of one that a
+/// small block has cut lies far from its rock, and turns with it.
+fn unsound(model: &Model, state: &State) -> Option<(BlockId, Point, Failure)> {
+    let limit = speed_limit(model);
+    for (i, velocity) in state.velocity.iter().enumerate() {
+        let (block, speed) = (model.covers.cover_block[i], velocity.norm());
+        if !speed.is_finite() {
+            return Some((block, model.covers.star_position[i], Failure::NotFinite));
         }
-        Ok(())
+        if speed > limit
+            && let Some((position, speed)) = rock_faster_than(model, state, limit, block)
+        {
+            return Some((block, position, Failure::Runaway { speed, limit }));
+        }
     }
+    None
+}
 
-    /// Position and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
-    fn rock_faster_than(&self, limit: f64, block: BlockId) -> Option<(Point, f64)> {
-        let (covers, state) = (&self.model.covers, &*self.state);
-        let corners = ElementId::range(covers.elements_of(block))
-            .flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
-        let mut moving = corners.map(|(element, corner)| {
-            let weights = covers.weights(element, corner);
-            let sample = |field| cover::sample(&covers.element_covers[element], &weights, field);
-            (corner + sample(&state.displacement), sample(&state.velocity).norm())
-        });
-        moving.find(|&(_, speed)| speed > limit)
-    }
+/// Position and speed (m/s) of rock of a block that is faster than a limit: some corner of an element.
+fn rock_faster_than(model: &Model, state: &State, limit: f64, block: BlockId) -> Option<(Point, f64)> {
+    let covers = &model.covers;
+    let corners = ElementId::range(covers.elements_of(block))
+        .flat_map(|e| covers.polygon(e).iter().map(move |&corner| (e, corner)));
+    let mut moving = corners.map(|(element, corner)| {
+        let weights = covers.weights(element, corner);
+        let sample = |field| cover::sample(&covers.element_covers[element], &weights, field);
+        (corner + sample(&state.displacement), sample(&state.velocity).norm())
+    });
+    moving.find(|&(_, speed)| speed > limit)
 }

@@ -12,20 +12,22 @@ mod quiet;
 mod records;
 mod report;
 mod settle;
-mod times;
+mod substep;
 
 pub use applied::{acceleration, push_forces};
+pub use contacts::{Reach, entrance, locate, search};
 pub use guard::{Failure, StepError};
-pub use integrator::Integrator;
+pub use integrator::{Integrator, StepOutcome};
 pub use prepare::{begin_stage, prepare};
+pub use quiet::load_supports;
 pub use records::base_motion;
 pub use report::{
     StepReport, block_motion, energies, mass_of_few, momentum, potential, speed_max, stored, strain, unbalanced,
 };
-pub use times::{StepTimes, Window};
+pub use settle::{settle_contacts, settle_supports};
+pub use substep::{StepInterval, Substep, Window};
 
 use crate::contact::VertexEdge;
-use crate::mechanics::Damping;
 use crate::state::{Model, State, Workspace};
 
 use contacts::CONTACTS;
@@ -66,11 +68,7 @@ pub fn advance(
     workspace: &mut Workspace,
     report: bool,
 ) -> Result<StepReport, StepError> {
-    let rest = state.rest_of_step(model);
-    let mut step = Step::new(model, regime, state, workspace);
-    step.report = report;
-    let outcome = step.on_threads(rest);
-    step.guard()?;
+    let outcome = cover(model, state, workspace, StepInterval { report, ..rest_of_step(model, regime, state) })?;
     state.stage_step += 1;
     state.step += 1;
     state.part = 0.0;
@@ -90,11 +88,34 @@ pub fn advance_part(
     workspace: &mut Workspace,
     dt: f64,
 ) -> Result<StepReport, StepError> {
-    let mut step = Step::new(model, regime, state, workspace);
-    let outcome = step.on_threads(dt);
-    step.guard()?;
+    let outcome = cover(model, state, workspace, StepInterval { dt, ..rest_of_step(model, regime, state) })?;
     state.part += dt;
     Ok(outcome)
+}
+
+/// Covers an interval on the threads of the pool, and checks where it has led. A caller from outside hands over the
+/// whole of it at once, which is dearer for every parallel part by itself.
+fn cover(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    interval: StepInterval,
+) -> Result<StepReport, StepError> {
+    let is_small = model.covers.cover_count() < THREADS_FROM && state.contacts.len() <= CONTACTS;
+    let integrator = integrator_of(model);
+    let outcome = if workspace.serial || is_small {
+        integrator.cover(model, state, workspace, interval)
+    } else {
+        rayon::scope(|_| integrator.cover(model, state, workspace, interval))
+    };
+    guard::check(model, state, workspace, &outcome)?;
+    Ok(outcome.report)
+}
+
+/// What is left of the internal step in progress, without a report.
+fn rest_of_step(model: &Model, regime: Regime, state: &State) -> StepInterval {
+    let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
+    StepInterval { regime, time, dt: state.rest_of_step(model), report: false }
 }
 
 /// Energies and the unbalanced ratio that the next step will find at its start; nothing advances. With `serial` it
@@ -102,10 +123,8 @@ pub fn advance_part(
 pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) -> StepReport {
     let mut workspace = Workspace { serial, ..Workspace::default() };
     prepare(model, &state, &mut workspace);
-    let rest = state.rest_of_step(model);
-    let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    step.report = true;
-    integrator_of(model).begin(&mut step, rest)
+    let interval = StepInterval { report: true, ..rest_of_step(model, regime, &state) };
+    integrator_of(model).begin(model, &mut state, &mut workspace, interval)
 }
 
 /// A copy of the state, with buffers of its own.
@@ -119,18 +138,16 @@ fn beside(model: &Model, state: &State, serial: bool) -> (State, Workspace) {
 /// it keeps to the calling thread.
 pub fn look_ahead(model: &Model, regime: Regime, state: &State, serial: bool) -> (State, Workspace) {
     let (mut state, mut workspace) = beside(model, state, serial);
-    let dt = state.rest_of_step(model);
-    let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    integrator_of(model).find_contacts(&mut step, dt);
+    let interval = rest_of_step(model, regime, &state);
+    integrator_of(model).find_contacts(model, &mut state, &mut workspace, interval);
     (state, workspace)
 }
 
 /// Shows the contacts of [`look_ahead`], one by one and without holding all of them.
 pub fn each_contact(model: &Model, regime: Regime, state: &State, serial: bool, see: &mut dyn FnMut(&VertexEdge)) {
     let (mut state, mut workspace) = beside(model, state, serial);
-    let dt = state.rest_of_step(model);
-    let mut step = Step::new(model, regime, &mut state, &mut workspace);
-    integrator_of(model).each_contact(&mut step, dt, see);
+    let interval = rest_of_step(model, regime, &state);
+    integrator_of(model).each_contact(model, &mut state, &mut workspace, interval, see);
 }
 
 /// Share of gravity that acts at a time of the stage (s): a smooth rise over the ramp of a static stage.
@@ -141,57 +158,5 @@ pub fn ramp(regime: Regime, stage_time: f64) -> f64 {
             x * x * (3.0 - 2.0 * x)
         }
         _ => 1.0,
-    }
-}
-
-/// One step in progress.
-pub struct Step<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// How the stage treats velocities and gravity.
-    pub regime: Regime,
-    /// The state, which the step changes.
-    pub state: &'a mut State,
-    /// Buffers.
-    pub workspace: &'a mut Workspace,
-    /// Simulated time (s).
-    pub time: f64,
-    /// Whether a report of the start is wanted.
-    pub report: bool,
-    damping: Damping,
-    /// Whether all speeds were found finite and below the limit.
-    is_sound: bool,
-    /// Whether the matrix of an implicit step was not positive definite however short the sub-step.
-    pub singular: bool,
-}
-
-impl<'a> Step<'a> {
-    fn new(model: &'a Model, regime: Regime, state: &'a mut State, workspace: &'a mut Workspace) -> Self {
-        let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
-        Self {
-            model,
-            regime,
-            state,
-            workspace,
-            time,
-            report: false,
-            damping: Damping::Deformation(0.0),
-            is_sound: false,
-            singular: false,
-        }
-    }
-}
-
-impl Step<'_> {
-    /// Covers `dt` (s) on the threads of the pool. A caller from outside hands over the whole of it at once, which is
-    /// dearer for every parallel part by itself.
-    fn on_threads(&mut self, dt: f64) -> StepReport {
-        let is_small = self.model.covers.cover_count() < THREADS_FROM && self.state.contacts.len() <= CONTACTS;
-        let integrator = integrator_of(self.model);
-        if self.workspace.serial || is_small {
-            integrator.cover(self, dt)
-        } else {
-            rayon::scope(|_| integrator.cover(self, dt))
-        }
     }
 }

@@ -11,22 +11,23 @@ use super::{Regime, applied, integrator_of, quiet};
 /// and a restored state.
 pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     let covers = model.covers.cover_count();
-    for field in [&mut workspace.predicted, &mut workspace.increment] {
+    let Workspace { motion, selection, sweep, sums, .. } = &mut *workspace;
+    for field in [&mut motion.predicted, &mut sweep.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
     }
-    workspace.motion.resize(model.covers.block_count(), Default::default());
-    workspace.start.resize(model.covers.block_count(), Default::default());
-    workspace.sums.resize(model.chunks.len(), Default::default());
-    workspace.push.resize(model.covers.block_count(), Default::default());
-    workspace.columns.clear();
-    workspace.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
-    workspace.trace_law.clear();
-    workspace.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
+    motion.blocks.resize(model.covers.block_count(), Default::default());
+    motion.start.resize(model.covers.block_count(), Default::default());
+    sums.resize(model.chunks.len(), Default::default());
+    sweep.push.resize(model.covers.block_count(), Default::default());
+    motion.columns.clear();
+    motion.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
+    selection.trace_law.clear();
+    selection.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
+    selection.near_sides.forget();
+    expose(model, &mut motion.exposed);
     hold(model, state, workspace);
-    expose(model, &mut workspace.exposed);
-    workspace.near_sides.forget();
-    workspace.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.rows);
+    workspace.sweep.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.supports.rows);
     integrator_of(model).prepare(model, workspace);
 }
 
@@ -56,12 +57,12 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
         mass_matrix.hold_block(&model.covers, block);
         CoverId::range(model.covers.covers_of(block)).for_each(|i| mass_matrix.hold_cover(i, [true, true]));
     }
-    workspace.rows.clear();
+    workspace.supports.rows.clear();
     let holds = |(_, s): &(usize, &Support)| state.fix_active[s.fix as usize] && !state.removed[s.block];
     for (_, support) in model.supports.iter().enumerate().filter(holds) {
         mass_matrix.hold_block(&model.covers, support.block);
     }
-    workspace.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
+    workspace.supports.rows.extend(model.supports.iter().enumerate().filter(holds).map(|(k, support)| SupportRow {
         support: k as u32,
         displacement: 0.0,
         target: 0.0,
@@ -76,10 +77,11 @@ fn hold(model: &Model, state: &State, workspace: &mut Workspace) {
         mass_matrix.lighten(lightness);
     }
     mass_matrix.mark_fixed(&model.covers);
-    workspace.damping_of = None;
+    let motion = &mut workspace.motion;
+    motion.damping_of = None;
     let is_movable = |i: usize| mass_matrix.inverse[i].x > 0.0 && mass_matrix.inverse[i].y > 0.0;
-    workspace.movable.clear();
-    workspace.movable.extend(model.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
+    motion.movable.clear();
+    motion.movable.extend(model.chunks.iter().map(|chunk| chunk.covers.clone().all(is_movable)));
 }
 
 /// Sets the clock and the references of a new stage; call [`prepare`] afterwards.

@@ -1,11 +1,11 @@
 //! Quiet boundaries: springs that freeze, dashpots that take over, and what supports answer to.
 
-use crate::contact::{Resistance, Support};
+use crate::contact::{Resistance, Support, SupportRow};
 use crate::geometry::Vector;
 use crate::mechanics::ColumnState;
-use crate::state::{Model, State};
+use crate::state::{Model, MotionBuffers, State};
 
-use super::{Regime, Step, StepTimes, records};
+use super::{Regime, Substep, records};
 
 /// Supports of quiet boundaries whose springs are frozen: each keeps its last force.
 pub fn frozen<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (usize, &'a Support)> {
@@ -41,45 +41,40 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
     }
 }
 
-impl Step<'_> {
-    /// Sets the supports for a sub-step: springs act by the position at its end (Eq. 23), dashpots by the
-    /// mean of the velocities before and after it (Eqs. 46, 47).
-    pub fn load_supports(&mut self, StepTimes { dt, window, .. }: StepTimes) {
-        let (model, state) = (self.model, &*self.state);
-        let regime = self.regime;
-        let workspace = &mut *self.workspace;
-        let theta = model.theta_in(dt);
-        let mut wave = (u32::MAX, Vector::zeros());
-        let mut beside = model.free_field.iter().peekable();
-        for row in &mut workspace.rows {
-            let k = row.support as usize;
-            let support = &model.supports[k];
-            row.displacement = support.sample(&state.displacement) - state.support_rest[k];
-            row.approach = support.sample(&workspace.predicted);
-            row.force = state.support_force[k];
-            let quiet = match support.resistance {
-                Resistance::Spring => {
-                    row.target = support.preload - support.stiffness * row.displacement;
-                    row.viscosity = support.stiffness * theta * dt;
-                    continue;
-                }
-                Resistance::Dashpot(quiet) => quiet,
-            };
-            if wave.0 != quiet {
-                wave = (quiet, records::wave(model, regime, state, window, quiet));
+/// Sets the supports for a sub-step: springs act by the position at its end (Eq. 23), dashpots by the mean of the
+/// velocities before and after it (Eqs. 46, 47).
+pub fn load_supports(model: &Model, state: &State, step: &Substep, motion: &MotionBuffers, rows: &mut [SupportRow]) {
+    let (theta, dt) = (model.theta_in(step.dt), step.dt);
+    let mut wave = (u32::MAX, Vector::zeros());
+    let mut beside = model.free_field.iter().peekable();
+    for row in rows {
+        let k = row.support as usize;
+        let support = &model.supports[k];
+        row.displacement = support.sample(&state.displacement) - state.support_rest[k];
+        row.approach = support.sample(&motion.predicted);
+        row.force = state.support_force[k];
+        let quiet = match support.resistance {
+            Resistance::Spring => {
+                row.target = support.preload - support.stiffness * row.displacement;
+                row.viscosity = support.stiffness * theta * dt;
+                continue;
             }
-            row.viscosity = 0.5 * support.stiffness;
-            row.target = 2.0 * support.stiffness * wave.1.dot(&support.direction)
-                - row.viscosity * support.sample(&state.velocity);
-            while beside.next_if(|point| point.support < row.support).is_some() {}
-            if let (Some(point), Some(column)) =
-                (beside.next_if(|point| point.support == row.support), model.quiets[quiet as usize].column)
-            {
-                let (own, after) = (&state.columns[column as usize], &workspace.columns[column as usize]);
-                let velocity = point.at.sample(&own.velocity) + point.at.sample(after);
-                let [a, b] = point.ends.map(|end| end.sample(&own.displacement));
-                row.target += row.viscosity * velocity.dot(&support.direction) + (b - a).dot(&point.stiffness);
-            }
+            Resistance::Dashpot(quiet) => quiet,
+        };
+        if wave.0 != quiet {
+            wave = (quiet, records::wave(model, step.regime, state, step.window, quiet));
+        }
+        row.viscosity = 0.5 * support.stiffness;
+        row.target =
+            2.0 * support.stiffness * wave.1.dot(&support.direction) - row.viscosity * support.sample(&state.velocity);
+        while beside.next_if(|point| point.support < row.support).is_some() {}
+        if let (Some(point), Some(column)) =
+            (beside.next_if(|point| point.support == row.support), model.quiets[quiet as usize].column)
+        {
+            let (own, after) = (&state.columns[column as usize], &motion.columns[column as usize]);
+            let velocity = point.at.sample(&own.velocity) + point.at.sample(after);
+            let [a, b] = point.ends.map(|end| end.sample(&own.displacement));
+            row.target += row.viscosity * velocity.dot(&support.direction) + (b - a).dot(&point.stiffness);
         }
     }
 }

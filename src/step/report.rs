@@ -119,7 +119,7 @@ pub fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64 {
     };
     let setting = workspace.setting(model, state);
     let contacts = workspace.contacts.iter().map(|contact| contact.stored_energy(&setting)).sum::<f64>();
-    let supports = workspace.rows.iter().map(support).sum::<f64>();
+    let supports = workspace.supports.rows.iter().map(support).sum::<f64>();
     let kept = |(k, s): (usize, &Support)| 0.5 * state.support_force[k].powi(2) / s.stiffness;
     contacts + supports + quiet::frozen(model, state).map(kept).sum::<f64>()
 }

@@ -3,12 +3,12 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{ContactHistory, ContactSetting, ContactState, JointLaw, VertexEdge};
+use crate::contact::{ContactHistory, ContactSetting, ContactState, JointLaw, SupportRow, VertexEdge};
 use crate::geometry::Vector;
-use crate::state::{ContactOutcome, Workspace};
+use crate::state::{ContactOutcome, Counters};
 
+use super::Substep;
 use super::contacts::CONTACTS;
-use super::{Step, StepTimes};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
@@ -80,34 +80,38 @@ fn history_of(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -
     history
 }
 
-impl Step<'_> {
-    /// Histories and outcomes of this sub-step's contacts, and forces of its supports.
-    pub fn settle_contacts(&mut self, StepTimes { dt, kick, .. }: StepTimes) {
-        let state = &mut *self.state;
-        let Workspace { contacts, predicted, outcomes, frames, strength, serial, .. } = &mut *self.workspace;
-        state.contacts.resize(contacts.len(), ContactHistory::default());
-        outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
-        let setting = self.model.contact_setting(&state.laws, frames, *strength);
-        let velocities = [&state.velocity[..], predicted];
-        let fade = libm::exp(-dt / OFFSET_FADE);
-        let settle = |((contacts, histories), outcome)| {
-            dispatch(Settle { contacts, histories, outcome, setting, velocities, dt, kick, fade });
-        };
-        if *serial || contacts.len() <= CONTACTS {
-            let runs = contacts.chunks(CONTACTS).zip(state.contacts.chunks_mut(CONTACTS));
-            runs.zip(outcomes.iter_mut()).for_each(settle);
-        } else {
-            let runs = contacts.par_chunks(CONTACTS).zip(state.contacts.par_chunks_mut(CONTACTS));
-            runs.zip(outcomes.par_iter_mut()).for_each(settle);
-        }
-        let counters = &mut state.counters;
-        for outcome in &*outcomes {
-            counters.deep_contacts += outcome.deep;
-            counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
-            counters.penetration_max = counters.penetration_max.max(outcome.penetration);
-        }
-        for row in &self.workspace.rows {
-            state.support_force[row.support as usize] = row.force;
-        }
+/// Histories and outcomes of the contacts of a sub-step, from the velocities (m/s) of the covers before and after it.
+pub fn settle_contacts(
+    setting: ContactSetting,
+    step: &Substep,
+    velocities: [&[Vector]; 2],
+    contacts: &[VertexEdge],
+    histories: &mut Vec<ContactHistory>,
+    outcomes: &mut Vec<ContactOutcome>,
+    counters: &mut Counters,
+) {
+    let Substep { dt, kick, serial, .. } = *step;
+    histories.resize(contacts.len(), ContactHistory::default());
+    outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
+    let fade = libm::exp(-dt / OFFSET_FADE);
+    let settle = |((contacts, histories), outcome)| {
+        dispatch(Settle { contacts, histories, outcome, setting, velocities, dt, kick, fade });
+    };
+    if serial || contacts.len() <= CONTACTS {
+        let runs = contacts.chunks(CONTACTS).zip(histories.chunks_mut(CONTACTS));
+        runs.zip(outcomes.iter_mut()).for_each(settle);
+    } else {
+        let runs = contacts.par_chunks(CONTACTS).zip(histories.par_chunks_mut(CONTACTS));
+        runs.zip(outcomes.par_iter_mut()).for_each(settle);
     }
+    for outcome in outcomes {
+        counters.deep_contacts += outcome.deep;
+        counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
+        counters.penetration_max = counters.penetration_max.max(outcome.penetration);
+    }
+}
+
+/// Keeps the forces (N/m) of the supports of a sub-step.
+pub fn settle_supports(rows: &[SupportRow], support_force: &mut [f64]) {
+    rows.iter().for_each(|row| support_force[row.support as usize] = row.force);
 }

@@ -7,9 +7,9 @@ use enmm::mechanics::Deformation;
 
 use super::consistent::{PAIRS, stiffness_block};
 use super::cover_matrix::{NotPositive, UNCOUPLED};
-use super::substep::{Inertia, Substep};
+use super::step::{ImplicitStep, Inertia};
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// The pattern, when the near pairs are new, and the slots of this sub-step's contacts in it.
     ///
     /// The pattern holds all near pairs, so that it is a function of the state and lasts until the next search.
@@ -17,11 +17,11 @@ impl Substep<'_, '_> {
         if self.buffers.matrix.is_empty() {
             self.set_pattern();
         }
-        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         let matrix = &buffers.matrix;
-        buffers.contact_slots.clear();
-        buffers.contact_slots.extend(workspace.contacts.iter().map(|contact| {
+        buffers.slots.contacts.clear();
+        buffers.slots.contacts.extend(workspace.contacts.iter().map(|contact| {
             let ids = six(&contact.pair(boundary));
             std::array::from_fn(|k| {
                 let (row, column) = (ids[k / 6], ids[k % 6]);
@@ -31,11 +31,11 @@ impl Substep<'_, '_> {
     }
 
     fn set_pattern(&mut self) {
-        let covers = &self.step.model.covers;
-        let boundary = &self.step.model.boundary;
+        let covers = &self.model.covers;
+        let boundary = &self.model.boundary;
         let buffers = &mut self.buffers;
         let free = |i: CoverId| !(buffers.held[2 * i.index()] && buffers.held[2 * i.index() + 1]);
-        let pairs = &mut buffers.pairs;
+        let pairs = &mut buffers.slots.pairs;
         pairs.clear();
         let mut couple = |a: CoverId, b: CoverId| {
             if a != b && free(a) && free(b) {
@@ -45,7 +45,7 @@ impl Substep<'_, '_> {
         for ids in &covers.element_covers {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
-        for near in &self.step.state.neighbours.pairs {
+        for near in &self.state.neighbours.pairs {
             let node = boundary.covers[boundary.node_point[near.node]];
             for a in node {
                 boundary.covers_on(near.edge).for_each(|b| couple(a, b));
@@ -55,8 +55,8 @@ impl Substep<'_, '_> {
         pairs.dedup();
         buffers.matrix.set_pattern(covers.cover_count(), pairs);
         let matrix = &buffers.matrix;
-        buffers.element_slots.clear();
-        buffers.element_slots.extend(
+        buffers.slots.elements.clear();
+        buffers.slots.elements.extend(
             covers
                 .element_covers
                 .iter()
@@ -79,15 +79,15 @@ impl Substep<'_, '_> {
         if buffers.any_held {
             buffers.matrix.hold(&buffers.held);
         }
-        self.step.state.counters.factorisations += 1;
+        self.state.counters.factorisations += 1;
         buffers.matrix.factorise()
     }
 
     /// Adds `mass` times the consistent mass and `stiffness` times R·K·Rᵀ of every element (Eq. 69).
     pub(super) fn add_elements(&mut self, element_mass: &[[f64; 6]], mass: f64, stiffness: f64) {
-        let (model, state) = (self.step.model, &*self.step.state);
+        let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.buffers);
-        for (e, slots) in buffers.element_slots.iter().enumerate() {
+        for (e, slots) in buffers.slots.elements.iter().enumerate() {
             let ids = covers.element_covers[e];
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             let rock = &model.rocks[model.element_rock[e] as usize];
@@ -107,10 +107,10 @@ impl Substep<'_, '_> {
 
     /// Adds the springs of all contacts that are not open; the shear spring of those that do not slip.
     fn add_contacts(&mut self) {
-        let (boundary, workspace) = (&self.step.model.boundary, &mut *self.step.workspace);
+        let (boundary, workspace) = (&self.model.boundary, &mut *self.workspace);
         let buffers = &mut *self.buffers;
         buffers.factored.clear();
-        for (contact, slots) in workspace.contacts.iter().zip(&buffers.contact_slots) {
+        for (contact, slots) in workspace.contacts.iter().zip(&buffers.slots.contacts) {
             buffers.factored.push(contact.history.state);
             let shear = match contact.history.state {
                 ContactState::Open => continue,
@@ -130,9 +130,9 @@ impl Substep<'_, '_> {
     }
 
     fn add_supports(&mut self) {
-        let model = self.step.model;
+        let model = self.model;
         let matrix = &mut self.buffers.matrix;
-        for row in &self.step.workspace.rows {
+        for row in &self.workspace.supports.rows {
             let support = &model.supports[row.support as usize];
             let d = support.direction;
             let spring = [d.x * d.x, d.x * d.y, d.x * d.y, d.y * d.y].map(|v| v * support.stiffness);

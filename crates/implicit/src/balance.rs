@@ -7,12 +7,12 @@ use enmm::state::Workspace;
 
 use super::buffers::ImplicitBuffers;
 use super::consistent::push_mass;
-use super::substep::{Inertia, Substep};
+use super::step::{ImplicitStep, Inertia};
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// Internal forces at the positions reached (Eq. 7).
     pub(super) fn implicit_internal(&mut self) {
-        let (model, state) = (self.step.model, &*self.step.state);
+        let (model, state) = (self.model, &*self.state);
         let (covers, buffers) = (&model.covers, &mut self.buffers);
         buffers.internal.fill(Vector::zeros());
         for e in covers.elements() {
@@ -51,15 +51,15 @@ impl Substep<'_, '_> {
 
     /// The contacts of the sub-step, what they share, and the buffers of the integrator.
     fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitBuffers) {
-        let Workspace { contacts, frames, strength, .. } = &mut *self.step.workspace;
-        (self.step.model.contact_setting(&self.step.state.laws, frames, *strength), contacts, &*self.buffers)
+        let Workspace { contacts, frames, selection, .. } = &mut *self.workspace;
+        (self.model.contact_setting(&self.state.laws, frames, selection.strength), contacts, &*self.buffers)
     }
 
     /// Forces of all supports at the positions reached.
     fn bear(&mut self) {
-        let workspace = &mut *self.step.workspace;
-        for row in &mut workspace.rows {
-            let support = &self.step.model.supports[row.support as usize];
+        let workspace = &mut *self.workspace;
+        for row in &mut workspace.supports.rows {
+            let support = &self.model.supports[row.support as usize];
             let moved = support.sample(&self.buffers.moved);
             row.force = support.preload - support.stiffness * (row.displacement + moved);
         }
@@ -67,7 +67,7 @@ impl Substep<'_, '_> {
 
     /// Forces out of balance (Eq. 67) at the positions reached; returns their norm and the norm of the largest part.
     pub(super) fn implicit_residual(&mut self, inertia: &Inertia) -> [f64; 2] {
-        let model = self.step.model;
+        let model = self.model;
         self.push_bearing();
         let buffers = &mut self.buffers;
         let mut scale = norm(&buffers.residual).max(norm(&buffers.applied));
@@ -94,7 +94,7 @@ impl Substep<'_, '_> {
     pub(super) fn start_balance(&mut self) {
         self.push_bearing();
         let buffers = &mut self.buffers;
-        let others = buffers.applied_before.iter().zip(&buffers.internal_before);
+        let others = buffers.start.applied.iter().zip(&buffers.start.internal);
         buffers.residual.iter_mut().zip(others).for_each(|(sum, (applied, internal))| *sum += applied + internal);
         self.drop_held();
     }
@@ -114,7 +114,7 @@ impl Substep<'_, '_> {
 
     /// Forces of contacts and supports on the covers, into the residual.
     pub(super) fn push_bearing(&mut self) {
-        let workspace = &mut *self.step.workspace;
+        let workspace = &mut *self.workspace;
         let residual = &mut self.buffers.residual;
         residual.fill(Vector::zeros());
         for contact in &workspace.contacts {
@@ -122,12 +122,12 @@ impl Substep<'_, '_> {
                 continue;
             }
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
-            let Pair { covers, weights, .. } = contact.pair(&self.step.model.boundary);
+            let Pair { covers, weights, .. } = contact.pair(&self.model.boundary);
             mechanics::spread(&covers[0], &weights[0], force, residual);
             mechanics::spread(&covers[1], &weights[1], -force, residual);
         }
-        for row in &workspace.rows {
-            let support = &self.step.model.supports[row.support as usize];
+        for row in &workspace.supports.rows {
+            let support = &self.model.supports[row.support as usize];
             mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
         }
     }

@@ -12,38 +12,28 @@ use super::cover_matrix::CoverMatrix;
 pub struct ImplicitBuffers {
     /// System matrix of the step.
     pub matrix: CoverMatrix,
-    /// Positions in the matrix of each element's pairs of covers.
-    pub element_slots: Vec<[u32; 6]>,
-    /// Positions in the matrix of each contact's pairs of covers.
-    pub contact_slots: Vec<[u32; 36]>,
+    /// Positions in the matrix.
+    pub slots: Slots,
     /// Rows of the matrix that are held.
     pub held: Vec<bool>,
     /// Whether any row is held.
     pub any_held: bool,
-    /// Pairs of covers of the pattern, while it is built.
-    pub pairs: Vec<[CoverId; 2]>,
     /// Displacements since the start of the sub-step (m).
     pub moved: Vec<Vector>,
     /// Mass times this, plus `c` times what has moved, is the inertial force (m/s²).
     pub offset: Vec<Vector>,
     /// Forces on covers of loads and gravity at the end of the sub-step (N/m).
     pub applied: Vec<Vector>,
-    /// The same at its start; filled for the trapezoidal rule.
-    pub applied_before: Vec<Vector>,
     /// Internal forces on covers at the positions reached (N/m).
     pub internal: Vec<Vector>,
-    /// Internal forces at the start of the sub-step (N/m).
-    pub internal_before: Vec<Vector>,
+    /// Forces at the start of the sub-step.
+    pub start: StartForces,
     /// Forces out of balance (N/m).
     pub residual: Vec<Vector>,
     /// Any cover field.
     pub field: Vec<Vector>,
     /// Right-hand side, then the solution.
     pub unknowns: Vec<f64>,
-    /// Forces (N/m) of contacts, normal and shear, at the start of the sub-step.
-    pub forces_before: Vec<[f64; 2]>,
-    /// Forces (N/m) of supports at the start of the sub-step.
-    pub bearing_before: Vec<f64>,
     /// Normal force (N/m) of each contact that friction is measured by along a solution.
     pub pressing: Vec<f64>,
     /// Whether contacts that slip keep the secant of their shear spring in the factor.
@@ -52,14 +42,38 @@ pub struct ImplicitBuffers {
     pub factored: Vec<ContactState>,
 }
 
+/// Positions in the matrix of the pairs of covers of elements and contacts.
+#[derive(Debug, Clone, Default)]
+pub struct Slots {
+    /// Those of each element.
+    pub elements: Vec<[u32; 6]>,
+    /// Those of each contact.
+    pub contacts: Vec<[u32; 36]>,
+    /// Pairs of covers of the pattern, while it is built.
+    pub pairs: Vec<[CoverId; 2]>,
+}
+
+/// Forces (N/m) at the start of a sub-step.
+#[derive(Debug, Clone, Default)]
+pub struct StartForces {
+    /// Loads and gravity on covers; filled for the trapezoidal rule.
+    pub applied: Vec<Vector>,
+    /// Internal forces on covers.
+    pub internal: Vec<Vector>,
+    /// Normal and shear force of each contact.
+    pub contacts: Vec<[f64; 2]>,
+    /// Force of each support.
+    pub supports: Vec<f64>,
+}
+
 impl Buffers for ImplicitBuffers {
     fn copy(&self) -> Box<dyn Buffers> {
         Box::new(self.clone())
     }
 
     fn bytes(&self) -> usize {
-        let Self { moved, offset, applied, applied_before, internal, internal_before, residual, field, .. } = self;
-        let fields = [moved, offset, applied, applied_before, internal, internal_before, residual, field];
+        let Self { moved, offset, applied, internal, start, residual, field, .. } = self;
+        let fields = [moved, offset, applied, &start.applied, internal, &start.internal, residual, field];
         fields.map(|field| size_of_val(&**field)).iter().sum::<usize>()
             + size_of_val(&*self.unknowns)
             + size_of_val(&*self.held)

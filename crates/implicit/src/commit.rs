@@ -3,41 +3,53 @@
 use std::time::Instant;
 
 use enmm::contact::ContactState;
-use enmm::state::Ledger;
-use enmm::step::{Regime, StepReport, potential, speed_max, stored, strain, unbalanced};
+use enmm::state::{Ledger, State, Workspace};
+use enmm::step::{
+    Regime, StepReport, potential, settle_contacts, settle_supports, speed_max, stored, strain, unbalanced,
+};
 
 use super::balance::norm;
 use super::choices::{Implicit, Rule};
 use super::motion::kinetic_energy;
-use super::substep::{Inertia, Substep};
+use super::step::{ImplicitStep, Inertia};
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// Ends a sub-step with the forces and positions that the iteration left.
     pub(super) fn implicit_commit(&mut self, implicit: &Implicit, inertia: &Inertia) {
         let clock = Instant::now();
         let mut works = self.implicit_works(implicit, inertia);
-        let workspace = &mut *self.step.workspace;
-        for (mean, moved) in workspace.predicted.iter_mut().zip(&self.buffers.moved) {
+        let workspace = &mut *self.workspace;
+        for (mean, moved) in workspace.motion.predicted.iter_mut().zip(&self.buffers.moved) {
             *mean = moved / inertia.dt;
         }
-        self.step.settle_contacts(self.step.times(inertia.dt));
+        self.settle(inertia.dt);
         self.move_covers(implicit, inertia);
-        if let Regime::Dynamic { damping } = self.step.regime {
+        if let Regime::Dynamic { damping } = self.regime {
             works.damping += self.implicit_damp(implicit, damping, inertia);
         }
-        self.step.state.ledger.add_works(&works, 1.0);
-        self.step.state.dt_last = 0.0;
-        self.step.time += inertia.dt;
-        self.step.workspace.seconds.commit += clock.elapsed().as_secs_f64();
+        self.state.ledger.add_works(&works, 1.0);
+        self.state.dt_last = 0.0;
+        self.time += inertia.dt;
+        self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
+    }
+
+    /// Histories of the contacts and forces of the supports for the next sub-step.
+    fn settle(&mut self, dt: f64) {
+        let step = self.substep(dt);
+        let State { laws, velocity, contacts: histories, counters, support_force, .. } = &mut *self.state;
+        let Workspace { motion, frames, selection, contacts, supports, outcomes, .. } = &mut *self.workspace;
+        let setting = self.model.contact_setting(laws, frames, selection.strength);
+        settle_contacts(setting, &step, [velocity, &motion.predicted], contacts, histories, outcomes, counters);
+        settle_supports(&supports.rows, support_force);
     }
 
     /// Positions, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
     fn move_covers(&mut self, implicit: &Implicit, inertia: &Inertia) {
-        let (state, workspace) = (&mut *self.step.state, &*self.step.workspace);
+        let (state, workspace) = (&mut *self.state, &*self.workspace);
         let buffers = &*self.buffers;
         for i in 0..buffers.moved.len() {
             state.displacement[i] += buffers.moved[i];
-            let mean = workspace.predicted[i];
+            let mean = workspace.motion.predicted[i];
             let velocity = if inertia.rests { mean } else { mean * 2.0 - state.velocity[i] };
             for axis in 0..2 {
                 state.velocity[i][axis] = if buffers.held[2 * i + axis] { 0.0 } else { velocity[axis] };
@@ -55,7 +67,7 @@ impl Substep<'_, '_> {
         let mut works = self.bearing_works(inertia);
         works.external_work = self.load_work(inertia);
         let buffers = &self.buffers;
-        let change = buffers.internal_before.iter().zip(&buffers.internal).zip(&buffers.moved);
+        let change = buffers.start.internal.iter().zip(&buffers.internal).zip(&buffers.moved);
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
@@ -69,12 +81,12 @@ impl Substep<'_, '_> {
     }
 
     fn bearing_works(&self, inertia: &Inertia) -> Ledger {
-        let workspace = &*self.step.workspace;
+        let workspace = &*self.workspace;
         let buffers = &*self.buffers;
         let mut works = Ledger::default();
-        let setting = workspace.setting(self.step.model, self.step.state);
+        let setting = workspace.setting(self.model, self.state);
         let mean = |after: f64, before: f64| inertia.end * after + (1.0 - inertia.end) * before;
-        for (contact, before) in workspace.contacts.iter().zip(&buffers.forces_before) {
+        for (contact, before) in workspace.contacts.iter().zip(&buffers.start.contacts) {
             let [opened, sheared] = contact.relative(setting.boundary, &buffers.moved);
             let shear = mean(contact.history.shear_force, before[1]) * sheared;
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
@@ -84,8 +96,8 @@ impl Substep<'_, '_> {
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }
         }
-        for (row, before) in workspace.rows.iter().zip(&buffers.bearing_before) {
-            let support = &self.step.model.supports[row.support as usize];
+        for (row, before) in workspace.supports.rows.iter().zip(&buffers.start.supports) {
+            let support = &self.model.supports[row.support as usize];
             works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
         works
@@ -93,12 +105,12 @@ impl Substep<'_, '_> {
 
     /// Work of loads, and of gravity beyond what the potential holds.
     fn load_work(&self, inertia: &Inertia) -> f64 {
-        let (model, buffers) = (self.step.model, &self.buffers);
+        let (model, buffers) = (self.model, &self.buffers);
         let mut work = 0.0;
         for (i, moved) in buffers.moved.iter().enumerate() {
             let mut force = buffers.applied[i] * inertia.end;
             if inertia.end < 1.0 {
-                force += buffers.applied_before[i] * (1.0 - inertia.end);
+                force += buffers.start.applied[i] * (1.0 - inertia.end);
             }
             work += (force - model.gravity * model.mass_matrix.row_sum[i]).dot(moved);
         }
@@ -107,19 +119,19 @@ impl Substep<'_, '_> {
 
     /// Energies and the unbalanced ratio at the start of this sub-step.
     pub(super) fn implicit_report(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
-        let model = self.step.model;
+        let model = self.model;
         let unbalanced = self.implicit_unbalanced();
-        let (state, workspace) = (&*self.step.state, &*self.step.workspace);
+        let (state, workspace) = (&*self.state, &*self.workspace);
         let mut ledger = state.ledger;
         ledger.kinetic = kinetic_energy(model, implicit, &workspace.mass_matrix, &state.velocity);
-        if let Regime::Static { .. } = self.step.regime {
+        if let Regime::Static { .. } = self.regime {
             ledger.damping -= ledger.kinetic;
         }
         ledger.strain = strain(model, state);
         ledger.potential = potential(model, state);
         ledger.stored = stored(model, state, workspace);
         StepReport {
-            time: self.step.time,
+            time: self.time,
             dt,
             ledger,
             unbalanced,
@@ -135,8 +147,8 @@ impl Substep<'_, '_> {
     /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
     fn implicit_unbalanced(&mut self) -> f64 {
         self.start_balance();
-        let (state, buffers) = (&*self.step.state, &self.buffers);
-        let applied = norm(&buffers.applied_before).max(norm(&state.stage_force));
+        let (state, buffers) = (&*self.state, &self.buffers);
+        let applied = norm(&buffers.start.applied).max(norm(&state.stage_force));
         unbalanced(norm(&buffers.residual), applied)
     }
 }

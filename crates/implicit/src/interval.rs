@@ -7,12 +7,15 @@ use enmm::contact::VertexEdge;
 use enmm::geometry::Vector;
 use enmm::mechanics::MassMatrix;
 use enmm::state::{Buffers, Model, State, Workspace};
-use enmm::step::{Integrator, Regime, Step, StepReport, Window, acceleration, base_motion, push_forces, ramp};
+use enmm::step::{
+    Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion, entrance,
+    load_supports, locate, push_forces, ramp, search,
+};
 
 use super::buffers::ImplicitBuffers;
 use super::choices::{Implicit, Rule};
 use super::motion::{self, kinetic_energy};
-use super::substep::{CUT, Inertia, Substep};
+use super::step::{CUT, ImplicitStep, Inertia};
 
 /// Most cuts in a row; a sub-step after that is taken as it is, and counted as unsettled.
 const CUTS_MAX: u32 = 5;
@@ -29,9 +32,9 @@ impl Integrator for Implicit {
             &mut buffers.moved,
             &mut buffers.offset,
             &mut buffers.applied,
-            &mut buffers.applied_before,
+            &mut buffers.start.applied,
             &mut buffers.internal,
-            &mut buffers.internal_before,
+            &mut buffers.start.internal,
             &mut buffers.residual,
             &mut buffers.field,
         ] {
@@ -56,21 +59,37 @@ impl Integrator for Implicit {
         1.0
     }
 
-    fn cover(&self, step: &mut Step, dt: f64) -> StepReport {
-        with_buffers(step, |mut substep| substep.implicit_interval(self, dt))
+    fn cover(
+        &self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+        interval: StepInterval,
+    ) -> StepOutcome {
+        with_buffers(model, state, workspace, interval, |step| {
+            let report = step.implicit_interval(self, interval.dt);
+            StepOutcome { report, end: step.time, is_sound: false, is_singular: step.singular }
+        })
     }
 
-    fn begin(&self, step: &mut Step, dt: f64) -> StepReport {
-        with_buffers(step, |mut substep| substep.implicit_begin(self, dt))
+    fn begin(&self, model: &Model, state: &mut State, workspace: &mut Workspace, interval: StepInterval) -> StepReport {
+        with_buffers(model, state, workspace, interval, |step| step.implicit_begin(self, interval.dt))
     }
 
-    fn find_contacts(&self, step: &mut Step, dt: f64) {
-        with_buffers(step, |mut substep| substep.implicit_contacts(dt));
+    fn find_contacts(&self, model: &Model, state: &mut State, workspace: &mut Workspace, interval: StepInterval) {
+        with_buffers(model, state, workspace, interval, |step| step.implicit_contacts(interval.dt));
     }
 
-    fn each_contact(&self, step: &mut Step, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
-        with_buffers(step, |mut substep| substep.implicit_contacts(dt));
-        step.workspace.contacts.iter().for_each(see);
+    fn each_contact(
+        &self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+        interval: StepInterval,
+        see: &mut dyn FnMut(&VertexEdge),
+    ) {
+        self.find_contacts(model, state, workspace, interval);
+        workspace.contacts.iter().for_each(see);
     }
 
     fn kinetic(&self, model: &Model, mass_matrix: &MassMatrix, _: &[Vector], velocity: &[Vector]) -> f64 {
@@ -78,11 +97,18 @@ impl Integrator for Implicit {
     }
 }
 
-/// Works on a step with the buffers that its workspace keeps.
-fn with_buffers<R>(step: &mut Step, work: impl FnOnce(Substep) -> R) -> R {
-    let mut buffers = taken(step.workspace);
-    let result = work(Substep { step, buffers: &mut buffers });
-    step.workspace.of_integrator = Some(buffers);
+/// Works on an interval with the buffers that its workspace keeps.
+fn with_buffers<R>(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    StepInterval { regime, time, report, .. }: StepInterval,
+    work: impl FnOnce(&mut ImplicitStep) -> R,
+) -> R {
+    let mut buffers = taken(workspace);
+    let step = ImplicitStep { model, state, workspace, buffers: &mut buffers, regime, time, report, singular: false };
+    let result = work(&mut { step });
+    workspace.of_integrator = Some(buffers);
     result
 }
 
@@ -92,9 +118,9 @@ fn taken(workspace: &mut Workspace) -> Box<ImplicitBuffers> {
     kept.and_then(|buffers| buffers.downcast().ok()).unwrap_or_default()
 }
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     fn inertia<'a>(&mut self, implicit: &'a Implicit, dt: f64) -> Inertia<'a> {
-        let (factor, end, rests) = match (self.step.regime, implicit.rule) {
+        let (factor, end, rests) = match (self.regime, implicit.rule) {
             (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
             (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
             (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
@@ -105,7 +131,7 @@ impl Substep<'_, '_> {
     /// Inertia over displacement (1/s²) of a static sub-step (Eq. 72): that of a step from rest over a time that grows
     /// while sub-steps settle easily and is cut when one does not.
     fn static_inertia(&mut self, dt: f64) -> f64 {
-        let stretch = &mut self.step.state.static_stretch;
+        let stretch = &mut self.state.static_stretch;
         if *stretch == 0.0 {
             *stretch = 1.0;
         }
@@ -113,7 +139,7 @@ impl Substep<'_, '_> {
     }
 }
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// Covers `dt` (s) by sub-steps: one that does not settle is cut, and the rest follows.
     fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let (mut left, mut part, mut cuts) = (dt, dt, 0);
@@ -121,21 +147,21 @@ impl Substep<'_, '_> {
         loop {
             let report = self.implicit_begin(implicit, part);
             first.get_or_insert(report);
-            self.step.report = false;
+            self.report = false;
             let inertia = self.inertia(implicit, part);
             let settled = self.implicit_open_close(implicit, &inertia);
             if !settled && cuts < CUTS_MAX {
-                self.step.state.counters.halved += 1;
+                self.state.counters.halved += 1;
                 cuts += 1;
                 if !inertia.rests {
                     part *= CUT;
                 }
                 continue;
             }
-            self.step.state.counters.unsettled += u64::from(!settled);
+            self.state.counters.unsettled += u64::from(!settled);
             self.implicit_commit(implicit, &inertia);
             left -= part;
-            if left <= 1e-9 * dt || self.step.singular {
+            if left <= 1e-9 * dt || self.singular {
                 return first.unwrap_or_default();
             }
             (part, cuts) = (left, 0);
@@ -147,46 +173,52 @@ impl Substep<'_, '_> {
         self.implicit_contacts(dt);
         let clock = Instant::now();
         self.implicit_places();
-        let first = self.step.state.stage_step == 0
-            && self.step.state.part == 0.0
-            && self.step.time == self.step.state.stage_start;
-        let loaded_at_once = first && self.step.regime == Regime::Static { ramp: 0.0 };
-        self.implicit_loads(self.step.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
+        let first = self.state.stage_step == 0 && self.state.part == 0.0 && self.time == self.state.stage_start;
+        let loaded_at_once = first && self.regime == Regime::Static { ramp: 0.0 };
+        self.implicit_loads(self.report || loaded_at_once || implicit.rule == Rule::Trapezoidal, dt);
         self.implicit_internal();
         let buffers = &mut self.buffers;
-        buffers.internal_before.copy_from_slice(&buffers.internal);
+        buffers.start.internal.copy_from_slice(&buffers.internal);
         if loaded_at_once {
             self.start_balance();
-            self.step.state.stage_force.copy_from_slice(&self.buffers.residual);
+            self.state.stage_force.copy_from_slice(&self.buffers.residual);
         }
-        let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.step.regime, Regime::Dynamic { .. });
-        if trapezoidal && self.step.state.acceleration.is_empty() {
+        let trapezoidal = implicit.rule == Rule::Trapezoidal && matches!(self.regime, Regime::Dynamic { .. });
+        if trapezoidal && self.state.acceleration.is_empty() {
             self.implicit_start_acceleration(implicit);
         }
-        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
-        if self.step.report { self.implicit_report(implicit, dt) } else { StepReport::default() }
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        if self.report { self.implicit_report(implicit, dt) } else { StepReport::default() }
     }
 
     /// Contacts that take part in a sub-step of `dt` (s), with the forces of the last one.
     fn implicit_contacts(&mut self, dt: f64) {
-        let searches = self.step.state.counters.searches;
-        self.step.locate();
-        self.step.search();
-        if self.step.state.counters.searches != searches {
+        let step = self.substep(dt);
+        let (model, state) = (self.model, &mut *self.state);
+        let Workspace { mass_matrix, motion, frames, selection, contacts, supports, sweep, seconds, .. } =
+            &mut *self.workspace;
+        let (searches, clock) = (state.counters.searches, Instant::now());
+        locate(model, &state.displacement, frames, step.serial);
+        let located = clock.elapsed();
+        search(model, state, &mass_matrix.fixed, frames, selection, &mut sweep.open_close, step.serial);
+        let searched = clock.elapsed();
+        if state.counters.searches != searches {
             self.buffers.matrix.clear();
         }
-        let workspace = &mut *self.step.workspace;
-        workspace.speed_max = self.step.state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let (rule, size) = (&self.step.model.entrance, self.step.model.covers.mesh.size);
-        let reach = rule.reach * size + REACH_STEPS * dt * workspace.speed_max;
-        self.step.entrance(reach.min(rule.cutoff * size), 0.0);
-        self.step.load_supports(self.step.times(dt));
+        motion.speed_max = state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let (rule, size) = (&model.entrance, model.covers.mesh.size);
+        let gap = rule.reach * size + REACH_STEPS * dt * motion.speed_max;
+        let reach = Reach { gap: gap.min(rule.cutoff * size), ahead: 0.0 };
+        entrance(model, state, &step, reach, frames, selection, contacts);
+        seconds.search += (searched - located).as_secs_f64();
+        seconds.entrance += (clock.elapsed() - searched + located).as_secs_f64();
+        load_supports(model, state, &step, motion, &mut supports.rows);
         let buffers = &mut self.buffers;
-        buffers.forces_before.clear();
-        let forces = self.step.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
-        buffers.forces_before.extend(forces);
-        buffers.bearing_before.clear();
-        buffers.bearing_before.extend(self.step.workspace.rows.iter().map(|row| row.force));
+        buffers.start.contacts.clear();
+        let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        buffers.start.contacts.extend(forces);
+        buffers.start.supports.clear();
+        buffers.start.supports.extend(self.workspace.supports.rows.iter().map(|row| row.force));
         buffers.moved.fill(Vector::zeros());
     }
 
@@ -194,19 +226,19 @@ impl Substep<'_, '_> {
     fn implicit_loads(&mut self, before: bool, dt: f64) {
         let buffers = &mut *self.buffers;
         for (wanted, force, time) in
-            [(true, &mut buffers.applied, self.step.time + dt), (before, &mut buffers.applied_before, self.step.time)]
+            [(true, &mut buffers.applied, self.time + dt), (before, &mut buffers.start.applied, self.time)]
         {
             if !wanted {
                 continue;
             }
-            let share = ramp(self.step.regime, time - self.step.state.stage_start);
-            let whole = Window { from: self.step.time, to: self.step.time + dt };
-            let base = base_motion(self.step.model, self.step.regime, self.step.state, whole);
-            let pull = acceleration(self.step.model, self.step.state, time) * share - base;
-            for (force, mass) in force.iter_mut().zip(&*self.step.model.mass_matrix.row_sum) {
+            let share = ramp(self.regime, time - self.state.stage_start);
+            let whole = Window { from: self.time, to: self.time + dt };
+            let base = base_motion(self.model, self.regime, self.state, whole);
+            let pull = acceleration(self.model, self.state, time) * share - base;
+            for (force, mass) in force.iter_mut().zip(&*self.model.mass_matrix.row_sum) {
                 *force = pull * *mass;
             }
-            push_forces(self.step.model, self.step.state, time, share, force);
+            push_forces(self.model, self.state, time, share, force);
         }
     }
 }

@@ -15,7 +15,7 @@ mod cover_matrix;
 mod interval;
 mod motion;
 mod open_close;
-mod substep;
+mod step;
 
 use std::any::Any;
 

@@ -7,7 +7,7 @@ use enmm::state::{Model, State};
 
 use super::choices::Implicit;
 use super::consistent::push_mass;
-use super::substep::{Inertia, Substep};
+use super::step::{ImplicitStep, Inertia};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
 pub fn kinetic_energy(model: &Model, implicit: &Implicit, mass_matrix: &MassMatrix, velocity: &[Vector]) -> f64 {
@@ -35,22 +35,22 @@ pub fn stop(model: &Model, implicit: &Implicit, state: &mut State) {
     state.velocity.fill(Vector::zeros());
 }
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// M·a = forces at the start of the sub-step, solved for a; contacts have the limits that hold now.
     pub(super) fn implicit_start_acceleration(&mut self, implicit: &Implicit) {
         self.update_contacts();
-        let forces = self.step.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
-        self.buffers.forces_before.clear();
-        self.buffers.forces_before.extend(forces);
+        let forces = self.workspace.contacts.iter().map(|c| [c.history.normal_force, c.history.shear_force]);
+        self.buffers.start.contacts.clear();
+        self.buffers.start.contacts.extend(forces);
         self.start_balance();
         let buffers = &mut self.buffers;
         buffers.matrix.zero();
         self.add_elements(&implicit.element_mass, 1.0, 0.0);
         if self.finish_matrix().is_err() {
-            self.step.singular = true;
+            self.singular = true;
         }
         self.solve();
-        self.step.state.acceleration.extend(self.buffers.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
+        self.state.acceleration.extend(self.buffers.unknowns.chunks_exact(2).map(|a| Vector::new(a[0], a[1])));
     }
 
     /// Damps the velocities of the state relative to the rigid motion of every block by exp(−2ξπ·cs/√A·dt) (Eq. 11);
@@ -59,23 +59,23 @@ impl Substep<'_, '_> {
         if ratio == 0.0 || inertia.rests {
             return 0.0;
         }
-        let model = self.step.model;
+        let model = self.model;
         let mut taken = 0.0;
         for block in model.covers.blocks() {
-            if self.step.workspace.mass_matrix.fixed[block] {
+            if self.workspace.mass_matrix.fixed[block] {
                 continue;
             }
-            let before = block_energy(model, implicit, &self.step.state.velocity, block);
+            let before = block_energy(model, implicit, &self.state.velocity, block);
             let factor = libm::exp(-ratio * inertia.dt * model.block_frequency[block]);
             self.damp_block(implicit, block, factor);
-            taken += before - block_energy(model, implicit, &self.step.state.velocity, block);
+            taken += before - block_energy(model, implicit, &self.state.velocity, block);
         }
         taken
     }
 
     fn damp_block(&mut self, implicit: &Implicit, block: BlockId, factor: f64) {
-        let model = self.step.model;
-        let (state, buffers) = (&mut *self.step.state, &mut self.buffers);
+        let model = self.model;
+        let (state, buffers) = (&mut *self.state, &mut self.buffers);
         let range = model.covers.covers_of(block);
         let mass = &model.mass_matrix.row_sum;
         let total: f64 = model.mass_matrix.total[block];
@@ -107,7 +107,7 @@ impl Substep<'_, '_> {
     pub(super) fn mass_times_field(&mut self, implicit: &Implicit) {
         let buffers = &mut self.buffers;
         buffers.residual.fill(Vector::zeros());
-        for (mass, ids) in implicit.element_mass.iter().zip(&self.step.model.covers.element_covers) {
+        for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
             push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
     }

@@ -7,7 +7,7 @@ use enmm::contact::ContactState;
 use enmm::geometry::Vector;
 
 use super::choices::{Implicit, Rule};
-use super::substep::{CUT, Inertia, Substep};
+use super::step::{CUT, ImplicitStep, Inertia};
 
 /// Forces out of balance over the largest part at which a dynamic sub-step has settled.
 const BALANCED: f64 = 1e-5;
@@ -52,7 +52,7 @@ struct Balance {
     scale: f64,
 }
 
-impl Substep<'_, '_> {
+impl ImplicitStep<'_> {
     /// Iterates to the end of a sub-step; returns whether it has settled within the limits.
     pub(super) fn implicit_open_close(&mut self, implicit: &Implicit, inertia: &Inertia) -> bool {
         self.set_offset(implicit, inertia);
@@ -85,7 +85,7 @@ impl Substep<'_, '_> {
         };
         let enough = if inertia.rests { ENOUGH_STATIC } else { ENOUGH };
         let taken = settled || balance.residual <= enough * balance.scale;
-        self.step.state.counters.unsettled += u64::from(taken && !settled);
+        self.state.counters.unsettled += u64::from(taken && !settled);
         let settled = taken;
         self.count_implicit(inertia.dt, solutions);
         if inertia.rests {
@@ -98,7 +98,7 @@ impl Substep<'_, '_> {
     /// The time for which inertia counts in the next static sub-step: cut when this one has not settled, longer when it
     /// was easy, without a limit that matters when it took but a few solutions.
     fn renew_stretch(&mut self, settled: bool, solutions: u32, balanced: bool) {
-        let stretch = &mut self.step.state.static_stretch;
+        let stretch = &mut self.state.static_stretch;
         if !settled {
             *stretch *= CUT;
         } else if solutions <= FEW {
@@ -114,14 +114,14 @@ impl Substep<'_, '_> {
         self.implicit_internal();
         let changed = self.update_contacts();
         let [residual, scale] = self.implicit_residual(inertia);
-        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         Balance { changed, residual, scale }
     }
 
     /// New contacts that touch count as locked in the first factor: whether they open is then decided.
     fn presume_closed(&mut self) {
-        let touching = TOUCHING * self.step.model.covers.mesh.size;
-        for contact in self.step.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
+        let touching = TOUCHING * self.model.covers.mesh.size;
+        for contact in self.workspace.contacts.iter_mut().filter(|c| c.fresh && c.gap.abs() < touching) {
             contact.history.state = ContactState::Lock;
         }
     }
@@ -133,7 +133,7 @@ impl Substep<'_, '_> {
     fn search_line(&mut self, inertia: &Inertia) -> Balance {
         let buffers = &mut self.buffers;
         buffers.pressing.clear();
-        buffers.pressing.extend(self.step.workspace.contacts.iter().map(|c| c.history.normal_force));
+        buffers.pressing.extend(self.workspace.contacts.iter().map(|c| c.history.normal_force));
         let start = self.along();
         let (mut low, mut high) = ([0.0, start], None);
         let (mut share, mut reached) = (1.0, 0.0);
@@ -165,7 +165,7 @@ impl Substep<'_, '_> {
         self.implicit_internal();
         self.implicit_probe();
         self.implicit_residual(inertia);
-        self.step.workspace.seconds.elements += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.elements += clock.elapsed().as_secs_f64();
         self.along()
     }
 
@@ -185,7 +185,7 @@ impl Substep<'_, '_> {
 
     /// Inertia besides that of the displacement: −c·dt·v₀ and, by the trapezoidal rule, −a₀ (Eq. 67).
     fn set_offset(&mut self, implicit: &Implicit, inertia: &Inertia) {
-        let state = &*self.step.state;
+        let state = &*self.state;
         let buffers = &mut self.buffers;
         if inertia.rests {
             buffers.offset.fill(Vector::zeros());
@@ -203,8 +203,8 @@ impl Substep<'_, '_> {
     fn refactor(&mut self, inertia: &Inertia) -> bool {
         let clock = Instant::now();
         let done = self.implicit_factorise(inertia).is_ok();
-        self.step.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-        self.step.singular = !done;
+        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.singular = !done;
         done
     }
 
@@ -216,7 +216,7 @@ impl Substep<'_, '_> {
             (buffers.unknowns[2 * i], buffers.unknowns[2 * i + 1]) = (force.x, force.y);
         }
         buffers.matrix.solve(&mut buffers.unknowns);
-        self.step.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
     }
 
     fn largest_move(&self) -> f64 {
@@ -224,8 +224,8 @@ impl Substep<'_, '_> {
     }
 
     fn count_implicit(&mut self, dt: f64, solutions: u32) {
-        let contacts = self.step.workspace.contacts.len() as u64;
-        let counters = &mut self.step.state.counters;
+        let contacts = self.workspace.contacts.len() as u64;
+        let counters = &mut self.state.counters;
         counters.substeps += 1;
         counters.sweeps += u64::from(solutions);
         counters.sweeps_max = counters.sweeps_max.max(solutions);
@@ -236,6 +236,6 @@ impl Substep<'_, '_> {
 
     /// Contacts that carry force, for the report.
     pub(super) fn count_contacts(&self, which: ContactState) -> u32 {
-        self.step.workspace.contacts.iter().filter(|c| c.history.state == which).count() as u32
+        self.workspace.contacts.iter().filter(|c| c.history.state == which).count() as u32
     }
 }

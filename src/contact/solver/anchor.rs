@@ -19,8 +19,8 @@ pub struct BlockImpulse {
     pub moment: f64,
 }
 
-/// The same within the iteration: P, Z/M (m/s), L beside the turn in which the block last moved by more than what has
-/// settled, and the centroid of the block (m).
+/// The same within the iteration: P, Z/M (m/s), L beside the sequence number at which the block last moved by more
+/// than what has settled, and the centroid of the block (m).
 pub type PackedImpulse = [Vector; PACKED];
 /// Pairs of numbers of a [`PackedImpulse`].
 pub const PACKED: usize = 4;
@@ -38,9 +38,9 @@ pub struct Accumulators<'a> {
 }
 
 impl Accumulators<'_> {
-    /// Notes the turn in which a block of the run moves. Turns grow.
-    pub fn mark(&mut self, block: BlockId, turn: u32) {
-        self.block_impulse[block.index() - self.first_block.index()][2].y = f64::from(turn);
+    /// Notes the sequence number at which a block of the run moves. Numbers grow.
+    pub fn mark(&mut self, block: BlockId, number: u32) {
+        self.block_impulse[block.index() - self.first_block.index()][2].y = f64::from(number);
     }
 
     /// The runs before and from a block whose first cover is `cover` on.

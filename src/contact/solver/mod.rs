@@ -134,10 +134,10 @@ pub struct OpenClose {
 impl OpenClose {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let Sequence { wide_pairs, ends, first_turn, contacts, slots } = &self.sequence;
+        let Sequence { wide_pairs, ends, row_start, contacts, slots } = &self.sequence;
         let sequence = size_of_val(wide_pairs.as_slice())
             + size_of_val(ends.as_slice())
-            + size_of_val(first_turn.as_slice())
+            + size_of_val(row_start.as_slice())
             + size_of_val(contacts.as_slice())
             + size_of_val(slots.as_slice());
         let masses = size_of_val(self.masses.as_slice());
@@ -206,8 +206,8 @@ impl OpenClose {
             apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
         let report = self.sweeps(inputs, contacts, others);
-        self.finish(contacts, &approach.setting, options.serial);
-        self.supports.finish(others.rows);
+        self.store_forces(contacts, &approach.setting, options.serial);
+        self.supports.store_forces(others.rows);
         report
     }
 
@@ -215,7 +215,7 @@ impl OpenClose {
     fn begin(&mut self, inputs: SolverInputs, others: &OtherConstraints) {
         let SolverInputs { mass_matrix, options, approach } = inputs;
         let view = SolverView { mass_matrix, masses: &self.masses };
-        self.rows.resize(self.sequence.first_turn.len() - 1, WideContact::default());
+        self.rows.resize(self.sequence.row_start.len() - 1, WideContact::default());
         self.cover_impulse.clear();
         self.cover_impulse.resize(self.masses.len(), Vector::zeros());
         let none = Vector::zeros();
@@ -223,7 +223,7 @@ impl OpenClose {
         self.block_impulse.extend(approach.motion.iter().map(|motion| [none, none, none, motion.centre]));
         self.bolts.clear();
         self.bolts.extend(others.bolts.iter().map(|b| [0, 1].map(|k| Anchor::new(&b.pair, k, b.arms[k], &view))));
-        self.supports.load(others.rows, options.kick, &mut self.cover_impulse);
+        self.supports.warm_start(others.rows, options.kick, &mut self.cover_impulse);
     }
 
     /// One pass over the rows, part by part.
@@ -235,7 +235,7 @@ impl OpenClose {
     ) -> subdomain::SweepOutcome {
         let from = ContactView {
             contacts,
-            turns: &self.sequence.contacts,
+            order: &self.sequence.contacts,
             view: SolverView { mass_matrix, masses: &self.masses },
             options,
             approach,
@@ -248,7 +248,7 @@ impl OpenClose {
             cuts: &self.cuts,
             accumulators: all_blocks(&mut self.cover_impulse, &mut self.block_impulse),
         }
-        .run(&SubdomainPass { from, first_turn: &self.sequence.first_turn, kind })
+        .run(&SubdomainPass { from, row_start: &self.sequence.row_start, kind })
     }
 
     /// Sweeps over all contacts until they settle. Between full sweeps only pairs whose blocks moved are solved, until
@@ -262,11 +262,11 @@ impl OpenClose {
             all |= report.sweeps + 1 == options.sweeps_max;
             let block_pairs = self.sequence.wide_pairs.iter();
             let largest = block_pairs.map(|wide_pairs| wide_pairs.force).fold(f64::MIN_POSITIVE, f64::max);
-            let turns = subdomain::ROUNDS * self.sequence.wide_pairs.len() as u32;
-            let turn = report.sweeps * (turns + 1) + 1;
-            let outcome = self.pass(inputs, contacts, PassKind::Sweep { all, floor: LIGHT * largest, turn });
+            let numbers = subdomain::ROUNDS * self.sequence.wide_pairs.len() as u32;
+            let number = report.sweeps * (numbers + 1) + 1;
+            let outcome = self.pass(inputs, contacts, PassKind::Sweep { all, floor: LIGHT * largest, number });
             let support_change = self.supports.sweep(&mut self.cover_impulse);
-            let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, turn + turns);
+            let bolt_change = self.sweep_bolts(options, others.bolts, LIGHT * largest, number + numbers);
             let change = outcome.change.max(support_change).max(bolt_change);
             report.sweeps += 1;
             report.contacts_solved += outcome.contacts_solved;
@@ -283,7 +283,7 @@ impl OpenClose {
 
     /// One sweep over the bolts; returns the largest change of a force over its own size, or over a floor for slack
     /// ones.
-    fn sweep_bolts(&mut self, options: &SolverOptions, bolts: &mut [BoltRow], floor: f64, turn: u32) -> f64 {
+    fn sweep_bolts(&mut self, options: &SolverOptions, bolts: &mut [BoltRow], floor: f64, number: u32) -> f64 {
         let SolverOptions { dt, kick, theta, .. } = *options;
         let largest = bolts.iter().map(|b| b.force).fold(0.0, f64::max);
         let floor = floor.max(LIGHT * largest);
@@ -296,7 +296,7 @@ impl OpenClose {
             if step != 0.0 {
                 apply_to_bolt(anchors, bolt.direction * (-step * kick), &mut accumulators);
                 for block in anchors.iter().filter_map(|anchor| anchor.block) {
-                    accumulators.mark(block, turn);
+                    accumulators.mark(block, number);
                 }
                 change = change.max(step.abs() / force.max(floor));
                 bolt.force = force;
@@ -305,20 +305,20 @@ impl OpenClose {
         change
     }
 
-    /// Forces and states of all contacts.
-    fn finish(&self, contacts: &mut [VertexEdge], setting: &ContactSetting, serial: bool) {
-        let finish = |(contacts, slots): (&mut [VertexEdge], &[u32])| {
+    /// Stores forces and states in all contacts.
+    fn store_forces(&self, contacts: &mut [VertexEdge], setting: &ContactSetting, serial: bool) {
+        let store = |(contacts, slots): (&mut [VertexEdge], &[u32])| {
             for (contact, &slot) in contacts.iter_mut().zip(slots) {
                 let slot = slot as usize;
-                self.rows[slot / LANES].finish(slot % LANES, contact, setting);
+                self.rows[slot / LANES].store_force(slot % LANES, contact, setting);
             }
         };
         let slots = &self.sequence.slots;
         if serial || contacts.len() <= CONTACTS {
-            finish((contacts, slots));
+            store((contacts, slots));
         } else {
             let parts = contacts.par_chunks_mut(CONTACTS).zip(slots.par_chunks(CONTACTS));
-            parts.for_each(finish);
+            parts.for_each(store);
         }
     }
 

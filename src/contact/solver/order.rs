@@ -118,10 +118,10 @@ pub struct Sequence {
     pub wide_pairs: Vec<WidePairs>,
     /// The number of them up to the end of each part.
     pub ends: Vec<u32>,
-    /// First turn of each row, and the number of turns. A row has as many contacts as there are block pairs with so
-    /// many, in the first lanes.
-    pub first_turn: Vec<u32>,
-    /// Contact of each turn.
+    /// First position of each row in `contacts`, and the number of them. A row has as many contacts as there are block
+    /// pairs with so many, in the first lanes.
+    pub row_start: Vec<u32>,
+    /// Contacts in the order in which they are solved.
     pub contacts: Vec<u32>,
     /// Slot of each contact: its row times the number of lanes, and its lane.
     pub slots: Vec<u32>,
@@ -237,16 +237,16 @@ impl SolverOrder {
         groups.number_covers(blocks, pushed);
     }
 
-    /// Puts the block pairs and the contacts of a step in the order of their turns.
+    /// Puts the block pairs and the contacts of a step in the order in which they are solved.
     ///
     /// `near_sides` are those of the contacts.
     pub fn arrange(&mut self, near_sides: &[u32], view: &SolverView, sequence: &mut Sequence) {
-        let Sequence { wide_pairs, ends, first_turn, contacts, slots } = sequence;
+        let Sequence { wide_pairs, ends, row_start, contacts, slots } = sequence;
         self.count_contacts(near_sides, slots);
         wide_pairs.clear();
         ends.clear();
-        first_turn.clear();
-        let (mut first, mut turns) = (0, 0);
+        row_start.clear();
+        let (mut first, mut position) = (0, 0);
         for part in self.block_pairs.chunk_by(|a, b| a.subdomain == b.subdomain) {
             ends.resize(part[0].subdomain as usize, wide_pairs.len() as u32);
             let all = first..first + part.len() as u32;
@@ -257,11 +257,11 @@ impl SolverOrder {
             self.groups.form(&mut self.touching, &self.block_pairs, &self.pushed);
             for group in &self.groups.members {
                 let some = &group.block_pairs[..group.count];
-                let first_row = first_turn.len() as u32;
+                let first_row = row_start.len() as u32;
                 let counts = some.iter().map(|&m| self.count[m as usize]);
                 for row in 0..self.count[some[0] as usize] {
-                    first_turn.push(turns);
-                    turns += counts.clone().filter(|&count| count > row).count() as u32;
+                    row_start.push(position);
+                    position += counts.clone().filter(|&count| count > row).count() as u32;
                 }
                 let block_pairs = some.iter().map(|&m| (self.block_pairs[m as usize].blocks, self.count[m as usize]));
                 wide_pairs.push(WidePairs::new(first_row, block_pairs, view));
@@ -271,14 +271,14 @@ impl SolverOrder {
             }
         }
         ends.resize(2 * (self.leaf_block.len() - 1) - 1, wide_pairs.len() as u32);
-        first_turn.push(turns);
-        contacts.resize(turns as usize, 0);
+        row_start.push(position);
+        contacts.resize(position as usize, 0);
         for (slot, contact) in slots.iter_mut().zip(0..) {
             let next = &mut self.count[*slot as usize];
             *slot = *next;
             *next += LANES as u32;
-            let turn = first_turn[(*slot / LANES as u32) as usize] + *slot % LANES as u32;
-            contacts[turn as usize] = contact;
+            let position = row_start[(*slot / LANES as u32) as usize] + *slot % LANES as u32;
+            contacts[position as usize] = contact;
         }
     }
 

@@ -17,18 +17,18 @@ const GRAIN: usize = 2048;
 /// Kind of a pass over the block pairs.
 #[derive(Debug, Clone, Copy)]
 pub enum PassKind {
-    /// Rows are made, and push with the forces that are expected.
+    /// Prepares the rows, and starts warm: with the forces that are expected.
     Prepare,
-    /// Contacts are solved, in the first round `all` or those with a body that has moved since. Changes are measured
-    /// against `floor` (N/m) at least; `turn` is the first one.
-    Sweep { all: bool, floor: f64, turn: u32 },
+    /// Solves the contacts, in the first round `all` or those with a body that has moved since. Changes are measured
+    /// against `floor` (N/m) at least; `number` is the first sequence number.
+    Sweep { all: bool, floor: f64, number: u32 },
 }
 
 /// Data that all parts share.
 pub struct SubdomainPass<'a> {
     pub from: ContactView<'a>,
-    /// First turn of each row, and the number of turns.
-    pub first_turn: &'a [u32],
+    /// First position of each row in the order of the contacts, and the number of positions.
+    pub row_start: &'a [u32],
     pub kind: PassKind,
 }
 
@@ -125,18 +125,18 @@ impl Subdomain<'_> {
         (first, second)
     }
 
-    /// Does the work on the block pairs from `from` on, which belong to no half.
+    /// Does a pass over the separator: the block pairs from `from` on, which connect the two halves.
     #[inline(always)]
     fn between_halves<L: Lanes>(&mut self, lanes: L, from: usize, pass: &SubdomainPass) -> SweepOutcome {
         let mut outcome = SweepOutcome::default();
         match pass.kind {
-            PassKind::Prepare => self.load(lanes, from, pass),
-            PassKind::Sweep { all, floor, turn } => {
-                let first = turn + ROUNDS * (self.first[0] + from as u32);
+            PassKind::Prepare => self.prepare(lanes, from, pass),
+            PassKind::Sweep { all, floor, number } => {
+                let first = number + ROUNDS * (self.first[0] + from as u32);
                 let count = (self.wide_pairs.len() - from) as u32;
                 for round in 0..ROUNDS {
-                    let turn = first + round * count;
-                    outcome = outcome.and(self.sweep(lanes, from, pass, all && round == 0, floor, turn));
+                    let number = first + round * count;
+                    outcome = outcome.and(self.sweep(lanes, from, pass, all && round == 0, floor, number));
                 }
             }
         }
@@ -144,15 +144,15 @@ impl Subdomain<'_> {
     }
 
     #[inline(always)]
-    fn load<L: Lanes>(&mut self, lanes: L, from: usize, pass: &SubdomainPass) {
+    fn prepare<L: Lanes>(&mut self, lanes: L, from: usize, pass: &SubdomainPass) {
         let Self { wide_pairs, rows, first, accumulators, .. } = self;
         for wide_pairs in &mut wide_pairs[from..] {
             let rows = &mut rows[wide_pairs.rows_after(first[1])];
-            wide_pairs.load(lanes, rows, &pass.first_turn[wide_pairs.first_row as usize..], &pass.from, accumulators);
+            wide_pairs.prepare(lanes, rows, &pass.row_start[wide_pairs.first_row as usize..], &pass.from, accumulators);
         }
     }
 
-    /// One round, of which the first block pairs have the given turn.
+    /// One round, of which the first block pairs have the given sequence number.
     #[inline(always)]
     fn sweep<L: Lanes>(
         &mut self,
@@ -161,14 +161,14 @@ impl Subdomain<'_> {
         pass: &SubdomainPass,
         all: bool,
         floor: f64,
-        turn: u32,
+        number: u32,
     ) -> SweepOutcome {
         let Self { wide_pairs, rows, first, accumulators, .. } = self;
         let mut outcome = SweepOutcome::default();
-        for (wide_pairs, turn) in wide_pairs[from..].iter_mut().zip(turn..) {
+        for (wide_pairs, number) in wide_pairs[from..].iter_mut().zip(number..) {
             if all || wide_pairs.is_due(lanes, accumulators) {
                 let rows = &mut rows[wide_pairs.rows_after(first[1])];
-                let change = wide_pairs.solve(lanes, rows, &pass.from, ChangeMeasure { floor, turn }, accumulators);
+                let change = wide_pairs.solve(lanes, rows, &pass.from, ChangeMeasure { floor, number }, accumulators);
                 outcome = outcome.and(SweepOutcome { change, contacts_solved: u64::from(wide_pairs.contacts) });
             }
         }

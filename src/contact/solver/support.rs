@@ -94,7 +94,7 @@ impl SupportSystem {
     }
 
     /// Takes what the supports answer to in a step, and pushes with their forces so far.
-    pub fn load(&mut self, rows: &[SupportRow], kick: f64, cover_impulse: &mut [Vector]) {
+    pub fn warm_start(&mut self, rows: &[SupportRow], kick: f64, cover_impulse: &mut [Vector]) {
         for equation in &mut self.rows {
             let row = &rows[equation.row as usize];
             equation.rest = row.target - row.viscosity * row.approach;
@@ -167,8 +167,8 @@ impl SupportSystem {
         change / largest
     }
 
-    /// Leaves the forces in the rows of the step.
-    pub fn finish(&self, rows: &mut [SupportRow]) {
+    /// Stores the forces in the rows of the step.
+    pub fn store_forces(&self, rows: &mut [SupportRow]) {
         self.rows.iter().for_each(|equation| rows[equation.row as usize].force = equation.force);
     }
 }

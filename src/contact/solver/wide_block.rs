@@ -13,7 +13,7 @@ pub struct WideBlock<L: Values> {
     pub weighted: [L::F; 2],
     /// L (N·m·s/m).
     pub moment: L::F,
-    /// Turn in which it last moved by more than what has settled.
+    /// Sequence number at which it last moved by more than what has settled.
     pub moved: L::F,
     /// (1 + S/M)/M (m/kg).
     pub common: L::F,

@@ -31,11 +31,11 @@ pub struct WideContact {
     cohesion: F64x8,
     /// Normal force (N/m) at or below which each is open.
     open: F64x8,
-    /// First turn and the one after the last.
-    turns: [u32; 2],
+    /// Where its contacts are in the order.
+    range: [u32; 2],
     /// Bit masks of lanes: open contacts, and contacts in compression.
-    shut: u8,
-    pressed: u8,
+    open_lanes: u8,
+    compressed: u8,
     /// Whether spring or strength of one of them follow a curve.
     curved: bool,
 }
@@ -74,9 +74,9 @@ impl Start {
 
 /// Contacts and order from which a wide contact is made.
 pub struct ContactView<'a> {
-    /// Contacts of the step, and the one of each turn.
+    /// Contacts of the step, and the order in which they are solved.
     pub contacts: &'a [VertexEdge],
-    pub turns: &'a [u32],
+    pub order: &'a [u32],
     /// Masses.
     pub view: SolverView<'a>,
     /// Choices.
@@ -86,21 +86,21 @@ pub struct ContactView<'a> {
 }
 
 impl ContactView<'_> {
-    /// Contacts of the turns that come so many turns after the given ones.
+    /// Contacts that come `by` positions after those of a range.
     #[inline(always)]
-    fn later(&self, turns: [u32; 2], by: usize) -> impl Iterator<Item = usize> {
-        let [first, end] = turns.map(|turn| (turn as usize + by).min(self.turns.len()));
-        self.turns[first..end].iter().map(|&contact| contact as usize)
+    fn later(&self, range: [u32; 2], by: usize) -> impl Iterator<Item = usize> {
+        let [first, end] = range.map(|at| (at as usize + by).min(self.order.len()));
+        self.order[first..end].iter().map(|&contact| contact as usize)
     }
 
     /// Prefetches contacts that come later, and the points of those that are prefetched already.
     #[inline(always)]
-    fn fetch(&self, turns: [u32; 2]) {
-        for contact in self.later(turns, 2 * AHEAD) {
+    fn fetch(&self, range: [u32; 2]) {
+        for contact in self.later(range, 2 * AHEAD) {
             prefetch(&self.contacts[contact..=contact]);
         }
         let setting = &self.approach.setting;
-        for contact in self.later(turns, AHEAD) {
+        for contact in self.later(range, AHEAD) {
             let point = self.contacts[contact].point;
             let this = point.index()..=point.index();
             prefetch(&setting.boundary.covers[this.clone()]);
@@ -112,24 +112,24 @@ impl ContactView<'_> {
 }
 
 impl WideContact {
-    /// Takes the contacts of the turns from the first to the one after the last, with the forces that are expected;
+    /// Prepares the contacts of a range of the order, with the forces that are expected;
     /// first and second points lie in the blocks of a lane in their order.
     #[inline(always)]
-    pub fn load<L: Values>(
+    pub fn prepare<L: Values>(
         &mut self,
         lanes: L,
-        turns: [u32; 2],
+        range: [u32; 2],
         blocks: &[Bodies; 2],
         from: &ContactView,
         first_cover: CoverId,
     ) {
-        self.turns = turns;
+        self.range = range;
         self.points.iter_mut().for_each(Points::begin);
         self.curved = false;
         let mut start = Start::default();
-        let contacts = self.of(from.turns);
-        if from.turns.len() > FAR {
-            from.fetch(turns);
+        let contacts = self.of(from.order);
+        if from.order.len() > FAR {
+            from.fetch(range);
         }
         for (lane, &contact) in contacts.iter().enumerate() {
             self.take(lane, &from.contacts[contact as usize], &mut start, blocks, from, first_cover);
@@ -151,8 +151,8 @@ impl WideContact {
 
     /// Its contacts.
     #[inline(always)]
-    fn of<'a>(&self, turns: &'a [u32]) -> &'a [u32] {
-        &turns[self.turns[0] as usize..self.turns[1] as usize]
+    fn of<'a>(&self, order: &'a [u32]) -> &'a [u32] {
+        &order[self.range[0] as usize..self.range[1] as usize]
     }
 
     /// Whether no two of the first `count` lanes push the same cover.
@@ -262,9 +262,9 @@ impl WideContact {
 
     /// Leaves force and state in the contact of a lane.
     #[inline(always)]
-    pub fn finish(&self, lane: usize, contact: &mut VertexEdge, setting: &ContactSetting) {
-        let bears = self.shut >> lane & 1 == 0;
-        let torn = !bears & (self.pressed >> lane & 1 == 0);
+    pub fn store_force(&self, lane: usize, contact: &mut VertexEdge, setting: &ContactSetting) {
+        let bears = self.open_lanes >> lane & 1 == 0;
+        let torn = !bears & (self.compressed >> lane & 1 == 0);
         contact.end([self.force[0][lane], self.force[1][lane]], bears, torn, setting);
     }
 
@@ -317,7 +317,7 @@ impl WideContact {
         }
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
-        (self.shut, self.pressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
+        (self.open_lanes, self.compressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
         let limit = lanes.keep_above(limit, normal, open);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
@@ -348,7 +348,7 @@ impl WideContact {
     #[cold]
     #[inline(never)]
     fn follow(&self, from: &ContactView, asked: &mut F64x8, limits: &mut F64x8) {
-        for (lane, &contact) in self.of(from.turns).iter().enumerate() {
+        for (lane, &contact) in self.of(from.order).iter().enumerate() {
             let (contact, setting) = (&from.contacts[contact as usize], &from.approach.setting);
             let (closure, law) = (contact.closure(setting), contact.limits(setting));
             if closure.is_curved() {

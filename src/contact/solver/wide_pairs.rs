@@ -26,9 +26,9 @@ pub struct WidePairs {
     spin: [F64x8; 2],
     unit: [F64x8; 2],
     /// Sequence number up to which each pair is solved; pairs whose blocks have not moved since are skipped.
-    answered: F64x8,
-    /// A pair that is solved gets `share`·turn + `shift`: a single contact also counts its own impulse as solved, block
-    /// pairs without a free block are solved in every sweep, lanes without a block pair in none.
+    solved: F64x8,
+    /// A pair that is solved gets `share`·number + `shift`: a single contact also counts its own impulse as solved,
+    /// block pairs without a free block are solved in every sweep, lanes without a block pair in none.
     share: F64x8,
     shift: F64x8,
     /// Blocks of the first and of the second points of each block pair.
@@ -51,8 +51,8 @@ pub struct WidePairs {
 pub struct ChangeMeasure {
     /// Force (N/m) that counts at least as the size of a force.
     pub floor: f64,
-    /// Turn of the block pairs; turns grow.
-    pub turn: u32,
+    /// Sequence number of this solution of the block pairs; it grows with each.
+    pub number: u32,
 }
 
 impl WidePairs {
@@ -74,7 +74,7 @@ impl WidePairs {
             common: [[0.0; LANES]; 2],
             spin: [[0.0; LANES]; 2],
             unit: [[0.0; LANES]; 2],
-            answered: [0.0; LANES],
+            solved: [0.0; LANES],
             share: [0.0; LANES],
             shift: [f64::INFINITY; LANES],
             force: 0.0,
@@ -122,16 +122,16 @@ impl WidePairs {
     pub fn is_due<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> bool {
         let moments = &accumulators.block_impulse.as_flattened()[2..];
         let [a, b] = [lanes.gather_from(moments, &self.sums[0])[1], lanes.gather_from(moments, &self.sums[1])[1]];
-        lanes.at_most(lanes.max(a, b), lanes.load(&self.answered)) != u8::MAX
+        lanes.at_most(lanes.max(a, b), lanes.load(&self.solved)) != u8::MAX
     }
 
-    /// Makes the rows and pushes with the forces that are expected of the contacts.
+    /// Prepares the rows, and starts warm: with the forces that are expected of the contacts.
     #[inline(always)]
-    pub fn load<L: Lanes>(
+    pub fn prepare<L: Lanes>(
         &mut self,
         lanes: L,
         rows: &mut [WideContact],
-        first_turn: &[u32],
+        row_start: &[u32],
         from: &ContactView,
         accumulators: &mut Accumulators,
     ) {
@@ -143,16 +143,16 @@ impl WidePairs {
             (0..2).for_each(|k| self.sums[k].set(lane, sums[k]));
         }
         let blocks = [0, 1].map(|k: usize| Bodies::new(&self.blocks[k], mass_matrix, from.approach.motion));
-        for (k, (row, turns)) in rows.iter_mut().zip(first_turn.windows(2)).enumerate() {
-            let (turns, first_cover) = ([turns[0], turns[1]], accumulators.first_cover);
+        for (k, (row, range)) in rows.iter_mut().zip(row_start.windows(2)).enumerate() {
+            let (range, first_cover) = ([range[0], range[1]], accumulators.first_cover);
             if k < self.wide as usize {
-                row.load(lanes, turns, &blocks, from, first_cover);
+                row.prepare(lanes, range, &blocks, from, first_cover);
             } else {
-                row.load(First, turns, &blocks, from, first_cover);
+                row.prepare(First, range, &blocks, from, first_cover);
             }
         }
         let (wide, narrow) = rows.split_at(self.wide as usize);
-        let mut all = self.begin(lanes, accumulators);
+        let mut all = self.gather(lanes, accumulators);
         for row in wide {
             all.warm_start(lanes, row, from, accumulators);
         }
@@ -163,7 +163,7 @@ impl WidePairs {
             }
             all.rejoin(lanes, &first);
         }
-        self.leave(lanes, &all.sides, accumulators);
+        self.store_impulses(lanes, &all.sides, accumulators);
         self.force = lanes.greatest(all.largest);
     }
 
@@ -174,11 +174,11 @@ impl WidePairs {
         lanes: L,
         rows: &mut [WideContact],
         from: &ContactView,
-        ChangeMeasure { floor, turn }: ChangeMeasure,
+        ChangeMeasure { floor, number }: ChangeMeasure,
         accumulators: &mut Accumulators,
     ) -> f64 {
         let (wide, narrow) = rows.split_at_mut(self.wide as usize);
-        let mut all = self.begin(lanes, accumulators);
+        let mut all = self.gather(lanes, accumulators);
         for row in wide {
             all.solve(lanes, row, from, floor, accumulators);
         }
@@ -189,20 +189,20 @@ impl WidePairs {
             }
             all.rejoin(lanes, &first);
         }
-        let turn = lanes.splat(f64::from(turn));
-        let moved = lanes.keep_above(turn, all.change, lanes.splat(MOVES * from.options.tolerance));
+        let number = lanes.splat(f64::from(number));
+        let moved = lanes.keep_above(number, all.change, lanes.splat(MOVES * from.options.tolerance));
         for side in &mut all.sides {
             side.moved = lanes.max(moved, side.moved);
         }
-        self.leave(lanes, &all.sides, accumulators);
-        let answered = lanes.load(&self.share) * turn + lanes.load(&self.shift);
-        lanes.store(answered, &mut self.answered);
+        self.store_impulses(lanes, &all.sides, accumulators);
+        let solved = lanes.load(&self.share) * number + lanes.load(&self.shift);
+        lanes.store(solved, &mut self.solved);
         self.force = lanes.greatest(all.largest);
         lanes.greatest(all.change)
     }
 
     #[inline(always)]
-    fn begin<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> PairsInProgress<L> {
+    fn gather<L: Lanes>(&self, lanes: L, accumulators: &Accumulators) -> PairsInProgress<L> {
         let sides = [self.side(lanes, 0, accumulators), self.side(lanes, 1, accumulators)];
         PairsInProgress { sides, largest: lanes.splat(0.0), change: lanes.splat(0.0) }
     }
@@ -223,9 +223,9 @@ impl WidePairs {
         }
     }
 
-    /// Leaves the sums with the blocks: the second ones first, since a first one may stand in the place of a held one.
+    /// Stores the impulse sums of blocks: second ones first, since a first one may stand in the place of a held one.
     #[inline(always)]
-    fn leave<L: Lanes>(&self, lanes: L, sides: &[WideBlock<L>; 2], accumulators: &mut Accumulators) {
+    fn store_impulses<L: Lanes>(&self, lanes: L, sides: &[WideBlock<L>; 2], accumulators: &mut Accumulators) {
         let block_impulse = accumulators.block_impulse.as_flattened_mut();
         for k in [1, 0] {
             let (side, at) = (&sides[k], &self.sums[k]);

@@ -4,23 +4,23 @@ use std::ops::Range;
 
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{Common, Spread};
+use crate::mechanics::block_lanes::{RigidScatter, RigidVelocity};
 use crate::mechanics::{Chunk, Damping, MassMatrix};
 use crate::state::Model;
 
 use super::DECAY_MAX;
 
 /// Rigid-body velocity that the covers of a chunk receive from their block, when it can move.
-pub(super) fn spread<'a>(
+pub(super) fn scatter<'a>(
     mass_matrix: &'a MassMatrix,
     (part, block): (&Chunk, BlockId),
     movable: bool,
     exposed: &'a [bool],
-    common: &'a Common,
-) -> Option<Spread<'a>> {
+    common: &'a RigidVelocity,
+) -> Option<RigidScatter<'a>> {
     let covers = part.covers.clone();
     let inverse = inverse(mass_matrix, movable || mass_matrix.is_free(block), covers.clone());
-    (*common != Common::default()).then(|| Spread { common, inverse, exposed: &exposed[covers] })
+    (*common != RigidVelocity::default()).then(|| RigidScatter { common, inverse, exposed: &exposed[covers] })
 }
 
 /// 1/m of covers unless they can all move.

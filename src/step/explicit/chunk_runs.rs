@@ -6,10 +6,12 @@ use std::ops::Range;
 use enmm_lanes::{Kernel, Lanes, Table, dispatch};
 
 use crate::geometry::Vector;
-use crate::mechanics::Chunks;
+use crate::mechanics::{BlockMotion, BlockStart, Chunks};
+use crate::state::ChunkSums;
 
 /// Covers below which a run of chunks is not split between threads.
 const GRAIN: usize = 4096;
+
 /// Covers below which a run of chunks is not split between threads.
 pub(super) fn grain(serial: bool) -> usize {
     if serial || rayon::current_num_threads() == 1 { usize::MAX } else { GRAIN }
@@ -20,33 +22,61 @@ thread_local! {
     static TABLES: RefCell<[Table; 2]> = RefCell::default();
 }
 
-/// Output slices that can be cut between chunks.
-pub(super) trait Cut: Sized + Send {
-    /// The outputs of some covers, blocks and chunks, and the rest.
-    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self);
+/// What loops over chunks write: slices for all chunks, for a run of them or for one. A loop leaves out what it does
+/// not write.
+#[derive(Default)]
+pub(super) struct ChunkSlices<'o> {
+    /// Velocities of covers (m/s).
+    pub velocity: &'o mut [Vector],
+    /// Displacements of covers (m).
+    pub displacement: &'o mut [Vector],
+    /// Centroid and spin of blocks.
+    pub motion: &'o mut [BlockMotion],
+    /// How blocks moved at the start of the step.
+    pub start: &'o mut [BlockStart],
+    /// Sums over each chunk.
+    pub sums: &'o mut [ChunkSums],
+}
 
-    /// Outputs on covers that are prefetched before they are written.
-    fn asked(&self) -> &[Vector] {
-        &[]
+impl ChunkSlices<'_> {
+    /// The slices of some covers, blocks and chunks, and the rest.
+    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self) {
+        let (velocity, v) = split(self.velocity, covers);
+        let (displacement, u) = split(self.displacement, covers);
+        let (motion, m) = split(self.motion, blocks);
+        let (start, from) = split(self.start, blocks);
+        let (sums, s) = split(self.sums, chunks);
+        let rest = Self { velocity: v, displacement: u, motion: m, start: from, sums: s };
+        (Self { velocity, displacement, motion, start, sums }, rest)
     }
 }
 
-/// Work on a run of chunks with its outputs.
-pub(super) trait Work: Sync {
-    type Out<'o>: Cut;
-    /// Does the work on a chunk; `next` are the following outputs, to prefetch.
-    fn chunk<L: Lanes>(&self, lanes: L, chunk: usize, out: Self::Out<'_>, next: &[Vector], tables: &mut [Table; 2]);
+/// Cuts a slice, which may be left out.
+fn split<T>(slice: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
+    let at = at.min(slice.len());
+    slice.split_at_mut(at)
+}
+
+/// A loop over chunks.
+pub(super) trait ChunkLoop: Sync {
+    /// Does the work on a chunk; `next` are the velocities behind its own, to prefetch.
+    fn chunk<L: Lanes>(&self, lanes: L, chunk: usize, out: ChunkSlices, next: &[Vector], tables: &mut [Table; 2]);
+}
+
+/// Does a loop over all chunks, split between threads down to `grain` covers.
+pub(super) fn run<W: ChunkLoop>(work: &W, chunks: &Chunks, out: ChunkSlices, grain: usize) {
+    Run { work, chunks, range: 0..chunks.len(), out }.share(grain);
 }
 
 /// A run of chunks in the hands of one thread.
-pub(super) struct Run<'a, 'o, W: Work> {
-    pub work: &'a W,
-    pub chunks: &'a Chunks,
-    pub range: Range<usize>,
-    pub out: W::Out<'o>,
+struct Run<'a, 'o, W> {
+    work: &'a W,
+    chunks: &'a Chunks,
+    range: Range<usize>,
+    out: ChunkSlices<'o>,
 }
 
-impl<W: Work> Run<'_, '_, W> {
+impl<W: ChunkLoop> Run<'_, '_, W> {
     fn cut(self, at: usize) -> (Self, Self) {
         let Self { work, chunks, range, out } = self;
         let (start, end) = (chunks.get(range.start), chunks.get(at));
@@ -57,7 +87,7 @@ impl<W: Work> Run<'_, '_, W> {
     }
 
     /// Splits the run between threads down to `grain` covers.
-    pub fn share(self, grain: usize) {
+    fn share(self, grain: usize) {
         let Range { start, end } = self.range;
         let covers = self.chunks.get(end - 1).covers.end - self.chunks.get(start).covers.start;
         if covers > grain && end - start > 1 {
@@ -70,12 +100,12 @@ impl<W: Work> Run<'_, '_, W> {
 }
 
 /// A run with the tables of its thread.
-struct InHand<'a, 'o, 't, W: Work> {
+struct InHand<'a, 'o, 't, W> {
     run: Run<'a, 'o, W>,
     tables: &'t mut [Table; 2],
 }
 
-impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
+impl<W: ChunkLoop> Kernel for InHand<'_, '_, '_, W> {
     type Output = ();
 
     #[inline(always)]
@@ -84,7 +114,7 @@ impl<W: Work> Kernel for InHand<'_, '_, '_, W> {
         while rest.range.len() > 1 {
             let next = rest.range.start + 1;
             let (first, others) = rest.cut(next);
-            first.work.chunk(lanes, first.range.start, first.out, others.out.asked(), tables);
+            first.work.chunk(lanes, first.range.start, first.out, others.out.velocity, tables);
             rest = others;
         }
         rest.work.chunk(lanes, rest.range.start, rest.out, &[], tables);

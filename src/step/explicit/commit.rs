@@ -1,159 +1,172 @@
 //! The end of a sub-step: velocities, positions, contact histories and the ledger.
 
-use std::time::Instant;
-
-use crate::contact::ContactState;
+use crate::contact::{BoltRow, BoltState, ContactState};
 use crate::geometry::Vector;
-use crate::mechanics;
-use crate::state::{Ledger, Workspace};
+use crate::mechanics::{self, MassMatrix};
+use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, State, SweepBuffers, Workspace};
 
-use super::finish::{Finish, Finished, Totals};
-use super::{Regime, Step, StepReport, StepTimes, blocks, chunk_runs, guard, report};
+use super::chunk_runs::{self, ChunkSlices};
+use super::columns::move_columns;
+use super::finish::Finish;
+use super::predict::acceleration;
+use super::settle::{settle_contacts, settle_supports};
+use super::turn::turn;
+use super::works::{contact_works, external_work, extra};
+use super::{Regime, StepOutcome, StepReport, Substep, guard, report};
 
-impl Step<'_> {
-    /// Ends a sub-step; returns the report of its start when one is wanted.
-    pub(super) fn commit(&mut self, times: StepTimes) -> StepReport {
-        let StepTimes { dt, .. } = times;
-        let clock = Instant::now();
-        let totals = self.finish(times);
-        self.settle_contacts(times);
-        let works = self.works(times, &totals);
-        let report = if self.report { self.report(times, &works) } else { StepReport::default() };
-        self.capture_stage_force(times.kick);
-        self.commit_columns(dt);
-        if self.report {
-            self.drift(dt);
+/// Ends a sub-step; the outcome holds the report of its start when one is wanted.
+pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) -> StepOutcome {
+    let Workspace { mass_matrix, motion, sums, frames, contacts, outcomes, supports, sweep, .. } = workspace;
+    let totals = finish(model, state, step, mass_matrix, motion, sweep, sums);
+    let setting = model.contact_setting(&state.laws, frames, workspace.selection.strength);
+    let (velocities, counters) = ([&state.velocity[..], &motion.predicted], &mut state.counters);
+    settle_contacts(setting, step, velocities, contacts, &mut state.contacts, outcomes, counters);
+    settle_supports(&supports.rows, &mut state.support_force);
+    let mut works = contact_works(model, step.kick, velocities, outcomes, supports);
+    works.damping = totals.damping;
+    let forces = (extra(model, state, step), totals.row_sum);
+    works.external_work += external_work(step.kick, velocities, forces, &workspace.load_force);
+    let report = if step.report { start_report(model, state, step, &works, workspace) } else { StepReport::default() };
+    let Workspace { mass_matrix, motion, sums, supports, sweep, .. } = workspace;
+    keep_stage_force(model, state, step, mass_matrix, motion);
+    move_columns(step, &motion.columns, &mut state.columns);
+    if step.report {
+        drift(step.dt, &motion.predicted, &mut state.displacement, sums);
+    }
+    turn(model, step, mass_matrix, &sweep.push, motion, &mut state.displacement, sums);
+    settle_bolts(model, &supports.bolts, &state.displacement, &mut state.bolts);
+    std::mem::swap(&mut state.velocity, &mut motion.predicted);
+    state.ledger.add_works(&works, 1.0);
+    state.dt_last = step.dt;
+    let is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(model).powi(2);
+    StepOutcome { report, end: step.time + step.dt, is_sound, is_singular: false }
+}
+
+/// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers unless a report wants the
+/// positions before.
+fn finish(
+    model: &Model,
+    state: &mut State,
+    step: &Substep,
+    mass_matrix: &MassMatrix,
+    motion: &mut MotionBuffers,
+    SweepBuffers { increment, push, .. }: &SweepBuffers,
+    sums: &mut [ChunkSums],
+) -> ChunkSums {
+    let is_loaded = extra(model, state, step) != Vector::zeros();
+    let MotionBuffers { predicted, blocks, start, damping, movable, exposed, .. } = motion;
+    let finish = Finish {
+        model,
+        mass_matrix,
+        before: &state.velocity,
+        motion: blocks,
+        start,
+        push,
+        increment,
+        damping,
+        movable,
+        exposed,
+        moves_for: if step.report { 0.0 } else { step.dt },
+        is_loaded,
+        grain: chunk_runs::grain(step.serial),
+    };
+    let displacement = &mut state.displacement;
+    finish.run(ChunkSlices { velocity: predicted, displacement, sums, ..ChunkSlices::default() })
+}
+
+/// Moves the covers with the final velocities (m/s) after a report.
+fn drift(dt: f64, velocity: &[Vector], displacement: &mut [Vector], sums: &mut [ChunkSums]) {
+    displacement.iter_mut().zip(velocity).for_each(|(u, v)| *u += v * dt);
+    sums.iter_mut().for_each(|sums| sums.is_near = false);
+}
+
+/// Keeps forces and lengths of the bolts that have carried force.
+fn settle_bolts(model: &Model, rows: &[BoltRow], displacement: &[Vector], bolts: &mut [BoltState]) {
+    for row in rows {
+        let segment = &model.bolts[row.segment as usize];
+        let bolt = &mut bolts[row.segment as usize];
+        let length = segment.span(&model.covers.star_position, displacement).norm();
+        *bolt = segment.after(bolt, length, row.force);
+    }
+}
+
+/// Changes of the velocities (m/s) of each cover by all forces, cover by cover: what is more than damping leaves.
+fn each_change(
+    model: &Model,
+    state: &State,
+    mass_matrix: &MassMatrix,
+    motion: &mut MotionBuffers,
+    mut see: impl FnMut(usize, Vector),
+) {
+    let MotionBuffers { damped, damping, predicted, .. } = motion;
+    for block in model.covers.blocks() {
+        let own = model.covers.covers_of(block);
+        damped.clear();
+        damped.resize(own.len(), Vector::zeros());
+        if !mass_matrix.fixed[block] {
+            let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
+            mechanics::damp(&covers, damping[block], damped);
         }
-        self.turn(dt);
-        let state = &mut *self.state;
-        for row in &self.workspace.bolts {
-            let segment = &self.model.bolts[row.segment as usize];
-            let bolt = &mut state.bolts[row.segment as usize];
-            let length = segment.span(&self.model.covers.star_position, &state.displacement).norm();
-            *bolt = segment.after(bolt, length, row.force);
-        }
-        std::mem::swap(&mut state.velocity, &mut self.workspace.predicted);
-        state.ledger.add_works(&works, 1.0);
-        state.dt_last = dt;
-        self.time += dt;
-        self.workspace.seconds.commit += clock.elapsed().as_secs_f64();
-        report
+        own.zip(&*damped).for_each(|(i, damped)| see(i, predicted[i] - damped));
     }
+}
 
-    /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers unless a report wants the
-    /// positions before.
-    fn finish(&mut self, StepTimes { dt, window, .. }: StepTimes) -> Totals {
-        let is_loaded = self.extra(window) != Vector::zeros();
-        let (model, state) = (self.model, &mut *self.state);
-        let Workspace {
-            mass_matrix,
-            predicted,
-            increment,
-            motion,
-            start,
-            push,
-            sums,
-            serial,
-            damping,
-            movable,
-            exposed,
-            ..
-        } = &mut *self.workspace;
-        let finish = Finish {
-            model,
-            mass_matrix,
-            before: &state.velocity,
-            motion,
-            start,
-            push,
-            increment,
-            damping,
-            movable,
-            exposed,
-            moves_for: if self.report { 0.0 } else { dt },
-            is_loaded,
-            grain: chunk_runs::grain(*serial),
-        };
-        let displacement = &mut state.displacement;
-        let totals = finish.run(Finished { velocity: predicted, displacement, sums });
-        self.is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(model).powi(2);
-        totals
+/// Energies at the start of this sub-step and the unbalanced ratio.
+fn start_report(model: &Model, state: &State, step: &Substep, works: &Ledger, workspace: &mut Workspace) -> StepReport {
+    let Workspace { mass_matrix, motion, load_force, .. } = workspace;
+    let unbalanced = unbalanced(model, state, step, load_force, mass_matrix, motion);
+    let kinetic = |velocity: &[Vector]| report::kinetic(model, mass_matrix, &state.displacement, velocity);
+    let mut ledger = state.ledger;
+    ledger.add_works(works, 0.5);
+    ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&motion.predicted));
+    ledger.strain = report::strain(model, state);
+    ledger.potential = report::potential(model, state);
+    ledger.stored = report::stored(model, state, workspace);
+    ledger.bolt_stored = report::bolt_stored(model, state);
+    let contacts = workspace.contacts.iter();
+    let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
+    StepReport {
+        time: step.time,
+        dt: step.dt,
+        ledger,
+        unbalanced,
+        kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state),
+        locked: count(ContactState::Lock),
+        slipping: count(ContactState::Slip),
+        penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
+        speed_max: report::speed_max(model, state),
     }
+}
 
-    /// Moves the covers with the final velocities after a report.
-    fn drift(&mut self, dt: f64) {
-        for (u, v) in self.state.displacement.iter_mut().zip(&self.workspace.predicted) {
-            *u += v * dt;
-        }
-        self.workspace.sums.iter_mut().for_each(|sums| sums.is_near = false);
-    }
+/// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
+fn unbalanced(
+    model: &Model,
+    state: &State,
+    step: &Substep,
+    load_force: &[Vector],
+    mass_matrix: &MassMatrix,
+    motion: &mut MotionBuffers,
+) -> f64 {
+    let masses = &model.mass_matrix;
+    let acceleration = acceleration(model, state, step);
+    let load = |i: usize| load_force.get(i).copied().unwrap_or_default();
+    let weights = masses.row_sum.iter().map(|mass| acceleration * *mass).enumerate();
+    let applied: f64 = weights.map(|(i, weight)| (load(i) + weight).norm_squared()).sum();
+    let mut net = 0.0;
+    each_change(model, state, mass_matrix, motion, |i, change| {
+        net += (change * (masses.mass[i] / step.kick)).norm_squared();
+    });
+    let stage: f64 = state.stage_force.iter().map(Vector::norm_squared).sum();
+    report::unbalanced(net, applied.max(stage)).sqrt()
+}
 
-    /// Changes of the velocities (m/s) of each cover by all forces, cover by cover: what is more than damping leaves.
-    fn each_change(&mut self, mut see: impl FnMut(usize, Vector)) {
-        let (model, state) = (self.model, &*self.state);
-        let Workspace { mass_matrix, damped, predicted, .. } = &mut *self.workspace;
-        for block in model.covers.blocks() {
-            let own = model.covers.covers_of(block);
-            damped.clear();
-            damped.resize(own.len(), Vector::zeros());
-            if !mass_matrix.fixed[block] {
-                let covers = report::block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
-                mechanics::damp(&covers, blocks::block_damping(model, mass_matrix, self.damping, block), damped);
-            }
-            own.zip(&*damped).for_each(|(i, damped)| see(i, predicted[i] - damped));
-        }
+/// The forces out of balance in the first step of a static stage that begins under full load.
+fn keep_stage_force(model: &Model, state: &mut State, step: &Substep, masses: &MassMatrix, motion: &mut MotionBuffers) {
+    if state.stage_step > 0 || !matches!(step.regime, Regime::Static { ramp: 0.0 }) {
+        return;
     }
-
-    /// Energies at the start of this sub-step and the unbalanced ratio.
-    fn report(&mut self, times: StepTimes, works: &Ledger) -> StepReport {
-        let unbalanced = self.unbalanced(times);
-        let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
-        let kinetic =
-            |velocity: &[Vector]| report::kinetic(model, &workspace.mass_matrix, &state.displacement, velocity);
-        let mut ledger = state.ledger;
-        ledger.add_works(works, 0.5);
-        ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&workspace.predicted));
-        ledger.strain = report::strain(model, state);
-        ledger.potential = report::potential(model, state);
-        ledger.stored = report::stored(model, state, workspace);
-        ledger.bolt_stored = report::bolt_stored(model, state);
-        let contacts = workspace.contacts.iter();
-        let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
-        StepReport {
-            time: self.time,
-            dt: times.dt,
-            ledger,
-            unbalanced,
-            kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state),
-            locked: count(ContactState::Lock),
-            slipping: count(ContactState::Slip),
-            penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
-            speed_max: report::speed_max(model, state),
-        }
-    }
-
-    /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).
-    fn unbalanced(&mut self, StepTimes { kick, window, .. }: StepTimes) -> f64 {
-        let mass_matrix = &self.model.mass_matrix;
-        let acceleration = self.acceleration(window);
-        let load = |i: usize| self.workspace.load_force.get(i).copied().unwrap_or_default();
-        let weights = mass_matrix.row_sum.iter().map(|mass| acceleration * *mass).enumerate();
-        let applied: f64 = weights.map(|(i, weight)| (load(i) + weight).norm_squared()).sum();
-        let mut net = 0.0;
-        self.each_change(|i, change| net += (change * (mass_matrix.mass[i] / kick)).norm_squared());
-        let stage: f64 = self.state.stage_force.iter().map(Vector::norm_squared).sum();
-        report::unbalanced(net, applied.max(stage)).sqrt()
-    }
-
-    /// The forces out of balance in the first step of a static stage that begins under full load; they acted for `kick`
-    /// (s).
-    fn capture_stage_force(&mut self, kick: f64) {
-        if self.state.stage_step > 0 || !matches!(self.regime, Regime::Static { ramp: 0.0 }) {
-            return;
-        }
-        let mass = &self.model.mass_matrix.mass;
-        let mut stage_force = std::mem::take(&mut self.state.stage_force);
-        self.each_change(|i, change| stage_force[i] = change * (mass[i] / kick));
-        self.state.stage_force = stage_force;
-    }
+    let mass = &model.mass_matrix.mass;
+    let mut stage_force = std::mem::take(&mut state.stage_force);
+    each_change(model, state, masses, motion, |i, change| stage_force[i] = change * (mass[i] / step.kick));
+    state.stage_force = stage_force;
 }

@@ -5,12 +5,12 @@ use enmm_lanes::{Lanes, Table};
 use crate::contact::BlockImpulse;
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{Common, End, Wants, WorkSums};
+use crate::mechanics::block_lanes::{FinishFlags, FinishSlices, RigidVelocity, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix};
 use crate::state::{ChunkSums, Model};
 
-use super::blocks::{inertial, is_damping, spread};
-use super::chunk_runs::{Cut, Run, Work};
+use super::blocks::{inertial, is_damping, scatter};
+use super::chunk_runs::{self, ChunkLoop, ChunkSlices};
 
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
 const NEAR: f64 = 0.99;
@@ -44,30 +44,11 @@ pub(super) struct Finish<'a> {
     pub grain: usize,
 }
 
-/// Output slices of the end of a step.
-pub(super) struct Finished<'o> {
-    pub velocity: &'o mut [Vector],
-    pub displacement: &'o mut [Vector],
-    pub sums: &'o mut [ChunkSums],
-}
-
-impl Cut for Finished<'_> {
-    fn cut(self, covers: usize, _: usize, chunks: usize) -> (Self, Self) {
-        let (velocity, velocity_rest) = self.velocity.split_at_mut(covers);
-        let (displacement, displacement_rest) = self.displacement.split_at_mut(covers);
-        let (sums, sums_rest) = self.sums.split_at_mut(chunks);
-        let rest = Finished { velocity: velocity_rest, displacement: displacement_rest, sums: sums_rest };
-        (Finished { velocity, displacement, sums }, rest)
-    }
-}
-
-impl Work for Finish<'_> {
-    type Out<'o> = Finished<'o>;
-
+impl ChunkLoop for Finish<'_> {
     #[inline(always)]
-    fn chunk<L: Lanes>(&self, lanes: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
+    fn chunk<L: Lanes>(&self, lanes: L, k: usize, out: ChunkSlices, _: &[Vector], _: &mut [Table; 2]) {
         let chunk = self.model.chunks.get(k);
-        let Finished { velocity, displacement, sums: [sums] } = out else { return };
+        let ChunkSlices { velocity, displacement, sums: [sums], .. } = out else { return };
         (sums.works, sums.row_sum, sums.damping) = Default::default();
         (sums.fastest, sums.squares) = (0.0, 0.0);
         let mut farthest = 0.0;
@@ -76,9 +57,9 @@ impl Work for Finish<'_> {
             let local = covers.start - chunk.covers.start..covers.end - chunk.covers.start;
             let of_part = chunk
                 .part_of
-                .and_then(|_| spread(self.mass_matrix, (chunk, block), self.movable[k], self.exposed, &common));
-            let mut end = End {
-                spread: of_part,
+                .and_then(|_| scatter(self.mass_matrix, (chunk, block), self.movable[k], self.exposed, &common));
+            let mut end = FinishSlices {
+                scatter: of_part,
                 star: &self.model.covers.star_position[covers.clone()],
                 mass: &self.mass_matrix.mass[covers.clone()],
                 inertial: &inertial(self.mass_matrix, block)[covers.clone()],
@@ -104,22 +85,27 @@ impl Work for Finish<'_> {
 
 impl Finish<'_> {
     #[inline(always)]
-    fn block<L: Lanes>(&self, lanes: L, block: BlockId, end: &mut End) -> (WorkSums, [f64; 2], f64) {
+    fn block<L: Lanes>(&self, lanes: L, block: BlockId, end: &mut FinishSlices) -> (WorkSums, [f64; 2], f64) {
         let (mass_matrix, push, from) = (self.mass_matrix, &self.push[block], &self.start[block].from);
         let is_pushed = *push != BlockImpulse::default() && mass_matrix.is_free(block);
-        let mut common = Common::default();
+        let mut common = RigidVelocity::default();
         if is_pushed {
             let share = mass_matrix.inverse_total[block];
             let velocity = (push.impulse * (1.0 + mass_matrix.square[block] * share) - push.weighted) * share;
             let centre = self.motion[block].centre - from.position;
-            common = Common::about(velocity, mass_matrix.spin[block] * push.moment, centre);
+            common = RigidVelocity::about(velocity, mass_matrix.spin[block] * push.moment, centre);
             common.weighted = push.impulse * -share;
         }
         let is_damped = is_damping(self.damping[block]);
         let bits = end.increment.iter().fold(0, |bits, v| bits | v.x.to_bits() | v.y.to_bits());
-        let wants =
-            Wants { moves_for: self.moves_for, is_pushed, is_touched: bits != 0, is_damped, is_loaded: self.is_loaded };
-        end.finish(lanes, from, &common, wants)
+        let flags = FinishFlags {
+            moves_for: self.moves_for,
+            is_pushed,
+            is_touched: bits != 0,
+            is_damped,
+            is_loaded: self.is_loaded,
+        };
+        end.finish(lanes, from, &common, flags)
     }
 
     fn damping_work(&self, block: BlockId, works: &WorkSums) -> f64 {
@@ -130,14 +116,14 @@ impl Finish<'_> {
         self.start[block].damping_work(self.mass_matrix, block, works, damping)
     }
 
-    /// Ends the step of all blocks.
-    pub fn run(&self, out: Finished) -> Totals {
+    /// Ends the step of all blocks; returns the sums over all chunks.
+    pub fn run(&self, out: ChunkSlices) -> ChunkSums {
         let chunks = &self.model.chunks;
-        let Finished { velocity, displacement, sums } = out;
-        let out = Finished { velocity, displacement, sums: &mut *sums };
-        Run { work: self, chunks, range: 0..chunks.len(), out }.share(self.grain);
-        let mut totals = Totals::default();
-        for sums in &*sums {
+        let ChunkSlices { velocity, displacement, motion, start, sums: of_chunks } = out;
+        let out = ChunkSlices { velocity, displacement, motion, start, sums: &mut *of_chunks };
+        chunk_runs::run(self, chunks, out, self.grain);
+        let mut totals = ChunkSums::default();
+        for sums in &*of_chunks {
             totals.damping += sums.damping;
             totals.row_sum += sums.row_sum;
             totals.fastest = totals.fastest.max(sums.fastest);
@@ -145,7 +131,7 @@ impl Finish<'_> {
         }
         for first in chunks.cut_blocks() {
             let mut works = WorkSums::default();
-            chunks.parts(first).for_each(|part| works += sums[part].works);
+            chunks.parts(first).for_each(|part| works += of_chunks[part].works);
             let block = BlockId::new(chunks.get(first).blocks.start);
             if !self.mass_matrix.fixed[block] {
                 totals.damping += self.damping_work(block, &works);
@@ -153,17 +139,4 @@ impl Finish<'_> {
         }
         totals
     }
-}
-
-/// Sums over all covers at the end of a step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Totals {
-    /// Work that damping took (J/m).
-    pub damping: f64,
-    /// Σ(∫ρw)(v + v') of velocities before and after the step (kg/s).
-    pub row_sum: Vector,
-    /// Square of the largest speed (m²/s²).
-    pub fastest: f64,
-    /// Sum of the squares of speeds (m²/s²): not finite when any is not.
-    pub squares: f64,
 }

@@ -7,12 +7,12 @@ use enmm_lanes::{LANES, Lanes, Table, prefetch};
 
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::mechanics::block_lanes::{Common, Own, Reference, Span};
+use crate::mechanics::block_lanes::{CoverKick, Reference, RigidVelocity, Span};
 use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, KickStep, MassMatrix, element_lanes};
 use crate::state::{ChunkSums, Model, State};
 
-use super::blocks::{inertial, inverse, spread};
-use super::chunk_runs::{Cut, Run, Work};
+use super::blocks::{inertial, inverse, scatter};
+use super::chunk_runs::{self, ChunkLoop, ChunkSlices};
 
 /// Covers from which on a step does not find them in the caches, and the next chunk is prefetched.
 const ASKED: usize = 1 << 17;
@@ -57,13 +57,13 @@ impl Kick<'_> {
     }
 
     /// How the covers of a block in a chunk are written.
-    fn own(&self, chunk: usize, block: BlockId, covers: Range<usize>, step: &KickStep) -> Own<'_> {
+    fn own(&self, chunk: usize, block: BlockId, covers: Range<usize>, step: &KickStep) -> CoverKick<'_> {
         let held = !self.mass_matrix.is_free(block);
         let (factor, masked) = match step.damping {
             Damping::Deformation(factor) => (factor, factor < 1.0),
             Damping::Mass(factor) => (factor, false),
         };
-        Own {
+        CoverKick {
             factor,
             kick: self.kick,
             acceleration: self.acceleration,
@@ -74,12 +74,28 @@ impl Kick<'_> {
         }
     }
 
-    /// Data that the chunk after this one will read.
-    fn ahead<'a>(&'a self, chunk: &Chunk, next: &'a [Vector]) -> Ahead<'a> {
-        let (start, count) = (chunk.covers.end, self.state.displacement.len());
+    /// Prefetches the data that the chunk after this one will read, a piece with each call, while this one is computed.
+    fn ahead<'a>(&'a self, chunk: &Chunk, mut next: &'a [Vector]) -> impl FnMut() + use<'a> {
+        let Kick { model, state, mass_matrix, .. } = self;
+        let (start, count) = (chunk.covers.end, state.displacement.len());
         let end = if count < ASKED { start } else { (start + chunk.covers.len()).min(count) };
-        let times = self.model.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
-        Ahead { kick: self, covers: start..end, next, piece: (end - start).div_ceil(times) }
+        let times = model.chunks.eights(chunk).div_ceil(element_lanes::TOGETHER).max(1);
+        let (mut covers, piece) = (start..end, (end - start).div_ceil(times));
+        move || {
+            if covers.is_empty() {
+                return;
+            }
+            let range = covers.start..(covers.start + piece).min(covers.end);
+            covers.start = range.end;
+            let (now, later) = next.split_at(range.len().min(next.len()));
+            next = later;
+            prefetch(now);
+            prefetch(&state.displacement[range.clone()]);
+            prefetch(&state.velocity[range.clone()]);
+            prefetch(&model.covers.star_position[range.clone()]);
+            prefetch(&mass_matrix.mass[range.clone()]);
+            prefetch(&mass_matrix.row_sum[range]);
+        }
     }
 
     /// Adds the element forces of a chunk to the table of its covers (Eq. 7).
@@ -105,8 +121,8 @@ impl Kick<'_> {
         for batch in chunks.batches(chunk) {
             let rock = &model.rocks[batch.rock as usize];
             let [in_row, in_group] = chunks.gradients(batch, &model.covers.gradients[batch.set as usize]);
-            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, || ahead.ask());
-            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, || ahead.ask());
+            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, &mut ahead);
+            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, &mut ahead);
         }
         if !self.state.plastic.is_empty() {
             self.relieve(chunk, &mut tables[1]);
@@ -133,67 +149,12 @@ impl Kick<'_> {
     }
 }
 
-/// Prefetches the next chunk in pieces while this one is computed.
-struct Ahead<'a> {
-    kick: &'a Kick<'a>,
-    covers: Range<usize>,
-    /// Predicted velocities from there on.
-    next: &'a [Vector],
-    piece: usize,
-}
-
-impl Ahead<'_> {
-    #[inline(always)]
-    fn ask(&mut self) {
-        if self.covers.is_empty() {
-            return;
-        }
-        let end = (self.covers.start + self.piece).min(self.covers.end);
-        let covers = self.covers.start..end;
-        self.covers.start = end;
-        let (now, later) = self.next.split_at(covers.len().min(self.next.len()));
-        self.next = later;
-        prefetch(now);
-        let Kick { model, state, mass_matrix, .. } = self.kick;
-        prefetch(&state.displacement[covers.clone()]);
-        prefetch(&state.velocity[covers.clone()]);
-        prefetch(&model.covers.star_position[covers.clone()]);
-        prefetch(&mass_matrix.mass[covers.clone()]);
-        prefetch(&mass_matrix.row_sum[covers]);
-    }
-}
-
-/// Output slices of a kick.
-pub(super) struct Kicked<'o> {
-    predicted: &'o mut [Vector],
-    motion: &'o mut [BlockMotion],
-    start: &'o mut [BlockStart],
-    sums: &'o mut [ChunkSums],
-}
-
-impl Cut for Kicked<'_> {
-    fn cut(self, covers: usize, blocks: usize, chunks: usize) -> (Self, Self) {
-        let (predicted, predicted_rest) = self.predicted.split_at_mut(covers);
-        let (motion, motion_rest) = self.motion.split_at_mut(blocks);
-        let (start, start_rest) = self.start.split_at_mut(blocks);
-        let (sums, sums_rest) = self.sums.split_at_mut(chunks);
-        let rest = Kicked { predicted: predicted_rest, motion: motion_rest, start: start_rest, sums: sums_rest };
-        (Kicked { predicted, motion, start, sums }, rest)
-    }
-
-    fn asked(&self) -> &[Vector] {
-        self.predicted
-    }
-}
-
-impl Work for Kick<'_> {
-    type Out<'o> = Kicked<'o>;
-
+impl ChunkLoop for Kick<'_> {
     /// Forces and kick of the blocks of a chunk; of a part of a block all but what is common to the block.
     #[inline(always)]
-    fn chunk<L: Lanes>(&self, lanes: L, number: usize, out: Kicked, next: &[Vector], tables: &mut [Table; 2]) {
+    fn chunk<L: Lanes>(&self, lanes: L, number: usize, out: ChunkSlices, next: &[Vector], tables: &mut [Table; 2]) {
         let chunk = self.model.chunks.get(number);
-        let Kicked { predicted, motion, start, sums: [sums] } = out else { return };
+        let ChunkSlices { velocity: predicted, motion, start, sums: [sums], .. } = out else { return };
         sums.fastest = 0.0;
         let fixed = match chunk.part_of {
             Some(block) => self.mass_matrix.fixed[block],
@@ -263,23 +224,24 @@ impl Kick<'_> {
         (sums.block, sums.fastest) = span.sum_and_kick(lanes, &from, &own, (force, predicted));
     }
 
-    /// Fills predicted velocities and block motions of the workspace, and the largest speed before.
-    pub fn run(&self, out: &mut KickOut) {
+    /// Fills predicted velocities, block motions, and the sums of chunks with the largest speed before.
+    pub fn run(&self, mut out: ChunkSlices) {
         let chunks = &self.model.chunks;
-        let kicked = Kicked { predicted: out.predicted, motion: out.motion, start: out.start, sums: out.sums };
-        Run { work: self, chunks, range: 0..chunks.len(), out: kicked }.share(self.grain);
+        let ChunkSlices { velocity, displacement, motion, start, sums } = &mut out;
+        chunk_runs::run(self, chunks, ChunkSlices { velocity, displacement, motion, start, sums }, self.grain);
         let mut is_cut = false;
         for first in chunks.cut_blocks() {
-            is_cut |= self.join_parts(first, out);
+            is_cut |= self.join_parts(first, &mut out);
         }
         if is_cut {
-            let exposed = Exposed { kick: self, sums: out.sums, start: out.start };
-            Run { work: &exposed, chunks, range: 0..chunks.len(), out: Predicted(out.predicted) }.share(self.grain);
+            let scatter = Scatter { kick: self, start: out.start };
+            let out = ChunkSlices { velocity: out.velocity, sums: out.sums, ..ChunkSlices::default() };
+            chunk_runs::run(&scatter, chunks, out, self.grain);
         }
     }
 
     /// Joins the sums over the parts of a block; returns whether its covers have anything in common.
-    fn join_parts(&self, first: usize, out: &mut KickOut) -> bool {
+    fn join_parts(&self, first: usize, out: &mut ChunkSlices) -> bool {
         let chunks = &self.model.chunks;
         let block = BlockId::new(chunks.get(first).blocks.start);
         if self.mass_matrix.fixed[block] {
@@ -292,45 +254,26 @@ impl Kick<'_> {
         let common = start.common(self.mass_matrix, block, &sums, &self.step(block));
         parts.for_each(|part| out.sums[part].common = common);
         (out.motion[block], out.start[block]) = (start.motion(self.mass_matrix, block), start);
-        common != Common::default()
+        common != RigidVelocity::default()
     }
-}
-
-/// Arrays that a kick fills.
-pub(super) struct KickOut<'a> {
-    pub predicted: &'a mut [Vector],
-    pub motion: &'a mut [BlockMotion],
-    pub start: &'a mut [BlockStart],
-    pub sums: &'a mut [ChunkSums],
 }
 
 /// Adds the rigid-body velocity of a block to covers of its parts that contacts, supports or bolts may read.
-struct Exposed<'a> {
+struct Scatter<'a> {
     kick: &'a Kick<'a>,
-    sums: &'a [ChunkSums],
     start: &'a [BlockStart],
 }
 
-struct Predicted<'o>(&'o mut [Vector]);
-
-impl Cut for Predicted<'_> {
-    fn cut(self, covers: usize, _: usize, _: usize) -> (Self, Self) {
-        let (left, right) = self.0.split_at_mut(covers);
-        (Self(left), Self(right))
-    }
-}
-
-impl Work for Exposed<'_> {
-    type Out<'o> = Predicted<'o>;
-
+impl ChunkLoop for Scatter<'_> {
     #[inline(always)]
-    fn chunk<L: Lanes>(&self, lanes: L, k: usize, Predicted(predicted): Predicted, _: &[Vector], _: &mut [Table; 2]) {
+    fn chunk<L: Lanes>(&self, lanes: L, k: usize, out: ChunkSlices, _: &[Vector], _: &mut [Table; 2]) {
         let Kick { model, mass_matrix, movable, exposed, .. } = *self.kick;
+        let ChunkSlices { velocity: predicted, sums: [sums], .. } = out else { return };
         let chunk = model.chunks.get(k);
         let Some(block) = chunk.part_of.filter(|&b| !mass_matrix.fixed[b]) else { return };
-        if let Some(spread) = spread(mass_matrix, (chunk, block), movable[k], exposed, &self.sums[k].common) {
+        if let Some(scatter) = scatter(mass_matrix, (chunk, block), movable[k], exposed, &sums.common) {
             let from = &self.start[block].from;
-            self.kick.span(block, chunk.covers.clone()).spread(lanes, from, &spread, predicted);
+            self.kick.span(block, chunk.covers.clone()).scatter(lanes, from, &scatter, predicted);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! One step of the explicit integrator: [`Step::interval`] is the table of contents.
+//! One step of the explicit integrator: [`set_out`] and [`cover`] are the table of contents.
 
 mod blocks;
 mod chunk_runs;
@@ -12,13 +12,22 @@ mod turn;
 mod works;
 mod yielding;
 
+use std::time::Instant;
+
 use crate::contact::{SolverReport, VertexEdge};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::Model;
+use crate::state::{Counters, Model, State, Workspace};
 
-use super::integrator::Integrator;
-use super::{Regime, Step, StepReport, StepTimes, Window, applied, guard, ramp, records, report};
+use super::contacts::{self, Reach};
+use super::integrator::{Integrator, StepOutcome};
+use super::{Regime, StepInterval, StepReport, Substep, applied, guard, quiet, ramp, records, report, settle};
+
+use columns::kick_columns;
+use commit::commit;
+use predict::{damp, load, predict};
+use touch::{answer, approach, arrange, open_close, touch};
+use yielding::yield_rock;
 
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
 const UNSETTLED: f64 = 0.1;
@@ -38,24 +47,34 @@ impl Integrator for Explicit {
         model.mass_scaling
     }
 
-    fn cover(&self, step: &mut Step, dt: f64) -> StepReport {
-        step.interval(dt, 0)
+    fn cover(
+        &self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+        interval: StepInterval,
+    ) -> StepOutcome {
+        cover(model, state, workspace, interval, 0)
     }
 
-    fn begin(&self, step: &mut Step, dt: f64) -> StepReport {
-        step.interval(dt, 0)
+    fn find_contacts(&self, model: &Model, state: &mut State, workspace: &mut Workspace, interval: StepInterval) {
+        let step = Substep::new(interval, state.dt_last, workspace.serial);
+        set_out(model, state, &step, workspace);
+        let Workspace { motion, frames, selection, contacts, .. } = workspace;
+        touch(model, state, &step, motion.speed_max, frames, selection, contacts);
     }
 
-    fn find_contacts(&self, step: &mut Step, dt: f64) {
-        let times = step.times(dt);
-        step.set_out(times);
-        step.touch(times);
-    }
-
-    fn each_contact(&self, step: &mut Step, dt: f64, see: &mut dyn FnMut(&VertexEdge)) {
-        let times = step.times(dt);
-        step.set_out(times);
-        step.entrance_by_pieces(times, see);
+    fn each_contact(
+        &self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+        interval: StepInterval,
+        see: &mut dyn FnMut(&VertexEdge),
+    ) {
+        let step = Substep::new(interval, state.dt_last, workspace.serial);
+        set_out(model, state, &step, workspace);
+        touch_by_pieces(model, state, &step, workspace, see);
     }
 
     fn kinetic(&self, model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
@@ -63,58 +82,91 @@ impl Integrator for Explicit {
     }
 }
 
-impl Step<'_> {
-    /// Covers `dt` (s) by one sub-step, or by two halves when the iteration does not settle.
-    fn interval(&mut self, dt: f64, halvings: u32) -> StepReport {
-        let times = self.times(dt);
-        self.set_out(times);
-        self.touch(times);
-        self.answer(times);
-        let swept = self.open_close(times);
-        if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
-            self.state.counters.halved += 1;
-            let first = self.interval(0.5 * dt, halvings + 1);
-            self.report = false;
-            self.interval(0.5 * dt, halvings + 1);
-            return first;
-        }
-        self.count(dt, &swept);
-        self.commit(times)
-    }
+/// Positions, near pairs, yielding and predicted velocities of a sub-step.
+fn set_out(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) {
+    let Workspace { mass_matrix, load_force, yielding, motion, sums, frames, selection, sweep, seconds, .. } =
+        workspace;
+    let mut clock = Instant::now();
+    contacts::locate(model, &state.displacement, frames, step.serial);
+    seconds.entrance += lap(&mut clock);
+    contacts::search(model, state, &mass_matrix.fixed, frames, selection, &mut sweep.open_close, step.serial);
+    seconds.search += lap(&mut clock);
+    yield_rock(model, state, step, mass_matrix, yielding);
+    load(model, state, step, load_force);
+    damp(model, state, step, mass_matrix, motion);
+    predict(model, state, step, load_force, mass_matrix, motion, sums);
+    kick_columns(model, state, step, &mut motion.columns);
+    seconds.elements += lap(&mut clock);
+}
 
-    /// Positions, near pairs, yielding and predicted velocities of a sub-step.
-    fn set_out(&mut self, times: StepTimes) {
-        self.locate();
-        self.search();
-        self.yield_rock();
-        self.predict(times);
+/// Covers an interval by one sub-step, or by two halves when the iteration does not settle.
+fn cover(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    interval: StepInterval,
+    halvings: u32,
+) -> StepOutcome {
+    let step = Substep::new(interval, state.dt_last, workspace.serial);
+    set_out(model, state, &step, workspace);
+    let Workspace { mass_matrix, motion, frames, selection, contacts, supports, sweep, seconds, .. } = workspace;
+    let mut clock = Instant::now();
+    touch(model, state, &step, motion.speed_max, frames, selection, contacts);
+    answer(model, state, &step, mass_matrix, motion, supports);
+    seconds.entrance += lap(&mut clock);
+    arrange(model, &state.neighbours, mass_matrix, selection, &mut sweep.open_close);
+    let approach = approach(model, state, &step, motion, frames, selection.strength);
+    let swept = open_close(model, &step, mass_matrix, &approach, contacts, supports, sweep);
+    seconds.sweep += lap(&mut clock);
+    if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {
+        state.counters.halved += 1;
+        let half = StepInterval { dt: 0.5 * step.dt, ..interval };
+        let first = cover(model, state, workspace, half, halvings + 1);
+        let rest = StepInterval { time: first.end, report: false, ..half };
+        return StepOutcome { report: first.report, ..cover(model, state, workspace, rest, halvings + 1) };
     }
+    count(model, step.dt, &swept, &mut state.counters);
+    let outcome = commit(model, state, &step, workspace);
+    workspace.seconds.commit += lap(&mut clock);
+    outcome
+}
 
-    /// The contacts of a sub-step, found piece by piece: all together they can be larger than the model. The
-    /// near pairs of the state are then of no further use.
-    fn entrance_by_pieces(&mut self, times: StepTimes, see: &mut dyn FnMut(&VertexEdge)) {
-        let all = std::mem::take(&mut self.state.neighbours.pairs);
-        let mut rest = all.as_slice();
-        while let Some(last) = rest.get(PIECE).or(rest.last()) {
-            let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
-            self.state.neighbours.pairs.clear();
-            self.state.neighbours.pairs.extend_from_slice(piece);
-            self.workspace.near_sides.forget();
-            self.touch(times);
-            self.workspace.contacts.iter().for_each(&mut *see);
-            rest = others;
-        }
-        self.workspace.near_sides.forget();
+/// The contacts of a sub-step, found piece by piece: all together they can be larger than the model. The
+/// near pairs of the state are then of no further use.
+fn touch_by_pieces(
+    model: &Model,
+    state: &mut State,
+    step: &Substep,
+    workspace: &mut Workspace,
+    see: &mut dyn FnMut(&VertexEdge),
+) {
+    let Workspace { motion, frames, selection, contacts, .. } = workspace;
+    let all = std::mem::take(&mut state.neighbours.pairs);
+    let mut rest = all.as_slice();
+    while let Some(last) = rest.get(PIECE).or(rest.last()) {
+        let (piece, others) = rest.split_at(rest.partition_point(|c| c.node <= last.node));
+        state.neighbours.pairs.clear();
+        state.neighbours.pairs.extend_from_slice(piece);
+        selection.near_sides.forget();
+        touch(model, state, step, motion.speed_max, frames, selection, contacts);
+        contacts.iter().for_each(&mut *see);
+        rest = others;
     }
+    selection.near_sides.forget();
+}
 
-    fn count(&mut self, dt: f64, swept: &SolverReport) {
-        let counters = &mut self.state.counters;
-        counters.substeps += 1;
-        counters.sweeps += u64::from(swept.sweeps);
-        counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
-        counters.unsettled += u64::from(swept.unsettled > self.model.tolerance);
-        counters.contacts_solved += swept.contacts_solved;
-        counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
-        counters.dt_max = counters.dt_max.max(dt);
-    }
+fn count(model: &Model, dt: f64, swept: &SolverReport, counters: &mut Counters) {
+    counters.substeps += 1;
+    counters.sweeps += u64::from(swept.sweeps);
+    counters.sweeps_max = counters.sweeps_max.max(swept.sweeps);
+    counters.unsettled += u64::from(swept.unsettled > model.tolerance);
+    counters.contacts_solved += swept.contacts_solved;
+    counters.dt_min = if counters.dt_min > 0.0 { counters.dt_min.min(dt) } else { dt };
+    counters.dt_max = counters.dt_max.max(dt);
+}
+
+/// Seconds since the last stage ended.
+fn lap(clock: &mut Instant) -> f64 {
+    let before = std::mem::replace(clock, Instant::now());
+    (*clock - before).as_secs_f64()
 }

@@ -1,87 +1,106 @@
 //! Contacts, supports and bolts of an explicit sub-step: their selection, and the open–close iteration.
 
-use std::time::Instant;
+use crate::contact::{
+    Approach, BoltRow, BoltView, Frames, NeighbourList, OpenClose, OtherConstraints, SolverOptions, SolverReport,
+    VertexEdge,
+};
+use crate::mechanics::MassMatrix;
+use crate::state::{Model, MotionBuffers, SelectionBuffers, State, SupportBuffers, SweepBuffers};
 
-use crate::contact::{Approach, BoltView, OtherConstraints, SolverOptions, SolverReport};
-use crate::state::Workspace;
+use super::{Reach, Regime, Substep, contacts, quiet};
 
-use super::{Regime, Step, StepTimes};
+/// Contacts that take part in a sub-step in which no cover is faster than `speed_max` (m/s).
+pub(super) fn touch(
+    model: &Model,
+    state: &State,
+    step: &Substep,
+    speed_max: f64,
+    frames: &Frames,
+    selection: &mut SelectionBuffers,
+    contacts: &mut Vec<VertexEdge>,
+) {
+    let rule = &model.entrance;
+    let gap = rule.reach * model.covers.mesh.size + rule.reach_steps * step.dt * speed_max;
+    contacts::entrance(model, state, step, Reach { gap, ahead: step.dt }, frames, selection, contacts);
+}
 
-impl Step<'_> {
-    /// Gap (m) below which a contact takes part in an explicit step of `dt` (s).
-    fn reach(&self, dt: f64) -> f64 {
-        let rule = &self.model.entrance;
-        rule.reach * self.model.covers.mesh.size + rule.reach_steps * dt * self.workspace.speed_max
+/// How supports and bolts answer.
+pub(super) fn answer(
+    model: &Model,
+    state: &State,
+    step: &Substep,
+    mass_matrix: &MassMatrix,
+    motion: &MotionBuffers,
+    supports: &mut SupportBuffers,
+) {
+    quiet::load_supports(model, state, step, motion, &mut supports.rows);
+    load_bolts(model, state, mass_matrix, motion, &mut supports.bolts);
+}
+
+/// Bolts that carry force in this step.
+fn load_bolts(model: &Model, state: &State, masses: &MassMatrix, motion: &MotionBuffers, bolts: &mut Vec<BoltRow>) {
+    let view = BoltView {
+        star: &model.covers.star_position,
+        displacement: &state.displacement,
+        predicted: &motion.predicted,
+        mass_matrix: masses,
+        motion: &motion.blocks,
+    };
+    let rows = model.bolts.iter().zip(&state.bolts).enumerate();
+    let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
+    bolts.clear();
+    bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
+}
+
+/// Order in which the iteration takes the contacts.
+pub(super) fn arrange(
+    model: &Model,
+    neighbours: &NeighbourList,
+    mass_matrix: &MassMatrix,
+    selection: &SelectionBuffers,
+    open_close: &mut OpenClose,
+) {
+    let near = (&neighbours.pairs[..], &selection.near_sides);
+    let accepted = &selection.accepted.near_side;
+    open_close.arrange(&model.boundary, near, mass_matrix, &model.covers.block_covers, accepted);
+}
+
+/// Motion that the contacts find, and by which they answer.
+pub(super) fn approach<'a>(
+    model: &'a Model,
+    state: &'a State,
+    step: &Substep,
+    motion: &'a MotionBuffers,
+    frames: &'a Frames,
+    strength: f64,
+) -> Approach<'a> {
+    Approach {
+        predicted: &motion.predicted,
+        velocity: &state.velocity,
+        dt_last: state.dt_last,
+        forward: model.theta_in(step.dt),
+        damping: if let Regime::Dynamic { damping } = step.regime { Some(damping) } else { None },
+        setting: model.contact_setting(&state.laws, frames, strength),
+        motion: &motion.blocks,
     }
+}
 
-    /// Contacts that take part in an explicit sub-step, and how they answer.
-    pub(super) fn touch(&mut self, times: StepTimes) {
-        self.entrance(self.reach(times.dt), times.dt);
-    }
-
-    /// How supports and bolts answer.
-    pub(super) fn answer(&mut self, times: StepTimes) {
-        let clock = Instant::now();
-        self.load_supports(times);
-        self.load_bolts();
-        self.workspace.seconds.entrance += clock.elapsed().as_secs_f64();
-    }
-
-    /// Bolts that carry force in this step.
-    fn load_bolts(&mut self) {
-        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
-        let view = BoltView {
-            star: &model.covers.star_position,
-            displacement: &state.displacement,
-            predicted: &workspace.predicted,
-            mass_matrix: &workspace.mass_matrix,
-            motion: &workspace.motion,
-        };
-        let rows = model.bolts.iter().zip(&state.bolts).enumerate();
-        let bearing = rows.filter(|(_, (_, bolt))| bolt.active && !bolt.broken);
-        workspace.bolts.clear();
-        workspace.bolts.extend(bearing.map(|(k, (segment, bolt))| segment.row(k as u32, bolt, &view)));
-    }
-
-    /// Open–close iteration on the predicted velocities.
-    pub(super) fn open_close(&mut self, times: StepTimes) -> SolverReport {
-        let clock = Instant::now();
-        let StepTimes { dt, kick, .. } = times;
-        let damping = if let Regime::Dynamic { damping } = self.regime { Some(damping) } else { None };
-        let (model, state, workspace) = (self.model, &*self.state, &mut *self.workspace);
-        let Workspace {
-            open_close,
-            near_sides,
-            accepted,
-            contacts,
-            rows,
-            bolts,
-            increment,
-            push,
-            mass_matrix,
-            motion,
-            predicted,
-            frames,
-            strength,
-            serial,
-            ..
-        } = workspace;
-        let (theta, tolerance, sweeps_max) = (model.theta, model.tolerance, model.sweeps_max);
-        let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial: *serial };
-        let approach = Approach {
-            predicted,
-            velocity: &state.velocity,
-            dt_last: state.dt_last,
-            forward: model.theta_in(dt),
-            damping,
-            setting: model.contact_setting(&state.laws, frames, *strength),
-            motion,
-        };
-        let (near, block_covers) = ((&state.neighbours.pairs[..], &*near_sides), &model.covers.block_covers);
-        open_close.arrange(&model.boundary, near, mass_matrix, block_covers, &accepted.near_side);
-        let swept = open_close.run(mass_matrix, &options, &approach, contacts, &mut OtherConstraints { rows, bolts });
-        open_close.impulses(mass_matrix, increment, push);
-        workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-        swept
-    }
+/// Open–close iteration on the predicted velocities.
+pub(super) fn open_close(
+    model: &Model,
+    step: &Substep,
+    mass_matrix: &MassMatrix,
+    approach: &Approach,
+    contacts: &mut [VertexEdge],
+    supports: &mut SupportBuffers,
+    sweep: &mut SweepBuffers,
+) -> SolverReport {
+    let Substep { dt, kick, serial, .. } = *step;
+    let Model { theta, tolerance, sweeps_max, .. } = *model;
+    let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial };
+    let SupportBuffers { rows, bolts } = supports;
+    let SweepBuffers { open_close, increment, push } = sweep;
+    let swept = open_close.run(mass_matrix, &options, approach, contacts, &mut OtherConstraints { rows, bolts });
+    open_close.impulses(mass_matrix, increment, push);
+    swept
 }

@@ -7,37 +7,40 @@ use crate::contact::BlockImpulse;
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::{BlockStart, MassMatrix, Turn};
-use crate::state::{Model, Workspace};
+use crate::state::{ChunkSums, Model, MotionBuffers};
 
-use super::chunk_runs::{self, Run, Work};
-use super::finish::{Finished, is_near};
-use super::{Step, report};
+use super::chunk_runs::{self, ChunkLoop, ChunkSlices};
+use super::finish::is_near;
+use super::{Substep, report};
 
 /// Blocks that one thread looks at, at least.
 const BLOCKS: usize = 512;
 
-impl Step<'_> {
-    /// Turns the blocks that spin, after a step of `dt` (s).
-    pub(super) fn turn(&mut self, dt: f64) {
-        let (model, state) = (self.model, &mut *self.state);
-        let Workspace { mass_matrix, predicted, start, push, sums, turns, serial, .. } = &mut *self.workspace;
-        let of_block = |block| {
-            let covers = report::block_covers(model, mass_matrix, &state.displacement, predicted, block);
-            spins(mass_matrix, block, &start[block], &push[block], dt).then(|| Turn::new(&covers, dt))
-        };
-        turns.resize(model.covers.block_count(), None);
-        let each = |(k, turn): (usize, &mut Option<Turn>)| *turn = of_block(BlockId::new(k));
-        if *serial {
-            turns.iter_mut().enumerate().for_each(each);
-        } else {
-            turns.par_iter_mut().with_min_len(BLOCKS).enumerate().for_each(each);
-        }
-        if turns.iter().any(Option::is_some) {
-            let work = Turning { model, turns };
-            let out = Finished { velocity: predicted, displacement: &mut state.displacement, sums };
-            let chunks = &model.chunks;
-            Run { work: &work, chunks, range: 0..chunks.len(), out }.share(chunk_runs::grain(*serial));
-        }
+/// Turns the blocks that spin, after a sub-step.
+pub(super) fn turn(
+    model: &Model,
+    step: &Substep,
+    mass_matrix: &MassMatrix,
+    push: &[BlockImpulse],
+    motion: &mut MotionBuffers,
+    displacement: &mut [Vector],
+    sums: &mut [ChunkSums],
+) {
+    let MotionBuffers { predicted, start, turns, .. } = motion;
+    let of_block = |block| {
+        let covers = report::block_covers(model, mass_matrix, displacement, predicted, block);
+        spins(mass_matrix, block, &start[block], &push[block], step.dt).then(|| Turn::new(&covers, step.dt))
+    };
+    turns.resize(model.covers.block_count(), None);
+    let each = |(k, turn): (usize, &mut Option<Turn>)| *turn = of_block(BlockId::new(k));
+    if step.serial {
+        turns.iter_mut().enumerate().for_each(each);
+    } else {
+        turns.par_iter_mut().with_min_len(BLOCKS).enumerate().for_each(each);
+    }
+    if turns.iter().any(Option::is_some) {
+        let out = ChunkSlices { velocity: predicted, displacement, sums, ..ChunkSlices::default() };
+        chunk_runs::run(&Turning { model, turns }, &model.chunks, out, chunk_runs::grain(step.serial));
     }
 }
 
@@ -56,13 +59,11 @@ struct Turning<'a> {
     turns: &'a [Option<Turn>],
 }
 
-impl Work for Turning<'_> {
-    type Out<'o> = Finished<'o>;
-
+impl ChunkLoop for Turning<'_> {
     #[inline(always)]
-    fn chunk<L: Lanes>(&self, _: L, k: usize, out: Finished, _: &[Vector], _: &mut [Table; 2]) {
+    fn chunk<L: Lanes>(&self, _: L, k: usize, out: ChunkSlices, _: &[Vector], _: &mut [Table; 2]) {
         let (chunk, covers) = (self.model.chunks.get(k), &self.model.covers);
-        let Finished { velocity, displacement, sums: [sums] } = out else { return };
+        let ChunkSlices { velocity, displacement, sums: [sums], .. } = out else { return };
         let mut farthest = 0.0;
         for (block, own) in chunk.parts(covers) {
             let Some(turn) = &self.turns[block.index()] else { continue };

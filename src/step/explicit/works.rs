@@ -1,42 +1,52 @@
 //! Works of a sub-step: what the ledger of energies adds up.
 
 use crate::geometry::Vector;
-use crate::state::Ledger;
+use crate::state::{ContactOutcome, Ledger, Model, State, SupportBuffers};
 
-use super::finish::Totals;
-use super::{Step, StepTimes, Window};
+use super::Substep;
+use super::predict::acceleration;
 
-impl Step<'_> {
-    /// Acceleration (m/s²) beyond gravity while forces act: its work is external.
-    pub(super) fn extra(&self, window: Window) -> Vector {
-        self.acceleration(window) - self.model.gravity
+/// Acceleration (m/s²) beyond gravity while forces act: its work is external.
+pub(super) fn extra(model: &Model, state: &State, step: &Substep) -> Vector {
+    acceleration(model, state, step) - model.gravity
+}
+
+/// Works of contacts, supports and bolts: each force by the mean of the velocities before and after it (Eq. 18).
+pub(super) fn contact_works(
+    model: &Model,
+    kick: f64,
+    velocities: [&[Vector]; 2],
+    outcomes: &[ContactOutcome],
+    supports: &SupportBuffers,
+) -> Ledger {
+    let [before, after] = velocities;
+    let mut works = Ledger::default();
+    for outcome in outcomes {
+        works.contact_work += outcome.work;
+        works.friction -= outcome.friction;
     }
-
-    /// Loads times velocities before and after the step (W/m).
-    fn load_power(&self) -> f64 {
-        let velocities = self.state.velocity.iter().zip(&self.workspace.predicted);
-        self.workspace.load_force.iter().zip(velocities).map(|(f, (before, after))| f.dot(&(before + after))).sum()
+    for row in &supports.rows {
+        let support = &model.supports[row.support as usize];
+        let velocity = 0.5 * (support.sample(before) + support.sample(after));
+        let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
+        *work += row.force * velocity * kick;
     }
-
-    /// Works of this sub-step: each force by the mean of the velocities before and after it (Eq. 18).
-    pub(super) fn works(&self, StepTimes { kick, window, .. }: StepTimes, finished: &Totals) -> Ledger {
-        let (model, state, workspace) = (self.model, &*self.state, &*self.workspace);
-        let mut works = Ledger { damping: finished.damping, ..Ledger::default() };
-        for outcome in &workspace.outcomes {
-            works.contact_work += outcome.work;
-            works.friction -= outcome.friction;
-        }
-        for row in &workspace.rows {
-            let support = &model.supports[row.support as usize];
-            let velocity = 0.5 * (support.sample(&state.velocity) + support.sample(&workspace.predicted));
-            let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
-            *work += row.force * velocity * kick;
-        }
-        for row in &workspace.bolts {
-            let velocity = row.pair.difference(&state.velocity) + row.pair.difference(&workspace.predicted);
-            works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick);
-        }
-        works.external_work += 0.5 * kick * (self.extra(window).dot(&finished.row_sum) + self.load_power());
-        works
+    for row in &supports.bolts {
+        let velocity = row.pair.difference(before) + row.pair.difference(after);
+        works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick);
     }
+    works
+}
+
+/// Work (J/m) of loads and of what acts on all rock beyond gravity, given Σ(∫ρw)(v + v') (kg/s) of all covers.
+pub(super) fn external_work(
+    kick: f64,
+    velocities: [&[Vector]; 2],
+    (extra, row_sum): (Vector, Vector),
+    load_force: &[Vector],
+) -> f64 {
+    let [before, after] = velocities;
+    let pairs = before.iter().zip(after);
+    let power: f64 = load_force.iter().zip(pairs).map(|(f, (before, after))| f.dot(&(before + after))).sum();
+    0.5 * kick * (extra.dot(&row_sum) + power)
 }

@@ -5,35 +5,39 @@ use rayon::prelude::*;
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::{self, Deformation, MassMatrix, PlasticStrain, YieldSurface};
-use crate::state::{Model, State, Workspace};
+use crate::state::{Model, State, YieldBuffers};
 
-use super::report;
+use super::{Substep, report};
 
 /// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
 const RUN: usize = 1024;
 
-/// Brings the plastic strain of all elements to the current displacements under the strength of time `time` (s), and
-/// books what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
-pub fn update(model: &Model, state: &mut State, workspace: &mut Workspace, time: f64) {
+/// Brings the plastic strain of all elements to the current displacements under the strength of this time, and books
+/// what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
+pub(super) fn yield_rock(
+    model: &Model,
+    state: &mut State,
+    step: &Substep,
+    mass_matrix: &MassMatrix,
+    YieldBuffers { surfaces, energy: taken }: &mut YieldBuffers,
+) {
     if state.plastic.is_empty() {
         return;
     }
-    let factor = state.drive.strength_factor(state.drive.share(time));
-    workspace.surfaces.clear();
-    workspace.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
-    workspace.yielded.clear();
-    workspace.yielded.resize(state.plastic.len().div_ceil(RUN), 0.0);
+    let factor = state.drive.strength_factor(state.drive.share(step.time));
+    surfaces.clear();
+    surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
+    taken.clear();
+    taken.resize(state.plastic.len().div_ceil(RUN), 0.0);
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    let (surfaces, mass_matrix) = (&workspace.surfaces[..], &workspace.mass_matrix);
     let pass = Pass { model, surfaces, mass_matrix, displacement, velocity, dt_last: *dt_last, removed };
-    let runs = workspace.yielded.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate();
-    if workspace.serial {
-        runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
+    let run = |(k, (energy, plastic)): (usize, (&mut f64, &mut [PlasticStrain]))| *energy = pass.run(k * RUN, plastic);
+    if step.serial {
+        taken.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate().for_each(run);
     } else {
-        let runs = workspace.yielded.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate();
-        runs.for_each(|(k, (energy, plastic))| *energy = pass.run(k * RUN, plastic));
+        taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate().for_each(run);
     }
-    state.ledger.yielding += workspace.yielded.iter().sum::<f64>();
+    state.ledger.yielding += taken.iter().sum::<f64>();
 }
 
 /// Data that all runs share.

@@ -180,7 +180,8 @@ impl Run {
 /// Bytes of matrix and factor, of the fields over covers and of the contacts.
 fn bytes(simulation: &Simulation) -> usize {
     let workspace = simulation.workspace();
-    let vectors = [&workspace.load_force, &workspace.predicted, &workspace.damped, &workspace.increment];
+    let (motion, sweep) = (&workspace.motion, &workspace.sweep);
+    let vectors = [&workspace.load_force, &motion.predicted, &motion.damped, &sweep.increment];
     let fields = vectors.map(|v| v.len()).iter().sum::<usize>() + 2 * simulation.state().displacement.len();
     let contacts = workspace.contacts.len() * size_of::<enmm::contact::VertexEdge>();
     fields * size_of::<Vector>() + contacts + enmm_implicit::buffers(workspace).map_or(0, of_implicit)
@@ -190,7 +191,7 @@ fn bytes(simulation: &Simulation) -> usize {
 fn of_implicit(buffers: &ImplicitBuffers) -> usize {
     let [matrix, factor] = buffers.matrix.bytes();
     let fields = [&buffers.moved, &buffers.offset, &buffers.applied].map(|v| v.len()).iter().sum::<usize>();
-    let places = buffers.contact_slots.len() * 144 + buffers.element_slots.len() * 24;
+    let places = buffers.slots.contacts.len() * 144 + buffers.slots.elements.len() * 24;
     matrix + factor + fields * size_of::<Vector>() + places
 }
 
