@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use crate::contact::{BoltState, ContactHistory, NeighbourList};
 use crate::geometry::Vector;
-use crate::state::{Counters, Drive, Event, EventKind, Events, Inputs, Ledger, State};
+use crate::state::{Counters, Drive, Event, EventKind, Events, Inputs, Ledger, MostRest, State};
 
 use super::Simulation;
 use super::case::StageKind;
@@ -119,7 +119,7 @@ impl Simulation {
             stage: _,
             stage_start: _,
             stage_starts: _,
-            most_rest_since: _,
+            most_rest: _,
             stage_step: _,
             step: _,
             part: _,
@@ -168,7 +168,10 @@ impl Simulation {
             between(format_args!("stage_starts[{k}]"), start, 0.0, TIME)?;
         }
         between("stage_start", state.stage_start, 0.0, TIME)?;
-        state.most_rest_since.map_or(Ok(()), |since| between("most_rest_since", since, 0.0, TIME))?;
+        if let Some(MostRest { since, kinetic }) = state.most_rest {
+            between("most_rest.since", since, 0.0, TIME)?;
+            kinetic.into_iter().try_for_each(|sum| between("most_rest.kinetic", sum, 0.0, FORCE))?;
+        }
         at_most("step", state.step, COUNT)?;
         at_most("stage_step", state.stage_step, state.step)?;
         if state.part >= dt {

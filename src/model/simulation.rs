@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use crate::contact::{BoltState, EntranceRule, JointLaw, LawId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Drive, Ledger, Model, State, Workspace};
+use crate::state::{Drive, Ledger, Model, MostRest, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators, build, law_of};
@@ -197,9 +197,7 @@ impl Simulation {
         let is_due = report && self.rest_due();
         let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)?;
         if is_due {
-            let rests = self.most_rests(&made);
-            let since = self.state().most_rest_since.unwrap_or(made.time);
-            self.built.state.most_rest_since = rests.then_some(since);
+            self.built.state.most_rest = self.most_rest_with(&made);
         }
         Ok(made)
     }
@@ -267,11 +265,11 @@ impl Simulation {
 
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out. A few blocks that rattle or
     /// fall do not hold it up ([`step::mass_of_few`]): it has converged, too, when the motion of all others has died
-    /// out for as long as it took to do so, and as waves take to pass.
+    /// out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
         let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());
-        let for_long = self.state().most_rest_since.is_some_and(is_long);
+        let for_long = self.state().most_rest.is_some_and(|rest| is_long(rest.since));
         self.all_rests(report) || for_long && self.most_rests(report)
     }
 
@@ -281,14 +279,31 @@ impl Simulation {
         balanced && self.ramp_is_over(report) && report.ledger.kinetic <= REST * energy(report)
     }
 
-    /// Whether a few blocks have more kinetic energy than all others, whose motion has died out, or is so slow that
-    /// they would move by [`STILL`] of the height in the time of a fall from there.
+    /// Whether the motion of all but a few blocks has died out by a report of a static stage, and these few have had
+    /// more kinetic energy than all others since it did so.
     pub(super) fn most_rests(&self, report: &StepReport) -> bool {
+        self.state().most_rest.is_some() && self.most_is_still(report)
+    }
+
+    /// How long all but a few blocks have been at rest with this report, which is the last one: none if they still
+    /// move, or have had more kinetic energy than the few. Sums decide and not this report alone, because a grain that
+    /// rattles shakes its neighbours, and lends them its energy and takes it back in each of its swings.
+    fn most_rest_with(&self, report: &StepReport) -> Option<MostRest> {
+        let MostRest { since, kinetic } =
+            self.state().most_rest.unwrap_or(MostRest { since: report.time, kinetic: [0.0; 2] });
+        let most = report.kinetic_of_most;
+        let few = (report.ledger.kinetic - most).max(0.0);
+        let kinetic = [kinetic[0] + few, kinetic[1] + most];
+        (kinetic[0] > kinetic[1] && self.most_is_still(report)).then_some(MostRest { since, kinetic })
+    }
+
+    /// Whether the motion of all but a few blocks has died out, or is so slow that they would move by [`STILL`] of the
+    /// height in the time of a fall from there.
+    fn most_is_still(&self, report: &StepReport) -> bool {
         let (low, high) = polygon::bounds(&self.model().covers.star_position);
         let mass: f64 = self.model().mass_matrix.total.iter().sum();
         let still = 0.5 * mass * STILL * STILL * self.model().gravity.norm() * (high - low).y;
-        let [most, few] = [report.kinetic_of_most, report.ledger.kinetic - report.kinetic_of_most];
-        self.ramp_is_over(report) && few > most && most <= still.max(REST * energy(report))
+        self.ramp_is_over(report) && report.kinetic_of_most <= still.max(REST * energy(report))
     }
 
     fn ramp_is_over(&self, report: &StepReport) -> bool {

@@ -81,7 +81,7 @@ impl State {
             laws: _,
             law_switch: _,
             stage_starts: _,
-            most_rest_since: _,
+            most_rest: _,
             stage: _,
             stage_start: _,
             stage_step: _,

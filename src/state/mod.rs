@@ -32,6 +32,15 @@ use crate::contact::{BoltState, ContactHistory, JointLaw, LawId, NeighbourList};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
+/// A static stage in which all but a few blocks are at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MostRest {
+    /// Time (s) since which they are.
+    pub since: f64,
+    /// Kinetic energies (J/m) of the few blocks and of all others, summed over the reports since then.
+    pub kinetic: [f64; 2],
+}
+
 /// Everything that changes in time and that a checkpoint holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -41,8 +50,8 @@ pub struct State {
     pub stage_start: f64,
     /// Start of each stage up to this one (s): ground motion counts its time from there.
     pub stage_starts: Vec<f64>,
-    /// Time (s) since which most of the rock has been at rest in a static stage; none while it moves.
-    pub most_rest_since: Option<f64>,
+    /// How long most of the rock has been at rest in a static stage; none while it moves.
+    pub most_rest: Option<MostRest>,
     /// Internal steps done in the stage.
     pub stage_step: u64,
     /// Internal steps done in all stages.
@@ -109,7 +118,7 @@ impl State {
             stage,
             stage_start,
             stage_starts,
-            most_rest_since,
+            most_rest,
             stage_step,
             step,
             part,
@@ -138,7 +147,7 @@ impl State {
         } = other;
         (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
         (self.part, self.dt_last, self.static_stretch) = (*part, *dt_last, *static_stretch);
-        self.most_rest_since = *most_rest_since;
+        self.most_rest = *most_rest;
         (self.ledger, self.counters) = (*ledger, *counters);
         self.stage_starts.clone_from(stage_starts);
         self.displacement.clone_from(displacement);

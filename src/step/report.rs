@@ -77,11 +77,13 @@ pub(super) fn kinetic_of(
     mechanics::kinetic_energy(&block_covers(model, mass_matrix, displacement, velocity, block))
 }
 
-/// Kinetic energy (J/m) of all blocks but the few that have most of it (see [`mass_of_few`]).
-pub(super) fn kinetic_of_most(model: &Model, mass_matrix: &MassMatrix, state: &State) -> f64 {
+/// Kinetic energy (J/m) of all blocks but the few that have most of it (see [`mass_of_few`]): the mean of those before
+/// and `after` the kick, as in the ledger.
+pub(super) fn kinetic_of_most(model: &Model, mass_matrix: &MassMatrix, state: &State, after: &[Vector]) -> f64 {
     let mut room = mass_of_few(model, mass_matrix);
     let free = model.covers.blocks().filter(|&b| !mass_matrix.fixed[b]);
-    let kinetic = |b| kinetic_of(model, mass_matrix, &state.displacement, &state.velocity, b);
+    let with = |velocity, b| kinetic_of(model, mass_matrix, &state.displacement, velocity, b);
+    let kinetic = |b| 0.5 * (with(&state.velocity, b) + with(after, b));
     let mut blocks: Vec<(f64, BlockId)> = free.map(|b| (kinetic(b), b)).collect();
     blocks.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut most = 0.0;

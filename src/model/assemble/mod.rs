@@ -401,7 +401,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         stage: 0,
         stage_start: 0.0,
         stage_starts: Vec::new(),
-        most_rest_since: None,
+        most_rest: None,
         stage_step: 0,
         step: 0,
         part: 0.0,

@@ -130,7 +130,7 @@ fn start_report(model: &Model, state: &State, step: &Substep, works: &Ledger, wo
         dt: step.dt,
         ledger,
         unbalanced,
-        kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state),
+        kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state, &workspace.motion.predicted),
         locked: count(ContactState::Lock),
         slipping: count(ContactState::Slip),
         penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
