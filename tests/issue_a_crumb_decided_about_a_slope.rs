@@ -6,6 +6,8 @@ use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm_io::parse_case;
 
+use crate::common::jittering_pit::PIT;
+
 /// A block of 10 m by 6 m, held at its base, with joints and more.
 fn built(joints: &[[[f64; 2]; 2]], more: &str) -> Simulation {
     let joint = |[a, b]: &[[f64; 2]; 2]| format!("[[joint]]\npoints = [{a:?}, {b:?}]\n");
@@ -80,58 +82,6 @@ fn a_crumb_that_falls_is_named_and_holds_up_no_stage() {
     assert!((restless.area - 2e-4).abs() < 1e-12 && restless.law.is_none(), "{restless:?}");
     assert!(restless.to_string().contains("in free flight"), "{restless}");
 }
-
-/// A pit in jointed rock, 70 m deep. With this tolerance of the sweeps, a block of 0.24 m² between faces of the
-/// pits to come has a limit cycle of five steps, at 2 mm/s.
-const PIT: &str = r#"
-title = "Open pit before its excavation"
-[domain]
-outline = [[-80, -70], [80, -70], [80, 0], [-80, 0]]
-joint_law = "joints"
-[mesh]
-size = 3
-[[cut]]
-points = [[-30, 0], [-25, -15], [-17, -15], [-12, -30], [-4, -30], [1, -45], [80, -45]]
-[[cut]]
-points = [[-17, -15], [80, -15]]
-[[cut]]
-points = [[-4, -30], [80, -30]]
-[[joint_set]]
-name = "F"
-dip_deg = 48
-dips = "right"
-spacing = 8
-seed = 1
-region = [[-60, 0], [10, 0], [10, -55], [-60, -55]]
-[[joint_set]]
-name = "K"
-dip_deg = 70
-dips = "left"
-spacing = 10
-seed = 2
-region = [[-60, 0], [10, 0], [10, -55], [-60, -55]]
-[rock.diorite]
-density = 2700
-young = 40e9
-poisson = 0.25
-[joint_law.joints]
-friction_deg = 40
-cohesion = 150e3
-[in_situ]
-k0 = 1.2
-[[quiet]]
-edge = [[-80, -70], [80, -70]]
-[[free_field]]
-edge = [[-80, -70], [-80, 0]]
-[[free_field]]
-edge = [[80, -70], [80, 0]]
-[solver]
-contact_tolerance = 0.01
-[[stage]]
-name = "in situ"
-kind = "static"
-duration_max = 2
-"#;
 
 /// It shook its neighbours, which had more energy than the crumb itself in a part of each swing. Reports that met this
 /// part began the time of rest anew, and the stage ran for all of 20 s.

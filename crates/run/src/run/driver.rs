@@ -365,6 +365,9 @@ impl<'a> Driver<'a> {
 
     /// Row and frame of the end of a stage, and its record; the step that the row needs is taken back.
     fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
+        // Before the outputs, which give back the buffers with the contacts.
+        let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
+        let restless = last.map_or_else(Vec::new, |report| self.simulation.restless(&report));
         self.keep_good();
         self.push_frame()?;
         self.audit()?;
@@ -373,8 +376,6 @@ impl<'a> Driver<'a> {
         let dt_before = self.simulation.state().dt_last;
         let before = rows::monitors(&self.simulation);
         let sweeps_mean = self.sweeps_mean();
-        let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
-        let restless = last.map_or_else(Vec::new, |report| self.simulation.restless(&report));
         let report = self.simulation.advance(true);
         if let Ok(report) = &report {
             self.note(report);
