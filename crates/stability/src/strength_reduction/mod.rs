@@ -24,8 +24,8 @@ pub use slip::slide;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
-/// Factor on the strength with which a slope comes to rest before the trials: its joints hold, so that they neither slip
-/// nor lose their peak strength.
+/// Factor on the strength with which a slope comes to rest before the trials: its joints hold, so that they neither
+/// slip nor lose their peak strength.
 pub const HELD: f64 = 1000.0;
 /// Width of the final bracket, relative to F, when none is given.
 pub const TOLERANCE: f64 = 5e-3;

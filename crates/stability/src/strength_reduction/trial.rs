@@ -35,8 +35,8 @@ pub enum Stop {
     Failed(StepError),
 }
 
-/// The fall of the strength in a trial: from [`Fall::DEPTH`] times its end down to that, by equal ratios in equal times,
-/// so that joints take up their load one after the other and nothing is thrown (Eq. 61).
+/// The fall of the strength in a trial: from [`Fall::DEPTH`] times its end down to that, by equal ratios in equal
+/// times, so that joints take up their load one after the other and nothing is thrown (Eq. 60a).
 struct Fall {
     /// When it begins (s).
     start: f64,
