@@ -198,9 +198,10 @@ pub fn check_output(path: &Path, inputs: &[PathBuf]) -> io::Result<()> {
     check_against(path, &handles(inputs))
 }
 
-/// Inputs that are there, with what the system knows them by.
+/// Inputs that are files, with what the system knows them by; to ask that of a pipe would wait for its other end.
 fn handles(inputs: &[PathBuf]) -> Vec<(&Path, Handle)> {
-    inputs.iter().filter_map(|input| Some((input.as_path(), Handle::from_path(input).ok()?))).collect()
+    let files = inputs.iter().filter(|input| input.is_file());
+    files.filter_map(|input| Some((input.as_path(), Handle::from_path(input).ok()?))).collect()
 }
 
 fn check_against(path: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
