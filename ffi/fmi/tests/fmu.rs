@@ -232,7 +232,7 @@ fn odd_names_go_through() {
         }
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
         let page = std::str::from_utf8(part(&files, "documentation/index.html")).unwrap();
-        assert!(page.contains("<h1>&lt;&quot;&amp;&apos;ü&gt; &amp; \t co.</h1>"));
+        assert!(page.contains("<h1>&lt;&quot;&amp;&apos;ü&gt; &amp; co.</h1>"));
         let rows = page.matches("<tr><td><code>").count();
         let told = table.variables.iter().filter(|v| v.causality != Causality::Independent).count();
         assert_eq!(rows, told);
