@@ -96,7 +96,7 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
     let directory = arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path));
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let options = EnsembleOptions {
-        store: arguments.store.clone().unwrap_or_else(|| directory.join("ensemble.sqlite")),
+        store: arguments.store.clone().unwrap_or_else(|| directory.join(enmm_run::STORE)),
         directory,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
         search: arguments.search(),

@@ -9,6 +9,8 @@ use same_file::Handle;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
+/// Name of the store of samples, unless another is given.
+pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
@@ -20,7 +22,7 @@ const FILES: [&str; 19] = [
     "ensemble.csv",
     "ensemble.json",
     "ensemble.png",
-    "ensemble.sqlite",
+    STORE,
     "failure.png",
     "film.bin",
     "fos.csv",

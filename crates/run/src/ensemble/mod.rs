@@ -16,7 +16,7 @@ use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key,
 use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
-use crate::folder::{Folder, check_output, is_result};
+use crate::folder::{Folder, STORE, check_output, is_result};
 use crate::fos::FosOptions;
 
 pub use answer::{answer, columns};
@@ -163,7 +163,7 @@ fn check_store(options: &EnsembleOptions, inputs: &[PathBuf]) -> io::Result<()> 
     let name = options.store.file_name().unwrap_or_default().to_os_string();
     let folder = options.store.parent().unwrap_or(Path::new(""));
     let is_here = folder.canonicalize().ok() == options.directory.canonicalize().ok();
-    if is_here && is_result(Path::new(&name)) && name != "ensemble.sqlite" {
+    if is_here && is_result(Path::new(&name)) && name != STORE {
         let message = format!("{}: another result has this name", options.store.display());
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }

@@ -190,7 +190,7 @@ pub enum ReductionError {
     Case(Invalid),
     /// The slope does not come to rest, whatever its strength.
     #[error(
-        "stage {stage:?} does not come to rest within {time:.4} s even with {factor} times the strength (unbalanced \
+        "stage {stage:?} does not come to rest within {time:.4} s even with {HELD} times the strength (unbalanced \
          ratio {unbalanced:.2e}): lengthen the stage's duration, or hold or excavate the blocks that are loose"
     )]
     NotAtRest {
@@ -198,8 +198,6 @@ pub enum ReductionError {
         stage: String,
         /// Time at which it was given up (s).
         time: f64,
-        /// Factor on the strength.
-        factor: f64,
         /// Unbalanced ratio then.
         unbalanced: f64,
     },

@@ -40,7 +40,7 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
         let report = outcome.ok_or(ReductionError::Interrupted)?;
         if !simulation.at_rest(&report) {
             let (stage, time) = (simulation.stage().name.clone(), simulation.time());
-            return Err(ReductionError::NotAtRest { stage, time, factor: HELD, unbalanced: report.unbalanced });
+            return Err(ReductionError::NotAtRest { stage, time, unbalanced: report.unbalanced });
         }
         simulation.next_stage()?;
     }

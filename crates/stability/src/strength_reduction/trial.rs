@@ -63,7 +63,6 @@ impl Fall {
             return;
         }
         let drive = simulation.drive();
-        drive.from.copy_from(&drive.to);
         (drive.from.strength_factor, drive.to.strength_factor) = (self.strength(time), self.strength(time + dt));
         (drive.since, drive.until) = (time, time + dt);
     }
@@ -138,6 +137,7 @@ impl Base {
         let clock = Instant::now();
         let mut simulation = self.simulation.clone();
         let fall = Fall { start: simulation.time(), time: self.scales.ramp, end: 1.0 / factor };
+        simulation.drive().arrive();
         let mut samples = Vec::new();
         let mut positions = self.positions(&simulation);
         let steps = simulation.steps_in(self.scales.window);
