@@ -85,7 +85,7 @@ fn long_the_slope_that_dilates_rests_where_limit_analysis_says() {
         case.stages.truncate(1);
         case.stages[0].duration = seconds;
         for law in case.joint_laws.values_mut() {
-            (law.friction_deg, law.dilation_deg) = (angle_deg, angle_deg);
+            (law.friction_deg, law.dilation_deg, law.dilation_slip) = (angle_deg, angle_deg, Some(1e3));
         }
         let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
         let report = run_stage(&mut simulation);

@@ -31,10 +31,17 @@ pub struct ContactHistory {
     pub side: SideId,
     /// Edge of that side in the last step.
     pub edge: EdgeId,
+    /// Time (s) since its faces last parted: those of the node's block against the side. Infinite where a static stage
+    /// has held it.
+    pub age: f32,
+    /// Normal stiffness (N/m per metre) that an impact keeps; 0 without one.
+    pub kept_stiffness: f32,
     /// Normal force at the end of the last step (N/m), compression positive.
     pub normal_force: f64,
     /// Shear force at the end of the last step (N/m), on the node along the edge.
     pub shear_force: f64,
+    /// Normal force that friction feels (N/m): that of the last milliseconds (Eq. 84).
+    pub felt: f64,
     /// Change of both forces in the last step (N/m).
     pub trend: [f64; 2],
     /// Elastic shear of the spring (m), independent of the length of the contact.
@@ -45,6 +52,8 @@ pub struct ContactHistory {
     pub rest: f64,
     /// Accumulated slip (m).
     pub slip: f64,
+    /// Way up the asperities (m), to either side: what dilation follows (Eq. 21).
+    pub way: f64,
     /// Share of the strength in the last step, by the overlap at the ends of the side.
     pub share: f64,
     /// Open, slip or lock.
@@ -84,16 +93,20 @@ pub struct VertexEdge {
     /// Tributary length (m), and the part of it on which cohesion and tension act.
     pub length: f64,
     pub bonded: f64,
+    /// Mean normal stress (Pa) that friction feels on its faces; 0 in their first step.
+    pub mean_stress: f64,
     /// Law of the joint.
     pub law: LawId,
     /// Whether the contact failed in tension in this step.
     pub torn: bool,
     /// Whether the contact is new in this step.
     pub fresh: bool,
+    /// Whether its friction follows the pressure of the last milliseconds.
+    pub delayed: bool,
 }
 
 // Large slopes have a million of them and more.
-const _: () = assert!(size_of::<VertexEdge>() <= 192);
+const _: () = assert!(size_of::<VertexEdge>() <= 224);
 
 /// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
@@ -104,6 +117,8 @@ pub struct ContactSetting<'a> {
     /// Joint laws, and the factor on the strength of all joints.
     pub laws: &'a [JointLaw],
     pub strength: f64,
+    /// Share of the normal force of this step in that which delayed friction feels.
+    pub felt_share: f64,
 }
 
 /// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
@@ -135,13 +150,34 @@ impl VertexEdge {
     /// Limits of the joint law for the length of the contact.
     #[inline(always)]
     pub fn limits(&self, setting: &ContactSetting) -> Limits {
-        setting.laws[self.law].limits(self.bonded, self.history.intact).times(setting.strength)
+        let limits = setting.laws[self.law].limits(self.bonded, self.history.intact).times(setting.strength);
+        let limits = if self.mean_stress > 0.0 { limits.under(self.mean_stress) } else { limits };
+        if self.delayed { limits.delayed(setting.felt_share, self.history.felt) } else { limits }
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
     #[inline(always)]
     pub fn shear_limit(&self, normal: f64, setting: &ContactSetting) -> f64 {
         self.limits(setting).shear(normal, self.length)
+    }
+
+    /// Greatest shear force (N/m) in the state and under the normal force of the end of the step.
+    #[inline(always)]
+    fn shear_limit_now(&self, setting: &ContactSetting) -> f64 {
+        let (limits, normal) = (self.limits(setting), self.history.normal_force);
+        if self.history.state == ContactState::Open { limits.shear_open() } else { limits.shear(normal, self.length) }
+    }
+
+    /// Normal force (N/m) that friction feels after the step.
+    #[inline(always)]
+    pub fn felt_after(&self, setting: &ContactSetting) -> f64 {
+        let (normal, before) = (self.history.normal_force.max(0.0), self.history.felt);
+        if !self.delayed {
+            return normal;
+        }
+        let felt = before + (normal - before) * setting.felt_share;
+        // It fades to zero instead of to numbers that computers are slow with.
+        if felt < f64::MIN_POSITIVE { 0.0 } else { felt }
     }
 
     /// The normal spring.
@@ -181,16 +217,17 @@ impl VertexEdge {
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
-    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) (Eq. 15).
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) of the node along the edge
+    /// (Eq. 15).
     #[inline(always)]
     pub fn shear_after(&self, shear: f64, setting: &ContactSetting) -> (f64, f64) {
-        if self.history.state == ContactState::Open {
+        if self.history.state == ContactState::Open && !self.delayed {
             return (0.0, 0.0);
         }
-        let limit = self.shear_limit(self.history.normal_force, setting);
+        let limit = self.shear_limit_now(setting);
         let trial = self.shear_stored() - self.stiffness[1] * shear;
         let stored = trial.clamp(-limit, limit);
-        (stored, (trial - stored).abs() / self.stiffness[1])
+        (stored, (stored - trial) / self.stiffness[1])
     }
 
     /// Warm start: a contact that stays closed begins with its last force plus half of its last change, within its
@@ -214,8 +251,8 @@ impl VertexEdge {
         self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
     }
 
-    /// Stores the forces (N/m) of the joint, which are 0 unless it `bears`, under a limit of shear (N/m); `torn` after
-    /// a failure in tension. No branch depends on their values, which are hard to predict.
+    /// Stores the forces (N/m) of the joint, of which no normal one is left unless it `bears`, under a limit of shear
+    /// (N/m); `torn` after a failure in tension. No branch depends on their values, which are hard to predict.
     #[inline(always)]
     fn bear(&mut self, [normal, shear]: [f64; 2], bears: bool, torn: bool, limit: f64) {
         let slips = shear.abs() >= limit;
@@ -233,7 +270,8 @@ impl VertexEdge {
         let torn = normal < -limits.tension();
         let bears = !torn && (normal > 0.0 || limits.tension() > 0.0);
         let limit = limits.shear(normal, self.length);
-        let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0; 2] };
+        let hops = limits.shear_open();
+        let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0, shear.clamp(-hops, hops)] };
         self.bear(force, bears, torn, limit);
     }
 }

@@ -15,6 +15,7 @@ pub use crumbs::{Crumb, join_crumbs};
 pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
+pub use union_find::UnionFind;
 
 use crate::geometry::{Vector, id};
 

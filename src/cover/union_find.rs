@@ -3,7 +3,7 @@
 use std::ops::IndexMut;
 
 /// Disjoint sets of ids.
-pub(super) struct UnionFind<I>(Vec<I>);
+pub struct UnionFind<I>(Vec<I>);
 
 impl<I: Copy + Ord> UnionFind<I>
 where

@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use crate::contact::{BoltState, ContactHistory, NeighbourList};
 use crate::geometry::Vector;
-use crate::state::{Counters, Drive, Event, EventKind, Events, Inputs, Ledger, MostRest, State};
+use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
 use super::Simulation;
 use super::case::StageKind;
@@ -133,6 +133,7 @@ impl Simulation {
             plastic: _,
             columns: _,
             contacts,
+            friction_delay,
             neighbours,
             support_force: _,
             support_rest: _,
@@ -149,6 +150,10 @@ impl Simulation {
         self.check_clock(state)?;
         self.check_motion(state)?;
         self.check_contacts(contacts)?;
+        if let Some(FrictionDelay { time, hop }) = *friction_delay {
+            between("friction_delay.time", time, 0.0, TIME)?;
+            between("friction_delay.hop", hop, 0.0, LENGTH)?;
+        }
         self.check_neighbours(neighbours)?;
         self.check_stages(state)?;
         self.check_inputs("drive.from", from)?;
@@ -217,13 +222,17 @@ impl Simulation {
                 node,
                 side,
                 edge,
+                age,
+                kept_stiffness,
                 normal_force,
                 shear_force,
+                felt,
                 trend,
                 sheared,
                 offset,
                 rest,
                 slip,
+                way,
                 share,
                 state: _,
                 intact: _,
@@ -231,6 +240,9 @@ impl Simulation {
             index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
             index(format_args!("contacts[{k}].side"), side.number(), boundary.side_ends.len())?;
             index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
+            between(format_args!("contacts[{k}].age"), age.into(), 0.0, f64::INFINITY)?;
+            between(format_args!("contacts[{k}].kept_stiffness"), kept_stiffness.into(), 0.0, FORCE)?;
+            between(format_args!("contacts[{k}].felt"), felt, 0.0, FORCE)?;
             for (field, value, most) in [
                 ("normal_force", normal_force, FORCE),
                 ("shear_force", shear_force, FORCE),
@@ -240,6 +252,7 @@ impl Simulation {
                 ("offset", offset, LENGTH),
                 ("rest", rest, LENGTH),
                 ("slip", slip, LENGTH),
+                ("way", way, LENGTH),
                 ("share", share, RATE),
             ] {
                 number(format_args!("contacts[{k}].{field}"), value, most)?;

@@ -90,6 +90,7 @@ impl State {
             dt_last: _,
             static_stretch: _,
             ledger: _,
+            friction_delay: _,
             counters: _,
         } = self;
         let of_columns = columns.iter().map(|column| sum(&[&column.displacement, &column.velocity])).sum::<usize>();
@@ -116,14 +117,14 @@ impl Workspace {
         let Self { motion, selection, supports, sweep, .. } = self;
         let fields: [&dyn Array; 5] =
             [&self.load_force, &motion.predicted, &motion.damped, &sweep.increment, &motion.exposed];
-        let SelectionBuffers { accepted, cache, penetrating, .. } = selection;
+        let SelectionBuffers { accepted, cache, penetrating, faces, .. } = selection;
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", mass_matrix(&self.mass_matrix)),
             ("blocks", sum(&[&motion.blocks, &motion.start, &self.sums, &sweep.push, &motion.turns, &self.touching])),
             ("places", self.frames.bytes()),
             ("near sides", selection.near_sides.bytes()),
-            ("accepted pairs", accepted.bytes() + cache.bytes() + penetrating.bytes()),
+            ("accepted pairs", accepted.bytes() + cache.bytes() + penetrating.bytes() + faces.of_side.bytes()),
             ("search", selection.grid.bytes()),
             ("contacts", sum(&[&self.contacts, &self.outcomes])),
             ("open–close iteration", sweep.open_close.bytes()),

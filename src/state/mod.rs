@@ -22,8 +22,8 @@ pub use model::{
 };
 pub use quantity::Quantity;
 pub use workspace::{
-    ChunkSums, ContactOutcome, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, SweepBuffers, Workspace,
-    YieldBuffers,
+    ChunkSums, ContactOutcome, Face, FaceBuffers, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers,
+    SweepBuffers, Workspace, YieldBuffers,
 };
 
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,15 @@ pub struct MostRest {
     pub since: f64,
     /// Kinetic energies (J/m) of the few blocks and of all others, summed over the reports since then.
     pub kinetic: [f64; 2],
+}
+
+/// Delay of friction in a dynamic stage (Eq. 84).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrictionDelay {
+    /// Time (s) by which friction follows the normal force.
+    pub time: f64,
+    /// Gap (m) up to which faces that hop count as in touch.
+    pub hop: f64,
 }
 
 /// Everything that changes in time and that a checkpoint holds.
@@ -68,6 +77,8 @@ pub struct State {
     pub velocity: Vec<Vector>,
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,
+    /// How friction is delayed in a dynamic stage; none before its first step, and in static stages.
+    pub friction_delay: Option<FrictionDelay>,
     /// Near pairs of the last search.
     pub neighbours: NeighbourList,
     /// Force of each support (N/m).
@@ -126,6 +137,7 @@ impl State {
             displacement,
             velocity,
             contacts,
+            friction_delay,
             neighbours,
             support_force,
             support_rest,
@@ -147,7 +159,7 @@ impl State {
         } = other;
         (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
         (self.part, self.dt_last, self.static_stretch) = (*part, *dt_last, *static_stretch);
-        self.most_rest = *most_rest;
+        (self.most_rest, self.friction_delay) = (*most_rest, *friction_delay);
         (self.ledger, self.counters) = (*ledger, *counters);
         self.stage_starts.clone_from(stage_starts);
         self.displacement.clone_from(displacement);

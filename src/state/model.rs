@@ -7,7 +7,7 @@ use crate::mechanics::{
     Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
 };
 
-use super::OtherIntegrator;
+use super::{OtherIntegrator, SelectionBuffers};
 
 /// Covers that one fixity of the case holds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -188,6 +188,8 @@ pub struct Model {
     pub tolerance: f64,
     /// Constants of contact.
     pub entrance: EntranceRule,
+    /// Delay of friction in dynamic stages (s), if the case gives it.
+    pub friction_delay: Option<f64>,
     /// Most sweeps of the open–close iteration.
     pub sweeps_max: u32,
     /// The integrator; none for the explicit one.
@@ -199,15 +201,16 @@ pub struct Model {
 }
 
 impl Model {
-    /// Data that the contacts of a step share: the boundary at its positions, and joint laws with the factor on all
-    /// strengths.
+    /// Data that the contacts of a step share: the boundary at its positions, joint laws, and what the selection of the
+    /// contacts has found of their friction.
     pub fn contact_setting<'a>(
         &'a self,
         laws: &'a [JointLaw],
         frames: &'a Frames,
-        strength: f64,
+        selection: &SelectionBuffers,
     ) -> ContactSetting<'a> {
-        ContactSetting { boundary: &self.boundary, frames, laws, strength }
+        let SelectionBuffers { strength, felt_share, .. } = *selection;
+        ContactSetting { boundary: &self.boundary, frames, laws, strength, felt_share }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

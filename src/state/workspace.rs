@@ -2,7 +2,7 @@
 
 use crate::contact::{
     AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
-    PenetratingContacts, SearchGrid, SupportRow, VertexEdge,
+    PenetratingContacts, SearchGrid, SideId, SupportRow, VertexEdge,
 };
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
@@ -49,7 +49,7 @@ pub struct Workspace {
 impl Workspace {
     /// Data that the contacts of this step share.
     pub fn setting<'a>(&'a self, model: &'a Model, state: &'a State) -> ContactSetting<'a> {
-        model.contact_setting(&state.laws, &self.frames, self.selection.strength)
+        model.contact_setting(&state.laws, &self.frames, &self.selection)
     }
 }
 
@@ -106,6 +106,32 @@ pub struct SelectionBuffers {
     pub trace_law: Vec<LawId>,
     /// Factor on the strength of all joints in this step.
     pub strength: f64,
+    /// Share of the normal force of this step in that which delayed friction feels.
+    pub felt_share: f64,
+    /// Faces in touch in this step.
+    pub faces: FaceBuffers,
+}
+
+/// The face that the contacts of one block with one side are, in a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Face {
+    /// The side.
+    pub side: SideId,
+    /// Time (s) since it last parted, and whether it is in touch.
+    pub age: f32,
+    pub touches: bool,
+    /// Normal force (N/m) that friction feels of all its contacts, and the length (m) of those where it feels any.
+    pub felt: f64,
+    pub length: f64,
+}
+
+/// Faces of the block in hand.
+#[derive(Debug, Clone, Default)]
+pub struct FaceBuffers {
+    /// The faces.
+    pub faces: Vec<Face>,
+    /// Index of the face with each side, if there is one.
+    pub of_side: Vec<u32>,
 }
 
 /// Supports and bolts of a step.
@@ -133,8 +159,9 @@ pub struct SweepBuffers {
 pub struct ContactOutcome {
     /// Work of their forces (J/m).
     pub work: f64,
-    /// Part of it that friction dissipates (J/m).
+    /// Part of it that friction dissipates, and what dilation takes of that to lift the faces (J/m).
     pub friction: f64,
+    pub dilation: f64,
     /// Largest penetration (m) that springs resist.
     pub penetration: f64,
     /// Number of those that were seen for the first time in this step, and deep.

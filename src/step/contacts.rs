@@ -4,7 +4,7 @@ use crate::contact::{self, EdgeId, Frames, NarrowPhase, OpenClose, SearchView, V
 use crate::geometry::{Point, Vector};
 use crate::state::{Model, SelectionBuffers, State};
 
-use super::Substep;
+use super::{Regime, Substep};
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
 pub(super) const CONTACTS: usize = 2048;
@@ -77,6 +77,7 @@ pub fn entrance(
         flush_cosine: model.entrance.flush_cosine(),
         reach: reach.gap,
     };
+    let has_impacts = matches!(step.regime, Regime::Dynamic { .. }) && reach.ahead > 0.0;
     let narrow = NarrowPhase {
         rule,
         star: &model.covers.star_position,
@@ -86,6 +87,7 @@ pub fn entrance(
         default_law: state.law_switch[model.default_law],
         velocity: &state.velocity,
         dt: reach.ahead,
+        impacts: has_impacts.then(|| &model.mass_matrix.inverse_total[..]),
         first: state.step == 0,
         in_situ: model.in_situ.as_ref(),
         serial: step.serial,

@@ -5,6 +5,7 @@ mod applied;
 mod contacts;
 mod events;
 mod explicit;
+mod friction;
 mod guard;
 mod integrator;
 mod prepare;
@@ -16,6 +17,7 @@ mod substep;
 
 pub use applied::{acceleration, push_forces};
 pub use contacts::{Reach, entrance, locate, search};
+pub use friction::{delay_friction, delay_of};
 pub use guard::{Failure, StepError};
 pub use integrator::{Integrator, StepOutcome};
 pub use prepare::{begin_stage, prepare};

@@ -96,7 +96,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32,
     }
     state.acceleration.clear();
     state.static_stretch = 0.0;
-    state.most_rest = None;
+    (state.most_rest, state.friction_delay) = (None, None);
     state.stage = stage;
     state.stage_start = start;
     state.stage_step = 0;

@@ -3,12 +3,12 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{ContactHistory, ContactSetting, ContactState, JointLaw, SupportRow, VertexEdge};
+use crate::contact::{ContactHistory, ContactSetting, ContactState, SupportRow, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Counters};
 
-use super::Substep;
 use super::contacts::CONTACTS;
+use super::{Regime, Substep};
 
 /// Time (s) in which the allowance of a contact that was first seen deep fades to 1/e.
 const OFFSET_FADE: f64 = 0.5;
@@ -26,6 +26,8 @@ struct Settle<'a> {
     kick: f64,
     /// Share of an allowance that the sub-step leaves.
     fade: f64,
+    /// Whether the stage is static, so that faces in touch have rested on each other.
+    rests: bool,
 }
 
 impl Kernel for Settle<'_> {
@@ -33,30 +35,42 @@ impl Kernel for Settle<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Self { outcome, setting, velocities, dt, kick, fade, .. } = self;
+        let Self { outcome, setting, velocities, dt, kick, fade, rests, .. } = self;
         *outcome = ContactOutcome::default();
         for (contact, history) in self.contacts.iter().zip(self.histories) {
             // Not by `map` of an array, for which the contact would be written to memory.
             let relative = |velocity: &[Vector]| contact.relative(setting.boundary, velocity);
             let [before, after] = [relative(velocities[0]), relative(velocities[1])];
             let (stored, slipped) = contact.shear_after(after[1] * dt, &setting);
-            add_works(outcome, contact, [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick), stored);
+            let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
+            add_works(outcome, contact, moved, [stored, slipped]);
+            let steepest = stored.abs() / contact.history.normal_force.max(0.0);
+            let (way, raised) = setting.laws[contact.law].dilate(contact.history.way, slipped, steepest);
+            outcome.dilation += raised * (contact.history.normal_force + 0.5 * contact.stiffness[0] * raised);
             add_depths(outcome, contact);
-            *history = history_of(contact, &setting.laws[contact.law], stored, slipped);
+            *history = history_of(contact, stored, slipped);
+            (history.way, history.rest) = (way, history.rest + raised);
             history.offset *= fade;
+            history.felt = contact.felt_after(&setting);
+            if rests {
+                history.age = f32::INFINITY;
+            }
         }
     }
 }
 
-/// Adds the works of a contact that has moved by `moved` (m), normal and shear, and stores the shear force `stored`
-/// (N/m) now.
+/// Adds the works of a contact that has moved by `moved` (m), normal and shear, and now stores the shear force `stored`
+/// (N/m) after a slip (m): heat is the part of the work that the spring gave up by slipping, and never negative.
 #[inline(always)]
-fn add_works(outcome: &mut ContactOutcome, contact: &VertexEdge, [normal, shear]: [f64; 2], stored: f64) {
+fn add_works(
+    outcome: &mut ContactOutcome,
+    contact: &VertexEdge,
+    [normal, shear]: [f64; 2],
+    [stored, slipped]: [f64; 2],
+) {
     let history = &contact.history;
     outcome.work += history.normal_force * normal + history.shear_force * shear;
-    let old = contact.shear_stored();
-    let spent = history.shear_force * shear + 0.5 * (stored * stored - old * old) / contact.stiffness[1];
-    outcome.friction += if history.state == ContactState::Slip { spent } else { 0.0 };
+    outcome.friction += (stored * slipped).abs();
 }
 
 /// Adds how deep a contact is, and was when it was seen for the first time.
@@ -71,11 +85,10 @@ fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
 
 /// History of a contact that stores a shear force (N/m) and has slipped (m).
 #[inline(always)]
-fn history_of(contact: &VertexEdge, law: &JointLaw, stored: f64, slipped: f64) -> ContactHistory {
+fn history_of(contact: &VertexEdge, stored: f64, slipped: f64) -> ContactHistory {
     let mut history = contact.history;
     history.sheared = stored / contact.stiffness[1];
-    history.rest += law.dilate(history.slip, history.slip + slipped);
-    history.slip += slipped;
+    history.slip += slipped.abs();
     history.intact &= !contact.torn && slipped == 0.0;
     history
 }
@@ -90,12 +103,13 @@ pub fn settle_contacts(
     outcomes: &mut Vec<ContactOutcome>,
     counters: &mut Counters,
 ) {
-    let Substep { dt, kick, serial, .. } = *step;
+    let Substep { regime, dt, kick, serial, .. } = *step;
+    let rests = matches!(regime, Regime::Static { .. });
     histories.resize(contacts.len(), ContactHistory::default());
     outcomes.resize(contacts.len().div_ceil(CONTACTS), ContactOutcome::default());
     let fade = libm::exp(-dt / OFFSET_FADE);
     let settle = |((contacts, histories), outcome)| {
-        dispatch(Settle { contacts, histories, outcome, setting, velocities, dt, kick, fade });
+        dispatch(Settle { contacts, histories, outcome, setting, velocities, dt, kick, fade, rests });
     };
     if serial || contacts.len() <= CONTACTS {
         let runs = contacts.chunks(CONTACTS).zip(histories.chunks_mut(CONTACTS));

@@ -313,7 +313,8 @@ pub struct JointLaw {
     /// Dilation angle while slipping (degrees).
     #[serde(default)]
     pub dilation_deg: f64,
-    /// Slip (m) at which dilation ends; default: never.
+    /// Slip (m) to either side at which dilation ends; default: 0.05, ten times the slip at which the shear strength of a
+    /// joint of 1 m has its peak (Barton 1982). The faces come down again on the way back.
     #[serde(default)]
     pub dilation_slip: Option<f64>,
     /// Joint roughness coefficient (Barton–Bandis).
@@ -348,6 +349,9 @@ impl JointLaw {
         }
     }
 }
+
+/// Slip (m) at which dilation ends where a law does not say.
+pub const DILATION_SLIP: f64 = 0.05;
 
 /// Acceleration of gravity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -774,6 +778,10 @@ pub struct Solver {
     pub contact_theta: f64,
     /// Change of a contact force, relative to the largest, below which the open–close iteration has settled.
     pub contact_tolerance: f64,
+    /// Dynamic stages: time (s) by which friction follows the normal force of faces that stay in touch, so that blocks
+    /// slide as far on any mesh; 0 is Coulomb friction at once. Default: a shear wave's way through the blocks that
+    /// hang together, at most 0.02 s.
+    pub friction_delay: Option<f64>,
     /// Most sweeps of the open–close iteration in a step.
     pub sweeps_max: u32,
     /// Penetration, relative to the mesh size, at which the run stops as failed.
@@ -807,6 +815,7 @@ impl Default for Solver {
             shear_ratio: 0.5,
             contact_theta: 4.0,
             contact_tolerance: 1e-2,
+            friction_delay: None,
             sweeps_max: 100,
             penetration_limit: 0.2,
             mass_scaling: 1.0,

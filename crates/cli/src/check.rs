@@ -89,6 +89,7 @@ fn table(found: &Check) -> String {
         ("boundary edges", found.boundary_edges.to_string()),
         ("initial contacts", found.initial_contacts.to_string()),
         ("critical dt (s)", format!("{:.4e}", found.critical_dt)),
+        ("friction delay (ms)", format!("{:.2} in dynamic stages", 1e3 * found.friction_delay)),
         ("small covers treated", found.small_covers_treated.to_string()),
         ("tiny blocks", found.tiny_blocks.to_string()),
         ("merged vertices", found.merged_vertices.to_string()),

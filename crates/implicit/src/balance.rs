@@ -52,7 +52,7 @@ impl ImplicitStep<'_> {
     /// The contacts of the sub-step, what they share, and the buffers of the integrator.
     fn contacts_and_buffers(&mut self) -> (ContactSetting<'_>, &mut [VertexEdge], &ImplicitBuffers) {
         let Workspace { contacts, frames, selection, .. } = &mut *self.workspace;
-        (self.model.contact_setting(&self.state.laws, frames, selection.strength), contacts, &*self.buffers)
+        (self.model.contact_setting(&self.state.laws, frames, selection), contacts, &*self.buffers)
     }
 
     /// Forces of all supports at the positions reached.

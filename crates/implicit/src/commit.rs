@@ -23,6 +23,7 @@ impl ImplicitStep<'_> {
             *mean = moved / inertia.dt;
         }
         self.settle(inertia.dt);
+        works.friction -= self.workspace.outcomes.iter().map(|outcome| outcome.dilation).sum::<f64>();
         self.move_covers(implicit, inertia);
         if let Regime::Dynamic { damping } = self.regime {
             works.damping += self.implicit_damp(implicit, damping, inertia);
@@ -38,7 +39,7 @@ impl ImplicitStep<'_> {
         let step = self.substep(dt);
         let State { laws, velocity, contacts: histories, counters, support_force, .. } = &mut *self.state;
         let Workspace { motion, frames, selection, contacts, supports, outcomes, .. } = &mut *self.workspace;
-        let setting = self.model.contact_setting(laws, frames, selection.strength);
+        let setting = self.model.contact_setting(laws, frames, selection);
         settle_contacts(setting, &step, [velocity, &motion.predicted], contacts, histories, outcomes, counters);
         settle_supports(&supports.rows, support_force);
     }

@@ -8,8 +8,8 @@ use enmm::geometry::Vector;
 use enmm::mechanics::MassMatrix;
 use enmm::state::{Buffers, Model, State, Workspace};
 use enmm::step::{
-    Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion, entrance,
-    load_supports, locate, push_forces, ramp, search,
+    Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion,
+    delay_friction, entrance, load_supports, locate, push_forces, ramp, search,
 };
 
 use super::buffers::ImplicitBuffers;
@@ -210,6 +210,7 @@ impl ImplicitStep<'_> {
         let gap = rule.reach * size + REACH_STEPS * dt * motion.speed_max;
         let reach = Reach { gap: gap.min(rule.cutoff * size), ahead: 0.0 };
         entrance(model, state, &step, reach, frames, selection, contacts);
+        delay_friction(model, state, &step, mass_matrix, selection, contacts);
         seconds.search += (searched - located).as_secs_f64();
         seconds.entrance += (clock.elapsed() - searched + located).as_secs_f64();
         load_supports(model, state, &step, motion, &mut supports.rows);

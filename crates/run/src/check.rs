@@ -43,6 +43,8 @@ pub struct Check {
     pub initial_contacts: usize,
     /// Stability limit of the step (s).
     pub critical_dt: f64,
+    /// Delay of friction in a dynamic stage that begins with the untouched model (s).
+    pub friction_delay: f64,
     /// Covers with less than a thousandth of a full cover's mass, which only equal thirds keep from ruling the step.
     pub small_covers_treated: usize,
     /// Blocks with less than a thousandth of a lattice triangle's area.
@@ -88,6 +90,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         boundary_edges: built.boundary_pieces,
         initial_contacts: workspace.contacts.len(),
         critical_dt: model.critical_dt,
+        friction_delay: simulation.friction_delay(&workspace),
         small_covers_treated: small_covers(simulation, 2.0 * triangle),
         tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
         block_areas,

@@ -135,7 +135,8 @@ impl Slope {
     /// The case; where joints dilate by an angle the rock is ten times as stiff: limit analysis is exact for rigid
     /// blocks, and slender columns of soft rock lean, slip and fail some per cent earlier.
     fn case(&self, friction_deg: f64, dilation_deg: Option<f64>) -> Case {
-        let dilation = dilation_deg.map_or(String::new(), |angle| format!("dilation_deg = {angle:?}\n"));
+        let dilation =
+            dilation_deg.map_or(String::new(), |angle| format!("dilation_deg = {angle:?}\ndilation_slip = 1e3\n"));
         let young = if dilation_deg.is_some() { 5e10 } else { 5e9 };
         let text = format!(
             "title = \"slope\"\n[domain]\noutline = [[0.0, 0.0], [48.0, 0.0], [48.0, 20.0], [{:.3}, 20.0], \

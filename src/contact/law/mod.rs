@@ -39,7 +39,7 @@ pub struct JointLaw {
     pub residual_tension: f64,
     /// tan ψ.
     pub dilation: f64,
-    /// Slip (m) at which dilation ends.
+    /// Slip (m) from the middle to either side at which dilation ends.
     pub dilation_slip: f64,
     /// Greatest closure (m); infinite for a linear normal stiffness.
     pub closure_max: f64,
@@ -60,6 +60,8 @@ pub enum Limits {
         cohesion: f64,
         /// Tensile force (N/m).
         tension: f64,
+        /// Shear force (N/m) by the pressure that friction still feels, whatever the normal force is now (Eq. 84).
+        felt: f64,
     },
     /// Friction on a curve, without cohesion and tension.
     BartonBandis {
@@ -72,7 +74,7 @@ pub enum Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self::MohrCoulomb { friction: 0.0, cohesion: 0.0, tension: 0.0 }
+        Self::MohrCoulomb { friction: 0.0, cohesion: 0.0, tension: 0.0, felt: 0.0 }
     }
 }
 
@@ -81,10 +83,48 @@ impl Limits {
     /// positive).
     #[inline(always)]
     pub fn shear(self, normal: f64, length: f64) -> f64 {
+        self.shear_pressed(normal, length) + self.shear_open()
+    }
+
+    /// The part of it that the normal force of this step gives.
+    #[inline(always)]
+    pub fn shear_pressed(self, normal: f64, length: f64) -> f64 {
         match self {
             Self::MohrCoulomb { friction, cohesion, .. } => (normal * friction + cohesion).max(0.0),
             Self::BartonBandis { .. } if normal <= 0.0 => 0.0,
             Self::BartonBandis { roughness, factor } => normal * roughness.friction(normal / length) * factor,
+        }
+    }
+
+    /// Greatest shear force (N/m) of a contact that is open: of one that has just hopped.
+    #[inline(always)]
+    pub fn shear_open(&self) -> f64 {
+        match self {
+            Self::MohrCoulomb { felt, .. } => *felt,
+            Self::BartonBandis { .. } => 0.0,
+        }
+    }
+
+    /// Limits where the mean normal stress (Pa) of its faces rules the friction of a rough joint.
+    pub fn under(self, mean_stress: f64) -> Self {
+        match self {
+            Self::MohrCoulomb { .. } => self,
+            Self::BartonBandis { roughness, factor } => {
+                let friction = roughness.friction(mean_stress) * factor;
+                Self::MohrCoulomb { friction, cohesion: 0.0, tension: 0.0, felt: 0.0 }
+            }
+        }
+    }
+
+    /// Limits of friction that feels a `share` of the normal force of this step, and the rest from the normal force
+    /// `felt` (N/m) before it (Eq. 84).
+    pub fn delayed(self, share: f64, felt: f64) -> Self {
+        match self {
+            Self::MohrCoulomb { friction, cohesion, tension, .. } => {
+                let felt = (1.0 - share) * felt * friction;
+                Self::MohrCoulomb { friction: share * friction, cohesion, tension, felt }
+            }
+            Self::BartonBandis { .. } => self,
         }
     }
 
@@ -110,9 +150,12 @@ impl Limits {
     #[inline(always)]
     pub fn times(self, by: f64) -> Self {
         match self {
-            Self::MohrCoulomb { friction, cohesion, tension } => {
-                Self::MohrCoulomb { friction: friction * by, cohesion: cohesion * by, tension: tension * by }
-            }
+            Self::MohrCoulomb { friction, cohesion, tension, felt } => Self::MohrCoulomb {
+                friction: friction * by,
+                cohesion: cohesion * by,
+                tension: tension * by,
+                felt: felt * by,
+            },
             Self::BartonBandis { roughness, factor } => Self::BartonBandis { roughness, factor: factor * by },
         }
     }
@@ -130,7 +173,7 @@ impl JointLaw {
         } else {
             [self.residual_friction, self.residual_cohesion, self.residual_tension]
         };
-        Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length }
+        Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length, felt: 0.0 }
     }
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness
@@ -141,9 +184,15 @@ impl JointLaw {
         [self.normal_stiffness * over(self.penalty[0]), self.shear_stiffness * over(self.penalty[1])]
     }
 
-    /// Opening (m) by dilation between two values of accumulated slip (m).
+    /// How a joint that slips by `slip` (m) climbs its asperities, from a way (m) up or down along them: the way after
+    /// it, and what it opens (m) (Eq. 21). It climbs no steeper than `steepest`, friction over normal force, so that it
+    /// takes no more work than friction gives.
     #[inline(always)]
-    pub fn dilate(&self, from: f64, to: f64) -> f64 {
-        (to.min(self.dilation_slip) - from.min(self.dilation_slip)) * self.dilation
+    pub fn dilate(&self, way: f64, slip: f64, steepest: f64) -> (f64, f64) {
+        let after = (way + slip).clamp(-self.dilation_slip, self.dilation_slip);
+        let climbs = after.abs() > way.abs();
+        let share = if climbs && steepest < self.dilation { steepest / self.dilation } else { 1.0 };
+        let after = way + (after - way) * share;
+        (after, (after.abs() - way.abs()) * self.dilation)
     }
 }

@@ -1,5 +1,7 @@
 //! Makes a contact from an accepted candidate: geometry, law, stiffness and history.
 
+use std::f64::consts::TAU;
+
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
@@ -53,7 +55,7 @@ impl NarrowPhase<'_> {
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let Tributary { length, bonded, penalty, share } = self.tributary(node, candidate);
+        let Tributary { length, bonded, penalty, share, whole } = self.tributary(node, candidate);
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
@@ -62,7 +64,13 @@ impl NarrowPhase<'_> {
             Some(known) => self.rule.history[known as usize],
             None => self.first_sight(candidate, length, (closure, stiffness[1]), normal),
         };
-        let history = ContactHistory { edge: candidate.edge, share, ..history };
+        let mut history = ContactHistory { edge: candidate.edge, share, ..history };
+        if let Some(masses) = self.impacts {
+            let blocks = [point, edge].map(|point| boundary.block[point]);
+            let mass = 1.0 / (masses[blocks[0].index()] + masses[blocks[1].index()]);
+            let kept = self.keep_stiffness(candidate.gap, (stiffness[0], whole), mass, &mut history);
+            stiffness = stiffness.map(|k| k * kept);
+        }
         let gap = candidate.gap + history.offset;
         if self.laws[law].penalty[0] {
             let blocks = [point, edge].map(|point| boundary.block[point]);
@@ -80,10 +88,41 @@ impl NarrowPhase<'_> {
             gap,
             length,
             bonded,
+            mean_stress: 0.0,
             law,
             torn: false,
             fresh: candidate.held.is_none(),
+            delayed: false,
         };
+    }
+
+    /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch for
+    /// the time in which a mass (kg/m) swings on it once, so that an impact has a potential, and lets it go in as much
+    /// time again, or at once where it begins to share its length with another one (Eq. 86). The force stays, by an
+    /// allowance.
+    #[inline(always)]
+    fn keep_stiffness(&self, gap: f64, (now, whole): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
+        let (age, kept) = (f64::from(history.age), f64::from(history.kept_stiffness));
+        let closed = gap + history.offset - history.rest;
+        let swing = TAU * (mass / if kept > 0.0 { kept } else { now }).sqrt();
+        if age >= 2.0 * swing {
+            history.kept_stiffness = 0.0;
+            return 1.0;
+        }
+        if kept == 0.0 {
+            if closed < 0.0 && age < swing && whole {
+                history.kept_stiffness = now as f32;
+            }
+            return 1.0;
+        }
+        if age < swing && whole {
+            return kept / now;
+        }
+        let share = if whole { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
+        let next = kept + (now - kept) * share;
+        history.kept_stiffness = if whole { next as f32 } else { 0.0 };
+        history.offset += closed * (kept / next - 1.0);
+        next / now
     }
 
     /// Factor on the default stiffness at the penetration that a step would reach from a gap (m) that opens at some
@@ -137,7 +176,9 @@ impl NarrowPhase<'_> {
         normal: Vector,
     ) -> ContactHistory {
         let ContactCandidate { node, side, edge, .. } = *candidate;
-        let mut history = ContactHistory { node, side, edge, intact: self.first, ..ContactHistory::default() };
+        // Contacts of the untouched model have rested.
+        let age = if self.first { f32::INFINITY } else { 0.0 };
+        let mut history = ContactHistory { node, side, edge, age, intact: self.first, ..ContactHistory::default() };
         if self.rule.is_deep(candidate) {
             history.offset = -candidate.gap;
         }

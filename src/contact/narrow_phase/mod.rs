@@ -46,6 +46,8 @@ pub struct NarrowPhase<'a> {
     pub velocity: &'a [Vector],
     /// Step (s) for which the default stiffness looks ahead; 0 in an implicit step.
     pub dt: f64,
+    /// 1/M (1/kg·m) of all blocks, in an explicit step in which impacts keep the stiffness of their first touch.
+    pub impacts: Option<&'a [f64]>,
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
     /// Stress xx, yy, xy (Pa) before the first step, by position.

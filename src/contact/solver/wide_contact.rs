@@ -29,6 +29,8 @@ pub struct WideContact {
     force: [F64x8; 2],
     friction: F64x8,
     cohesion: F64x8,
+    /// Shear force (N/m) by the pressure that friction still feels.
+    felt: F64x8,
     /// Normal force (N/m) at or below which each is open.
     open: F64x8,
     /// Where its contacts are in the order.
@@ -188,11 +190,11 @@ impl WideContact {
         (self.at[0][lane], self.at[1][lane]) = (at.x, at.y);
         start.take(lane, contact, from.approach);
         start.joined |= u8::from(blocks[0].blocks[lane] == blocks[1].blocks[lane]) << lane;
-        let (friction, cohesion, tension) = match limits {
-            Limits::MohrCoulomb { friction, cohesion, tension } => (friction, cohesion, tension),
-            Limits::BartonBandis { .. } => (0.0, 0.0, 0.0),
+        let (friction, cohesion, tension, felt) = match limits {
+            Limits::MohrCoulomb { friction, cohesion, tension, felt } => (friction, cohesion, tension, felt),
+            Limits::BartonBandis { .. } => (0.0, 0.0, 0.0, 0.0),
         };
-        (self.friction[lane], self.cohesion[lane]) = (friction, cohesion);
+        (self.friction[lane], self.cohesion[lane], self.felt[lane]) = (friction, cohesion, felt);
         self.open[lane] = if tension > 0.0 { (-tension).next_down() } else { 0.0 };
         self.curved |= limits.is_curved() | (start.closing[0] != 0);
     }
@@ -204,7 +206,7 @@ impl WideContact {
             self.points[k].leave_out(lane);
             (self.at[k][lane], self.normal[k][lane], self.force[k][lane]) = (0.0, 0.0, 0.0);
         }
-        (self.open[lane], self.friction[lane], self.cohesion[lane]) = (0.0, 0.0, 0.0);
+        (self.open[lane], self.friction[lane], self.cohesion[lane], self.felt[lane]) = (0.0, 0.0, 0.0, 0.0);
     }
 
     /// Makes of what has been taken what the springs answer with in this step (Eqs. 14, 15).
@@ -318,7 +320,7 @@ impl WideContact {
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
         (self.open_lanes, self.compressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
-        let limit = lanes.keep_above(limit, normal, open);
+        let limit = lanes.keep_above(limit, normal, open) + lanes.load(&self.felt);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
         let impulse = turned(lanes, [x, y], step, from.options.kick);
@@ -355,7 +357,7 @@ impl WideContact {
                 asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);
             }
             if closure.is_curved() || law.is_curved() {
-                limits[lane] = law.shear(asked[lane], contact.length);
+                limits[lane] = law.shear_pressed(asked[lane], contact.length);
             }
         }
     }

@@ -16,9 +16,9 @@ use super::{Regime, StepOutcome, StepReport, Substep, guard, report};
 
 /// Ends a sub-step; the outcome holds the report of its start when one is wanted.
 pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) -> StepOutcome {
-    let Workspace { mass_matrix, motion, sums, frames, contacts, outcomes, supports, sweep, .. } = workspace;
+    let Workspace { mass_matrix, motion, sums, frames, selection, contacts, outcomes, supports, sweep, .. } = workspace;
     let totals = finish(model, state, step, mass_matrix, motion, sweep, sums);
-    let setting = model.contact_setting(&state.laws, frames, workspace.selection.strength);
+    let setting = model.contact_setting(&state.laws, frames, selection);
     let (velocities, counters) = ([&state.velocity[..], &motion.predicted], &mut state.counters);
     settle_contacts(setting, step, velocities, contacts, &mut state.contacts, outcomes, counters);
     settle_supports(&supports.rows, &mut state.support_force);

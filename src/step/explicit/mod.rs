@@ -20,6 +20,7 @@ use crate::mechanics::MassMatrix;
 use crate::state::{Counters, Model, State, Workspace};
 
 use super::contacts::{self, Reach};
+use super::friction::delay_friction;
 use super::integrator::{Integrator, StepOutcome};
 use super::{Regime, StepInterval, StepReport, Substep, applied, guard, quiet, ramp, records, report, settle};
 
@@ -60,8 +61,9 @@ impl Integrator for Explicit {
     fn find_contacts(&self, model: &Model, state: &mut State, workspace: &mut Workspace, interval: StepInterval) {
         let step = Substep::new(interval, state.dt_last, workspace.serial);
         set_out(model, state, &step, workspace);
-        let Workspace { motion, frames, selection, contacts, .. } = workspace;
+        let Workspace { mass_matrix, motion, frames, selection, contacts, .. } = workspace;
         touch(model, state, &step, motion.speed_max, frames, selection, contacts);
+        delay_friction(model, state, &step, mass_matrix, selection, contacts);
     }
 
     fn each_contact(
@@ -112,10 +114,11 @@ fn cover(
     let Workspace { mass_matrix, motion, frames, selection, contacts, supports, sweep, seconds, .. } = workspace;
     let mut clock = Instant::now();
     touch(model, state, &step, motion.speed_max, frames, selection, contacts);
+    delay_friction(model, state, &step, mass_matrix, selection, contacts);
     answer(model, state, &step, mass_matrix, motion, supports);
     seconds.entrance += lap(&mut clock);
     arrange(model, &state.neighbours, mass_matrix, selection, &mut sweep.open_close);
-    let approach = approach(model, state, &step, motion, frames, selection.strength);
+    let approach = approach(model, state, &step, motion, frames, selection);
     let swept = open_close(model, &step, mass_matrix, &approach, contacts, supports, sweep);
     seconds.sweep += lap(&mut clock);
     if swept.unsettled > UNSETTLED && halvings < HALVINGS_MAX {

@@ -72,7 +72,7 @@ pub(super) fn approach<'a>(
     step: &Substep,
     motion: &'a MotionBuffers,
     frames: &'a Frames,
-    strength: f64,
+    selection: &SelectionBuffers,
 ) -> Approach<'a> {
     Approach {
         predicted: &motion.predicted,
@@ -80,7 +80,7 @@ pub(super) fn approach<'a>(
         dt_last: state.dt_last,
         forward: model.theta_in(step.dt),
         damping: if let Regime::Dynamic { damping } = step.regime { Some(damping) } else { None },
-        setting: model.contact_setting(&state.laws, frames, strength),
+        setting: model.contact_setting(&state.laws, frames, selection),
         motion: &motion.blocks,
     }
 }

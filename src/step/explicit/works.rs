@@ -23,7 +23,7 @@ pub(super) fn contact_works(
     let mut works = Ledger::default();
     for outcome in outcomes {
         works.contact_work += outcome.work;
-        works.friction -= outcome.friction;
+        works.friction += outcome.friction - outcome.dilation;
     }
     for row in &supports.rows {
         let support = &model.supports[row.support as usize];

@@ -255,7 +255,7 @@ fn joint_law(key: &Key, law: &JointLaw) -> Check {
     optional(key, "residual_cohesion", law.residual_cohesion, Law::STRENGTH, "Pa", "leave it out for the peak")?;
     number(key, "residual_tension", law.residual_tension, Law::STRENGTH, "Pa", "0 for a broken joint")?;
     number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
-    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for no end")?;
+    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for 0.05 m")?;
     joints::validate_kind(key, law)
 }
 
@@ -325,6 +325,8 @@ fn solver(key: &Key, solver: &Solver) -> Check {
     number(key, "shear_ratio", solver.shear_ratio, Range::above(0.0).to(10.0), "", "0.5 is the default")?;
     number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
     number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
+    let hint = "leave it out for the default, a shear wave's way through the blocks";
+    optional(key, "friction_delay", solver.friction_delay, Range::from(0.0).to(1.0), "s", hint)?;
     whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "100 is the default")?;
     number(key, "mass_scaling", solver.mass_scaling, Range::from(1.0).to(100.0), "", "1 is the default")?;
     number(key, "penetration_limit", solver.penetration_limit, share, "", "0.2 is the default")?;

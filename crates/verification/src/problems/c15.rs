@@ -34,7 +34,7 @@ const SAMPLES: usize = 100;
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let spacing = if setup.quick { setup.get("spacing").max(16.0) } else { setup.get("spacing") };
     let text = |angle_deg: f64| {
-        let law = format!("friction_deg = {angle_deg:?}\ndilation_deg = {angle_deg:?}\n");
+        let law = format!("friction_deg = {angle_deg:?}\ndilation_deg = {angle_deg:?}\ndilation_slip = 1e3\n");
         slope_text(spacing, 0.0).replace("friction_deg = 50\n", &law)
     };
     let tangent = 1.0 / bound_of(setup, "limit_analysis", text(ASKED))?.associated.factor.value();
