@@ -51,7 +51,6 @@ mod observe;
 mod polygons;
 mod quiet_boundary;
 mod runaway;
-mod stress_out_of_plane;
 mod vertex_rule;
 mod water_in_joints;
 mod yield_paths;

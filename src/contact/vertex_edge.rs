@@ -72,8 +72,9 @@ pub struct VertexEdge {
     pub history: ContactHistory,
     /// Boundary point of the node.
     pub point: EdgeId,
-    /// Covers at the position on the edge that the node faces, and their weights there.
+    /// Covers at the position on the edge that the node faces.
     pub covers: [CoverId; 3],
+    /// Their weights there.
     pub weights: Weights,
     /// Outward unit normal of the edge.
     pub normal: Vector,
@@ -81,8 +82,9 @@ pub struct VertexEdge {
     pub stiffness: [f64; 2],
     /// Gap of the springs along the normal (m); negative in penetration.
     pub gap: f64,
-    /// Tributary length (m), and the part of it on which cohesion and tension act.
+    /// Tributary length (m).
     pub length: f64,
+    /// Part of it on which cohesion and tension act (m).
     pub bonded: f64,
     /// Law of the joint.
     pub law: LawId,
@@ -98,11 +100,13 @@ const _: () = assert!(size_of::<VertexEdge>() <= 192);
 /// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
 pub struct ContactSetting<'a> {
-    /// Boundary of the blocks, and its edges and nodes at their current positions.
+    /// Boundary of the blocks.
     pub boundary: &'a Boundary,
+    /// Its edges and nodes at their current positions.
     pub frames: &'a Frames,
-    /// Joint laws, and the factor on the strength of all joints.
+    /// Joint laws.
     pub laws: &'a [JointLaw],
+    /// Factor on the strength of all joints.
     pub strength: f64,
 }
 

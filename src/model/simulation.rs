@@ -366,7 +366,8 @@ impl Simulation {
         Ok(())
     }
 
-    fn energies(&self) -> Ledger {
+    /// Energies (J/m) now beside the works so far: kinetic, strain and potential energy.
+    pub fn energies(&self) -> Ledger {
         if self.workspace.mass_matrix.mass.is_empty() {
             return Ledger::default();
         }
