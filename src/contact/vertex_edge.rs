@@ -62,7 +62,7 @@ impl ContactHistory {
 }
 
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
-/// and the law of its joint, is in the [`ContactSetting`].
+/// and the law of its joint, is in the `ContactSetting`.
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
@@ -210,7 +210,7 @@ impl VertexEdge {
         [normal_force, shear_force]
     }
 
-    /// Stores the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and their change.
+    /// Stores the forces (N/m) at the end of an explicit step, as `bear` does, and their change.
     #[inline(always)]
     pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, setting: &ContactSetting) {
         let ContactHistory { normal_force, shear_force, .. } = self.history;

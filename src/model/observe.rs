@@ -161,7 +161,8 @@ impl Simulation {
         step::block_motion(self.model(), self.state(), &self.workspace().mass_matrix, block)
     }
 
-    /// Mass (kg/m) of blocks that are too few to decide about a slope, see [`step::mass_of_few`].
+    /// Mass (kg/m) of blocks that are too few to decide about a slope: a thousandth of all free rock that no support
+    /// holds, or of all free rock where supports hold each block.
     pub fn mass_of_few(&self) -> f64 {
         step::mass_of_few(self.model(), &self.workspace().mass_matrix)
     }

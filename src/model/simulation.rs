@@ -188,7 +188,7 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Advances one internal step; see [`step::advance`].
+    /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start.
     ///
     /// # Errors
     /// A numerical failure; the state is then invalid and must be restored.
@@ -264,8 +264,8 @@ impl Simulation {
     }
 
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out. A few blocks that rattle or
-    /// fall do not hold it up ([`step::mass_of_few`]): it has converged, too, when the motion of all others has died
-    /// out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
+    /// fall do not hold it up ([`Simulation::mass_of_few`]): it has converged, too, when the motion of all others has
+    /// died out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
         let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());
@@ -458,7 +458,7 @@ impl Simulation {
         (sample(&self.state().displacement), sample(&self.state().velocity))
     }
 
-    /// Linear and angular momentum of the free blocks, see [`step::momentum`].
+    /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
     pub fn momentum(&self) -> (Vector, f64) {
         step::momentum(self.model(), self.state(), &self.workspace.mass_matrix)
     }
