@@ -8,22 +8,45 @@
 //! # API boundary
 //!
 //! [`model`], [`cosimulation`] and [`geometry`] are the interface of the engine; `CHANGELOG.md` announces its changes.
-//! The other rooms are public for the tests and tools of this repository alone. They are hidden from the documentation,
-//! and they change without notice.
+//! [`model::tables`] names the tables that a built model and its state hold. The other rooms are private. The feature
+//! `internals` opens them for another integrator and for tests; they change without notice.
 #![forbid(unsafe_code)]
+// Parts of the rooms serve the implicit integrator and tests alone.
+#![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports))]
 
-#[doc(hidden)]
-pub mod contact;
+mod contact;
 pub mod cosimulation;
-#[doc(hidden)]
-pub mod cover;
+mod cover;
 pub mod geometry;
-#[doc(hidden)]
-pub mod mechanics;
+mod mechanics;
 pub mod model;
+mod state;
+mod step;
+
+/// The rooms behind the interface, for another integrator and for tests.
+#[cfg(feature = "internals")]
 #[doc(hidden)]
-pub mod state;
-#[doc(hidden)]
-pub mod step;
+pub mod internals {
+    /// Contact of blocks.
+    pub mod contact {
+        pub use crate::contact::*;
+    }
+    /// Covers, elements and blocks.
+    pub mod cover {
+        pub use crate::cover::*;
+    }
+    /// Masses, stress, loads and motion.
+    pub mod mechanics {
+        pub use crate::mechanics::*;
+    }
+    /// The data of a simulation.
+    pub mod state {
+        pub use crate::state::*;
+    }
+    /// The stages of a step.
+    pub mod step {
+        pub use crate::step::*;
+    }
+}
 
 pub use state::bytes::engine_version;

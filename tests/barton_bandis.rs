@@ -36,7 +36,8 @@ fn joint(simulation: &Simulation) -> (f64, f64, f64) {
     let contacts = simulation.contacts();
     let length: f64 = contacts.iter().map(|c| c.length).sum();
     assert!((length / LENGTH - 1.0).abs() < 1e-3, "strains of some 1e-4: {length}");
-    let mean = |of: &dyn Fn(&enmm::contact::VertexEdge) -> f64| contacts.iter().map(|c| of(c) * c.length).sum::<f64>();
+    let mean =
+        |of: &dyn Fn(&enmm::model::tables::VertexEdge) -> f64| contacts.iter().map(|c| of(c) * c.length).sum::<f64>();
     (mean(&|c| -c.gap) / length, contacts.iter().map(|c| c.history.normal_force).sum(), {
         contacts.iter().map(|c| c.history.shear_force).sum::<f64>().abs()
     })

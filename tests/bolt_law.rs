@@ -1,8 +1,9 @@
 //! Bolts yield, break and unload as their law says, worked out by hand.
 
-use enmm::contact::{BoltCondition, BoltRow, BoltSegment, BoltState, Pair};
-use enmm::cover::{BlockId, CoverId};
 use enmm::geometry::{Point, Vector};
+use enmm::internals::contact::{BoltRow, Pair};
+use enmm::model::tables::{BlockId, CoverId};
+use enmm::model::{BoltCondition, BoltSegment, BoltState};
 
 fn bar() -> BoltSegment {
     BoltSegment {

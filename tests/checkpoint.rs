@@ -2,9 +2,8 @@
 //! any number of threads; a checkpoint that is not whole, or not of this case and version, is refused.
 
 use crate::common::simulation;
-use enmm::model::Simulation;
-use enmm::state::State;
-use enmm::state::bytes::{BytesError, decode, encode};
+use enmm::model::bytes::{BytesError, decode, encode};
+use enmm::model::{Simulation, State};
 use enmm_io::checkpoint::{CheckpointError, load, save};
 
 /// A jointed slope whose covers are enough to be shared between threads (more than 2048), falling apart.
@@ -99,7 +98,7 @@ fn what_is_shown_follows_from_the_state_alone() {
     let mut other = simulation(SLOPE);
     other.restore(one.state().clone());
     assert_eq!(one.block_states(), other.block_states());
-    assert_eq!(one.snapshot(), other.snapshot());
+    assert_eq!(format!("{:?}", one.contacts()), format!("{:?}", other.contacts()));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Free-field columns move as closed forms of layers say.
 
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
-use enmm::mechanics::{Column, ColumnDrive, ColumnState, Elasticity, Foot};
+use enmm::internals::mechanics::{Column, ColumnDrive, ColumnState, Elasticity, Foot};
+use enmm::model::tables::BlockId;
 
 fn column(foot: Foot) -> Column {
     let rock = Elasticity { lambda: 2.0, mu: 1.0, density: 1.0 };

@@ -1,6 +1,6 @@
 //! Claim: corners, nodes and sides of the boundary are those of the drawing, whatever the constants that find them.
 
-use enmm::contact::{Boundary, EntranceRule};
+use enmm::model::tables::{Boundary, EntranceRule};
 use enmm::model::{Simulation, assemble::outlines};
 
 use crate::common::root;

@@ -1,8 +1,8 @@
 //! Claim: the contact solver that steps use finds what plain Gauss–Seidel over the equations of theory §5 finds.
 
 use crate::common::simulation;
-use enmm::contact::{Approach, ContactState, OpenClose, OtherConstraints, SolverOptions, reference};
-use enmm::model::Simulation;
+use enmm::internals::contact::{Approach, OpenClose, OtherConstraints, SolverOptions, reference};
+use enmm::model::{ContactState, Simulation};
 
 /// Both solvers sweep until no force changes by more than this share of itself.
 const SETTLED: f64 = 1e-13;

@@ -7,7 +7,7 @@ use crate::common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
 use enmm::model::BlockState;
-use enmm::state::bytes::{decode, encode};
+use enmm::model::bytes::{decode, encode};
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 fn example(name: &str) -> LoadedCase {

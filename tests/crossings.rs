@@ -4,8 +4,8 @@
 use crate::common::extent::by_extent;
 use crate::common::parts::rock;
 use crate::common::{run_stage, simulation, varied_rules};
-use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
+use enmm::model::tables::EntranceRule;
 
 /// Gravity on a plane of 30° in axes along it (m/s²).
 const ALONG: f64 = 4.905;

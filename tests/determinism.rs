@@ -2,7 +2,7 @@
 
 use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
-use enmm::state::State;
+use enmm::model::State;
 
 /// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several
 /// groups.

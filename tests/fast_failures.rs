@@ -5,9 +5,9 @@ use crate::common::claims::motion;
 use crate::common::extent::by_extent;
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation, varied_rules};
-use enmm::contact::EntranceRule;
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
+use enmm::model::tables::EntranceRule;
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::common::extent::by_extent;
 use crate::common::run_stage;
-use enmm::contact::EntranceRule;
 use enmm::model::overlap::Audit;
+use enmm::model::tables::EntranceRule;
 use enmm::model::{Case, Simulation};
 
 /// The case of the README.

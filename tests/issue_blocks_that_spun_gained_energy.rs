@@ -5,8 +5,7 @@
 use crate::common::claims::{assert_ledger, block_at};
 use crate::common::simulation;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 const GRAVITY: f64 = 9.81;
 

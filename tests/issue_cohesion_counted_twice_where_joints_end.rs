@@ -1,6 +1,6 @@
 //! Cohesion on a joint on which other joints end is that of its length: faces of those joints count on their own.
 
-use enmm::contact::Limits;
+use enmm::internals::contact::Limits;
 use enmm::model::{Case, Simulation};
 use serde_json::json;
 

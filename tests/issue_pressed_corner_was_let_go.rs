@@ -6,9 +6,9 @@
 //! Claim: a corner carries force until the corners have parted, or the other corner takes over.
 
 use crate::common::{run_stage, simulation};
-use enmm::contact::{EdgeId, VertexEdge};
 use enmm::geometry::Point;
 use enmm::model::Simulation;
+use enmm::model::tables::{EdgeId, VertexEdge};
 
 /// Tops of the held block and of the one that slides (m).
 const TOPS: [f64; 2] = [2.0, 2.004];

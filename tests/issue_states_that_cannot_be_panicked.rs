@@ -5,10 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use crate::common::saved::Whole;
-use enmm::contact::{EdgeId, LawId, NodeId, SideId};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::state::bytes::{decode, encode};
+use enmm::model::bytes::{decode, encode};
+use enmm::model::tables::{EdgeId, LawId, NodeId, SideId};
 use enmm_io::load_case;
 
 /// A block on a slab, pushed by a host, between two internal steps; and the bytes of its state.

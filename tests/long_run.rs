@@ -7,10 +7,9 @@ use crate::common::extent::by_extent;
 use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
-use enmm::state::State;
-use enmm::state::bytes::{decode, encode};
-use enmm::step::energies;
+use enmm::internals::step::energies;
+use enmm::model::bytes::{decode, encode};
+use enmm::model::{Simulation, State};
 
 /// One irregular block that swings freely after a uniform stretch.
 fn case(mesh: &str) -> String {

@@ -53,7 +53,6 @@ mod polygons;
 mod quiet_boundary;
 mod runaway;
 mod sliding_converges;
-mod stress_out_of_plane;
 mod vertex_rule;
 mod water_in_joints;
 mod yield_paths;

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use crate::common::claims::assert_ledger;
 use crate::common::run_stage;
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
+use enmm::model::tables::BlockId;
 use enmm_io::parse_case;
 
 const WALL: &str = include_str!("../examples/cases/masonry_wall.toml");

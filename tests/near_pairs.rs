@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use enmm::contact::{Boundary, EdgeId, Frames, NeighbourList, NodeId, SearchGrid, SearchView, SideId};
-use enmm::cover::BlockId;
 use enmm::geometry::{Vector, segment};
+use enmm::internals::contact::{Frames, NeighbourList, SearchGrid, SearchView, SideId};
 use enmm::model::Simulation;
+use enmm::model::tables::{BlockId, Boundary, EdgeId, NodeId};
 
 /// Whether a node and an edge can touch: not two fixed blocks, and in one block only both sides of a partial cut.
 fn may_meet(boundary: &Boundary, fixed: &[bool], node: NodeId, edge: EdgeId) -> bool {

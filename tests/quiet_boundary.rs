@@ -4,10 +4,8 @@
 use crate::common::claims::stresses;
 use crate::common::parts::dynamic;
 use crate::common::{run_stage, simulation};
-use enmm::model::Simulation;
-use enmm::state::State;
-use enmm::state::bytes::{decode, encode};
-use enmm::step::StepReport;
+use enmm::model::bytes::{decode, encode};
+use enmm::model::{Simulation, State, StepReport};
 
 const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
 

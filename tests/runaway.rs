@@ -4,8 +4,8 @@
 use crate::common::claims::block_at;
 use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
+use enmm::internals::step::Failure;
 use enmm::model::Simulation;
-use enmm::step::Failure;
 
 const YOUNG: f64 = 1e9;
 const DENSITY: f64 = 2500.0;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use enmm::contact::{ContactCandidate, VertexRule, prefiltered};
+use enmm::internals::contact::{ContactCandidate, VertexRule, prefiltered};
 use enmm::model::Simulation;
 
 use crate::common::extent::by_extent;

@@ -2,8 +2,7 @@
 
 use crate::common::claims::{advance, assert_ledger};
 use crate::common::simulation;
-use enmm::model::Simulation;
-use enmm::state::State;
+use enmm::model::{Simulation, State};
 
 /// A spinning block that strikes a slab and is crushed at its corner.
 fn text(strength: &str, fix: &str) -> String {

@@ -71,7 +71,7 @@ impl ContactHistory {
 }
 
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
-/// and the law of its joint, is in the [`ContactSetting`].
+/// and the law of its joint, is in the `ContactSetting`.
 #[doc(alias = "contact")]
 #[doc(alias = "corner-edge contact")]
 #[doc(alias = "contact constraint")]
@@ -81,8 +81,9 @@ pub struct VertexEdge {
     pub history: ContactHistory,
     /// Boundary point of the node.
     pub point: EdgeId,
-    /// Covers at the position on the edge that the node faces, and their weights there.
+    /// Covers at the position on the edge that the node faces.
     pub covers: [CoverId; 3],
+    /// Their weights there.
     pub weights: Weights,
     /// Outward unit normal of the edge.
     pub normal: Vector,
@@ -90,8 +91,9 @@ pub struct VertexEdge {
     pub stiffness: [f64; 2],
     /// Gap of the springs along the normal (m); negative in penetration.
     pub gap: f64,
-    /// Tributary length (m), and the part of it on which cohesion and tension act.
+    /// Tributary length (m).
     pub length: f64,
+    /// Part of it on which cohesion and tension act (m).
     pub bonded: f64,
     /// Mean normal stress (Pa) that friction feels on its faces; 0 in their first step.
     pub mean_stress: f64,
@@ -111,11 +113,13 @@ const _: () = assert!(size_of::<VertexEdge>() <= 224);
 /// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
 pub struct ContactSetting<'a> {
-    /// Boundary of the blocks, and its edges and nodes at their current positions.
+    /// Boundary of the blocks.
     pub boundary: &'a Boundary,
+    /// Its edges and nodes at their current positions.
     pub frames: &'a Frames,
-    /// Joint laws, and the factor on the strength of all joints.
+    /// Joint laws.
     pub laws: &'a [JointLaw],
+    /// Factor on the strength of all joints.
     pub strength: f64,
     /// Share of the normal force of this step in that which delayed friction feels.
     pub felt_share: f64,
@@ -243,7 +247,7 @@ impl VertexEdge {
         [normal_force, shear_force]
     }
 
-    /// Stores the forces (N/m) at the end of an explicit step, as [`Self::bear`] does, and their change.
+    /// Stores the forces (N/m) at the end of an explicit step, as `bear` does, and their change.
     #[inline(always)]
     pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, setting: &ContactSetting) {
         let ContactHistory { normal_force, shear_force, .. } = self.history;

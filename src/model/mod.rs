@@ -7,7 +7,7 @@ pub mod overlap;
 mod restless;
 pub mod settle;
 mod simulation;
-pub mod snapshot;
+pub mod tables;
 
 pub use enmm_case as case;
 pub use enmm_case::Case;
@@ -17,9 +17,10 @@ pub use fit::Unfit;
 pub use observe::{BLOCK_QUANTITIES, BlockState};
 pub use restless::Restless;
 pub use simulation::Simulation;
-pub use snapshot::Snapshot;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
-pub use crate::state::bytes::BytesError;
-pub use crate::state::{Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State};
+pub use crate::state::bytes::{self, BytesError};
+pub use crate::state::{
+    BALANCE, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State,
+};
 pub use crate::step::{StepError, StepReport};

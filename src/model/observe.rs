@@ -1,19 +1,15 @@
-//! Observation of a model at one instant: the snapshot that outputs draw, and the state of every block.
+//! Observation of a model at one instant, as far as hosts need it: the state of every block. The crate `enmm-observe`
+//! has what else outputs show.
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 
-use std::ops::Range;
-
-use crate::contact::{ContactHistory, ContactState, EdgeId};
+use crate::contact::{ContactHistory, ContactState};
 use crate::cover::{BlockId, CoverId, ElementId};
-use crate::geometry::{Point, Vector, polygon};
-use crate::mechanics::equivalent_strain;
+use crate::geometry::{Point, Vector};
 use crate::state::{Model, Quantity, State};
 use crate::step;
 
 use super::Simulation;
-use super::case::Plane;
-use super::snapshot::{Boundary, Polygons, Snapshot};
 
 /// A block as hosts see it; velocities are those of half a step ago.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -90,89 +86,6 @@ pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
 ];
 
 impl Simulation {
-    /// The model now, without excavated blocks.
-    pub fn snapshot(&self) -> Snapshot {
-        let (model, state) = (self.model(), self.state());
-        let covers = &model.covers;
-        let mut snapshot = Snapshot {
-            time: self.time(),
-            joint_laws: self.case().joint_laws.keys().cloned().collect(),
-            rocks: self.case().rocks.keys().cloned().collect(),
-            ..Snapshot::default()
-        };
-        snapshot.elements.start.push(0);
-        for e in covers.elements().filter(|&e| !state.removed[covers.element_block[e]]) {
-            for &p in covers.polygon(e) {
-                let displacement = model.sample(e, p, &state.displacement);
-                snapshot.elements.points.push(p + displacement);
-                snapshot.displacement.push(displacement);
-                snapshot.velocity.push(model.sample(e, p, &state.velocity));
-            }
-            snapshot.elements.start.push(snapshot.elements.points.len() as u32);
-            let stress = model.stress(state, e);
-            snapshot.stress.push(stress);
-            snapshot.stress_zz.push(self.stress_out_of_plane(e, stress));
-            if !state.plastic.is_empty() {
-                snapshot.plastic_strain.push(equivalent_strain(&model.plastic_strain(state, e)));
-            }
-            snapshot.block.push(covers.element_block[e].number());
-            snapshot.rock.push(u32::from(model.element_rock[e]));
-        }
-        let positions = positions(model, state);
-        snapshot.boundaries = self.boundaries(&positions);
-        snapshot
-    }
-
-    /// Stress (Pa) out of the plane of an element with a stress xx, yy, xy: ν(xx + yy) − E·εp_zz in plane strain, and
-    /// what an in-situ stress has beyond that.
-    fn stress_out_of_plane(&self, element: ElementId, [xx, yy, _]: [f64; 3]) -> f64 {
-        let model = self.model();
-        let rock = self.case().rocks.values().nth(usize::from(model.element_rock[element]));
-        let Some(rock) = rock.filter(|rock| rock.plane == Plane::Strain) else { return 0.0 };
-        let plastic = self.state().plastic.get(element.index()).map_or(0.0, |strain| strain[3]);
-        let beyond = if model.pre_stress_out.is_empty() {
-            0.0
-        } else {
-            let [xx, yy, _, zz] = model.pre_stress_and_out(element);
-            zz - rock.poisson * (xx + yy)
-        };
-        rock.poisson * (xx + yy) - rock.young * plastic + beyond
-    }
-
-    /// Loops of all blocks that are there, at the current `positions` of the boundary points.
-    fn boundaries(&self, positions: &[Point]) -> Vec<Boundary> {
-        let (model, state) = (self.model(), self.state());
-        let mut by_block: Vec<(BlockId, Vec<Range<usize>>)> = Vec::new();
-        let mut k = 0;
-        while k < model.boundary.len() {
-            let end = loop_end(model, EdgeId::new(k));
-            let block = model.boundary.block[k];
-            match by_block.last_mut() {
-                Some((last, loops)) if *last == block => loops.push(k..end),
-                _ => by_block.push((block, std::iter::once(k..end).collect())),
-            }
-            k = end;
-        }
-        let there = by_block.into_iter().filter(|(block, _)| !state.removed[*block]);
-        there
-            .map(|(block, mut loops)| {
-                let area = |points: &Range<usize>| polygon::area(&positions[points.clone()]);
-                loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
-                Boundary {
-                    block: block.number(),
-                    fixed: self.workspace().mass_matrix.fixed[block],
-                    displacement: mean(model, &state.displacement, block),
-                    loops: polygons(&loops, positions),
-                    reference: loops
-                        .into_iter()
-                        .flat_map(|points| &model.boundary.reference[points])
-                        .copied()
-                        .collect(),
-                }
-            })
-            .collect()
-    }
-
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
         let positions = positions(self.model(), self.state());
@@ -199,7 +112,7 @@ impl Simulation {
         let covers = &model.covers;
         let mass_matrix = &self.workspace().mass_matrix;
         let (_, velocity, spin, kinetic) = step::block_motion(model, state, mass_matrix, block);
-        let displacement = mean(model, &state.displacement, block);
+        let displacement = self.displacement_of(block);
         let area = covers.block_area(block);
         let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
@@ -237,6 +150,35 @@ impl Simulation {
         (stress, strain_energy)
     }
 
+    /// Displacement (m) of the mass centroid of a block.
+    pub fn displacement_of(&self, block: BlockId) -> Vector {
+        mean(self.model(), &self.state().displacement, block)
+    }
+
+    /// Rigid motion of a block: its centroid (m) and the velocity of that (m/s), its spin (rad/s) and its kinetic
+    /// energy (J/m).
+    pub fn rigid_motion_of(&self, block: BlockId) -> (Point, Vector, f64, f64) {
+        step::block_motion(self.model(), self.state(), &self.workspace().mass_matrix, block)
+    }
+
+    /// Mass (kg/m) of blocks that are too few to decide about a slope: a thousandth of all free rock that no support
+    /// holds, or of all free rock where supports hold each block.
+    pub fn mass_of_few(&self) -> f64 {
+        step::mass_of_few(self.model(), &self.workspace().mass_matrix)
+    }
+
+    /// Acceleration (m/s²) that acts on all rock now: gravity and body loads less that of the base.
+    pub fn acceleration(&self) -> Vector {
+        step::acceleration(self.model(), self.state(), self.time())
+    }
+
+    /// Forces (N/m) of all other loads on the covers now.
+    pub fn load_forces(&self) -> Vec<Vector> {
+        let mut forces = vec![Vector::zeros(); self.model().covers.cover_count()];
+        step::push_forces(self.model(), self.state(), self.time(), 1.0, &mut forces);
+        forces
+    }
+
     /// Elements that are there and have yielded.
     pub fn yielded_elements(&self) -> usize {
         let state = self.state();
@@ -249,24 +191,6 @@ impl Simulation {
     pub fn positions(&self) -> Vec<Point> {
         positions(self.model(), self.state())
     }
-}
-
-/// One past the last point of the boundary loop that begins with point `first`.
-fn loop_end(model: &Model, first: EdgeId) -> usize {
-    let mut k = first;
-    while model.boundary.after(k) != first {
-        k = model.boundary.after(k);
-    }
-    k.index() + 1
-}
-
-fn polygons(loops: &[Range<usize>], points: &[Point]) -> Polygons {
-    let mut polygons = Polygons { start: vec![0], points: Vec::new() };
-    for range in loops {
-        polygons.points.extend_from_slice(&points[range.clone()]);
-        polygons.start.push(polygons.points.len() as u32);
-    }
-    polygons
 }
 
 /// Current positions of the boundary points (m).

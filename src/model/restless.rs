@@ -40,7 +40,7 @@ impl fmt::Display for Restless {
 
 impl Simulation {
     /// Blocks that still move in a static stage in which all else is at rest by this report, the fastest first; none
-    /// where all is at rest, or more than a few move ([`mass_of_few`]).
+    /// where all is at rest, or more than a few move ([`Simulation::mass_of_few`]).
     pub fn restless(&self, report: &StepReport) -> Vec<Restless> {
         if self.all_rests(report) || !self.most_rests(report) {
             return Vec::new();

@@ -188,7 +188,7 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Advances one internal step; see [`step::advance`].
+    /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start.
     ///
     /// # Errors
     /// A numerical failure; the state is then invalid and must be restored.
@@ -234,6 +234,12 @@ impl Simulation {
         self.look_ahead().1.contacts
     }
 
+    /// Time (s) by which friction follows the normal force in a dynamic stage that begins with the contacts of
+    /// [`Simulation::look_ahead`].
+    pub fn friction_delay(&self, ahead: &Workspace) -> f64 {
+        step::delay_of(self.model(), &ahead.mass_matrix, &ahead.contacts).time
+    }
+
     /// State and buffers as the next step will have them when it has found its contacts; nothing advances.
     pub fn look_ahead(&self) -> (State, Workspace) {
         self.look_ahead_on(self.workspace.serial)
@@ -264,8 +270,8 @@ impl Simulation {
     }
 
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out. A few blocks that rattle or
-    /// fall do not hold it up ([`step::mass_of_few`]): it has converged, too, when the motion of all others has died
-    /// out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
+    /// fall do not hold it up ([`Simulation::mass_of_few`]): it has converged, too, when the motion of all others has
+    /// died out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
         let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());
@@ -366,7 +372,8 @@ impl Simulation {
         Ok(())
     }
 
-    fn energies(&self) -> Ledger {
+    /// Energies (J/m) now beside the works so far: kinetic, strain and potential energy.
+    pub fn energies(&self) -> Ledger {
         if self.workspace.mass_matrix.mass.is_empty() {
             return Ledger::default();
         }
@@ -457,7 +464,7 @@ impl Simulation {
         (sample(&self.state().displacement), sample(&self.state().velocity))
     }
 
-    /// Linear and angular momentum of the free blocks, see [`step::momentum`].
+    /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
     pub fn momentum(&self) -> (Vector, f64) {
         step::momentum(self.model(), self.state(), &self.workspace.mass_matrix)
     }

@@ -2,7 +2,7 @@
 
 use crate::cover::ElementId;
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress};
+use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, equivalent_strain};
 
 use super::{Model, State};
 
@@ -59,9 +59,9 @@ impl Model {
         }
     }
 
-    /// Plastic strain of an element at the displacements of a state; zero when it never yields.
-    pub fn plastic_strain(&self, state: &State, element: ElementId) -> PlasticStrain {
-        self.plastic_now(state, element).map_or([0.0; 4], |(_, plastic)| plastic)
+    /// Plastic strain √(⅔ εp:εp) of an element at the displacements of a state; zero when it never yields.
+    pub fn plastic_strain(&self, state: &State, element: ElementId) -> f64 {
+        equivalent_strain(&self.plastic_now(state, element).map_or([0.0; 4], |(_, plastic)| plastic))
     }
 
     /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.

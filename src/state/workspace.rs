@@ -117,11 +117,13 @@ pub struct SelectionBuffers {
 pub struct Face {
     /// The side.
     pub side: SideId,
-    /// Time (s) since it last parted, and whether it is in touch.
+    /// Time (s) since it last parted.
     pub age: f32,
+    /// Whether it is in touch.
     pub touches: bool,
-    /// Normal force (N/m) that friction feels of all its contacts, and the length (m) of those where it feels any.
+    /// Normal force (N/m) that friction feels, of all its contacts.
     pub felt: f64,
+    /// Length (m) of those contacts where it feels any.
     pub length: f64,
 }
 
@@ -159,8 +161,9 @@ pub struct SweepBuffers {
 pub struct ContactOutcome {
     /// Work of their forces (J/m).
     pub work: f64,
-    /// Part of it that friction dissipates, and what dilation takes of that to lift the faces (J/m).
+    /// Heat of friction (J/m).
     pub friction: f64,
+    /// Part of it that dilation takes to lift the faces (J/m).
     pub dilation: f64,
     /// Largest penetration (m) that springs resist.
     pub penetration: f64,

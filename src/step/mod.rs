@@ -114,7 +114,7 @@ fn cover(
     Ok(outcome.report)
 }
 
-/// What is left of the internal step in progress, without a report.
+/// The rest of the internal step in progress, without a report.
 fn rest_of_step(model: &Model, regime: Regime, state: &State) -> StepInterval {
     let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
     StepInterval { regime, time, dt: state.rest_of_step(model), report: false }

@@ -35,7 +35,7 @@ pub struct StepReport {
     pub ledger: Ledger,
     /// Net over applied force; 1, or 0 in balance, where nothing is applied.
     pub unbalanced: f64,
-    /// Kinetic energy (J/m) of all blocks but the few that have most of it (see [`mass_of_few`]).
+    /// Kinetic energy (J/m) of all blocks but the few that have most of it (see `mass_of_few`).
     pub kinetic_of_most: f64,
     /// Contacts below their shear limit.
     pub locked: u32,

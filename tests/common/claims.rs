@@ -1,11 +1,8 @@
 //! Helpers of tests beyond runs: case text, ledgers, motion of blocks.
 
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
-use enmm::mechanics::Deformation;
-use enmm::model::Simulation;
-use enmm::state::State;
-use enmm::step::{StepReport, block_motion};
+use enmm::model::tables::BlockId;
+use enmm::model::{Simulation, State, StepReport};
 
 /// Claim A4: the energy ledger closes to 1e-3 of its largest term.
 ///
@@ -24,21 +21,14 @@ pub fn assert_ledger(report: &StepReport) {
 /// Stress xx, yy, xy of every element under the displacements of a state.
 pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
     let slope = simulation.model();
-    let covers = &slope.covers;
-    (0..covers.element_count())
-        .map(|e| {
-            let u = covers.element_covers[e].map(|i| state.displacement[i]);
-            let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
-            let rock = &slope.rocks[slope.element_rock[e] as usize];
-            Deformation::new(u, gradients).stress(rock, &[0.0; 3])
-        })
-        .collect()
+    let of = |e| slope.deformation(e, &state.displacement).stress(slope.rock_of(e), &[0.0; 3]);
+    slope.covers.elements().map(of).collect()
 }
 
 /// Centroid (m), its velocity (m/s), spin (rad/s) and kinetic energy (J/m) of the block that holds a reference point.
 pub fn motion(simulation: &Simulation, point: [f64; 2]) -> (Point, Vector, f64, f64) {
     let block = block_at(simulation, point);
-    block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, block)
+    simulation.rigid_motion_of(block)
 }
 
 /// The block that holds a reference point.

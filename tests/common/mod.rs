@@ -15,9 +15,8 @@ pub mod random;
 
 use std::path::Path;
 
-use enmm::contact::EntranceRule;
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::tables::EntranceRule;
+use enmm::model::{Simulation, StepReport};
 
 /// Root of the repository, from the tests of any crate.
 pub fn root() -> &'static Path {

@@ -1,7 +1,7 @@
 //! Layout of the bytes of a saved state of a co-simulation, for tests that change them.
 
 use enmm::cosimulation::Interpolation;
-use enmm::state::State;
+use enmm::model::State;
 use serde::{Deserialize, Serialize};
 
 /// A saved state as its bytes hold it.

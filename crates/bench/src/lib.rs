@@ -19,8 +19,8 @@ pub use report::{Origin, digits, markdown, none, push_machine, push_table, write
 pub use slope::{continuum_case, slope_case};
 
 use enmm::engine_version;
+use enmm::model::StepError;
 use enmm::model::case::Invalid;
-use enmm::step::StepError;
 use enmm_io::CaseError;
 
 /// Why a benchmark did not run.

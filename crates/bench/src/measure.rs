@@ -9,10 +9,10 @@ use serde::Serialize;
 use super::clock::{PROCESSOR_TICK, forget_peak, memory_peak, processor_seconds};
 use super::models::{Model, advance};
 use super::{BenchError, BenchOptions, Machine, survey};
-use enmm::model::Simulation;
-use enmm::state::bytes::encode;
-use enmm::state::{Counters, Seconds};
-use enmm_picture::joints::Joints;
+use enmm::model::bytes::encode;
+use enmm::model::tables::Seconds;
+use enmm::model::{Counters, Simulation};
+use enmm_observe::{Joints, Snapshot};
 use enmm_run::vtu::{write_joints_vtu, write_vtu};
 
 /// Element updates in a window; small models take more steps, and large ones the fewest.
@@ -283,7 +283,7 @@ impl Measured {
 
     fn take_outputs(&mut self, simulation: &Simulation) -> Result<(), BenchError> {
         let clock = Instant::now();
-        let snapshot = simulation.snapshot();
+        let snapshot = Snapshot::of(simulation);
         let folder = std::env::temp_dir();
         let file = |kind: &str| folder.join(format!("enmm-bench-{}-{kind}.vtu", std::process::id()));
         let files = [file("elements"), file("joints")];

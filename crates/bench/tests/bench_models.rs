@@ -1,9 +1,9 @@
 //! Claim: `enmm bench` times models of the counts that their names say, which slide without overlap, and its report
 //! accounts for the whole step.
 
-use enmm::cover::BlockId;
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
+use enmm::model::tables::BlockId;
 use enmm_bench::{BenchOptions, Model, bench, slope_case};
 
 /// Dip of base and bedding, and friction (rad).

@@ -2,10 +2,10 @@
 //! forces are those of the elements one by one.
 
 use crate::common::simulation;
-use enmm::cover::CoverId;
 use enmm::geometry::Vector;
-use enmm::state::{Model, State, Workspace};
-use enmm::step::{Regime, advance, prepare};
+use enmm::internals::step::{Regime, advance, prepare};
+use enmm::model::State;
+use enmm::model::tables::{CoverId, Model, Workspace};
 use enmm_bench::continuum_case;
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.

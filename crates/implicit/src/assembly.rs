@@ -1,9 +1,9 @@
 //! The system matrix: c·M of the elements, their corotated stiffness, the springs of contacts and supports.
 
-use enmm::contact::{Boundary, ContactState, Pair, VertexEdge};
-use enmm::cover::CoverId;
 use enmm::geometry::Vector;
-use enmm::mechanics::Deformation;
+use enmm::internals::contact::{Boundary, ContactState, Pair, VertexEdge};
+use enmm::internals::cover::CoverId;
+use enmm::internals::mechanics::Deformation;
 
 use super::consistent::{PAIRS, stiffness_block};
 use super::cover_matrix::{NotPositive, UNCOUPLED};

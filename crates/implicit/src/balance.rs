@@ -1,9 +1,9 @@
 //! Forces out of balance: inertia, elements, contacts and supports at the positions reached.
 
-use enmm::contact::{Boundary, ContactSetting, Pair, VertexEdge};
 use enmm::geometry::Vector;
-use enmm::mechanics::{self, Deformation};
-use enmm::state::Workspace;
+use enmm::internals::contact::{Boundary, ContactSetting, Pair, VertexEdge};
+use enmm::internals::mechanics::{self, Deformation};
+use enmm::internals::state::Workspace;
 
 use super::buffers::ImplicitBuffers;
 use super::consistent::push_mass;

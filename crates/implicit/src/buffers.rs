@@ -1,9 +1,9 @@
 //! Buffers of the implicit integrator.
 
-use enmm::contact::ContactState;
-use enmm::cover::CoverId;
 use enmm::geometry::Vector;
-use enmm::state::Buffers;
+use enmm::internals::contact::ContactState;
+use enmm::internals::cover::CoverId;
+use enmm::internals::state::Buffers;
 
 use super::cover_matrix::CoverMatrix;
 

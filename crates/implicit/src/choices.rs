@@ -1,8 +1,8 @@
 //! Choices of the implicit integrator from a case, and what of a case it does not know.
 
-use enmm::cover::Covers;
 use enmm::geometry::polygon;
-use enmm::mechanics::Elasticity;
+use enmm::internals::cover::Covers;
+use enmm::internals::mechanics::Elasticity;
 use enmm::model::case::{Case, Invalid, JointLawKind, Newmark};
 
 use super::consistent::element_mass;

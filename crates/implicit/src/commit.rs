@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use enmm::contact::ContactState;
-use enmm::state::{Ledger, State, Workspace};
-use enmm::step::{
+use enmm::internals::contact::ContactState;
+use enmm::internals::state::{Ledger, State, Workspace};
+use enmm::internals::step::{
     Regime, StepReport, potential, settle_contacts, settle_supports, speed_max, stored, strain, unbalanced,
 };
 

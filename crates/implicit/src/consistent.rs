@@ -1,9 +1,9 @@
 //! Consistent mass and corotated stiffness of one element, for the implicit integrator (Eqs. 68, 69).
 
-use enmm::cover::CoverId;
 use enmm::geometry::{Vector, polygon};
+use enmm::internals::cover::CoverId;
 
-use enmm::mechanics::Elasticity;
+use enmm::internals::mechanics::Elasticity;
 
 /// The six pairs of an element's three covers, in the order in which element matrices are stored.
 pub const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
@@ -45,7 +45,7 @@ pub fn stiffness_block(area: f64, rock: &Elasticity, ga: Vector, gb: Vector) -> 
 mod tests {
     use super::*;
     use enmm::geometry::Point;
-    use enmm::mechanics::Deformation;
+    use enmm::internals::mechanics::Deformation;
 
     const UP: [Vector; 3] = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
 

@@ -10,7 +10,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use enmm::cover::CoverId;
+use enmm::internals::cover::CoverId;
 
 /// Slot of a pair of covers that the matrix does not hold.
 pub const UNCOUPLED: u32 = u32::MAX;

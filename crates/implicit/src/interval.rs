@@ -3,11 +3,11 @@
 use std::any::Any;
 use std::time::Instant;
 
-use enmm::contact::VertexEdge;
 use enmm::geometry::Vector;
-use enmm::mechanics::MassMatrix;
-use enmm::state::{Buffers, Model, State, Workspace};
-use enmm::step::{
+use enmm::internals::contact::VertexEdge;
+use enmm::internals::mechanics::MassMatrix;
+use enmm::internals::state::{Buffers, Model, State, Workspace};
+use enmm::internals::step::{
     Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion,
     delay_friction, entrance, load_supports, locate, push_forces, ramp, search,
 };

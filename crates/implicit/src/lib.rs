@@ -19,12 +19,12 @@ mod step;
 
 use std::any::Any;
 
-use enmm::cover::Covers;
-use enmm::mechanics::Elasticity;
+use enmm::internals::cover::Covers;
+use enmm::internals::mechanics::Elasticity;
+use enmm::internals::state::Workspace;
+use enmm::internals::step::Integrator;
 use enmm::model::case::{self, Case, Invalid};
 use enmm::model::{BuildStage, Integrators, Simulation};
-use enmm::state::Workspace;
-use enmm::step::Integrator;
 
 pub use buffers::ImplicitBuffers;
 pub use choices::{Implicit, Rule};

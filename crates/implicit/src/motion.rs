@@ -1,9 +1,9 @@
 //! Velocities with the consistent mass: energy, damping of deformation, the first acceleration of the trapezoidal rule.
 
-use enmm::cover::{BlockId, CoverId};
 use enmm::geometry::{Point, Vector};
-use enmm::mechanics::MassMatrix;
-use enmm::state::{Model, State};
+use enmm::internals::cover::{BlockId, CoverId};
+use enmm::internals::mechanics::MassMatrix;
+use enmm::internals::state::{Model, State};
 
 use super::choices::Implicit;
 use super::consistent::push_mass;

@@ -3,8 +3,8 @@
 
 use std::time::Instant;
 
-use enmm::contact::ContactState;
 use enmm::geometry::Vector;
+use enmm::internals::contact::ContactState;
 
 use super::choices::{Implicit, Rule};
 use super::step::{CUT, ImplicitStep, Inertia};

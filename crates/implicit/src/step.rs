@@ -1,7 +1,7 @@
 //! A sub-step, and how inertia enters it.
 
-use enmm::state::{Model, State, Workspace};
-use enmm::step::{Regime, StepInterval, Substep};
+use enmm::internals::state::{Model, State, Workspace};
+use enmm::internals::step::{Regime, StepInterval, Substep};
 
 use super::buffers::ImplicitBuffers;
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::files::{open_input, write_atomic};
-use enmm::state::bytes::{BytesError, HEAD_MAX, decode, encode, head};
+use enmm::model::bytes::{BytesError, HEAD_MAX, decode, encode, head};
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -1,14 +1,14 @@
 //! Annotations of a picture of a model beside its blocks.
 
-use enmm::contact::EdgeId;
 use enmm::geometry::ends::EndChange;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 use enmm::model::case::{Anchorage, Axes, Load, LoadKind, Port};
+use enmm::model::tables::EdgeId;
+use enmm_observe::{SupportKind, bolts, supports, water_surface};
 
 use crate::axes::{number_text, si_text};
 use crate::signs::Held;
-use crate::structures::{SupportKind, bolts, supports, water_surface};
 use crate::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Distance from a supported point, relative to the mesh size, at which rock is looked for.

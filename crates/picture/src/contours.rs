@@ -13,7 +13,7 @@ use super::sheet::{Path, Pixel, Style};
 use super::slope::{corners, draw_filled, visible};
 use super::stage::{FEW, MOST, StageEnd, StageSheet, decades, quantile, unit_of};
 use enmm::geometry::{Point, Vector, polygon};
-use enmm::model::Snapshot;
+use enmm_observe::Snapshot;
 
 /// Levels at most.
 const LEVELS: f64 = 12.0;
@@ -207,7 +207,7 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [4.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         let mut points: Vec<Point> = points.map(Point::from).to_vec();
         points.push(Point::new(-1.0, -1.0));
-        let elements = enmm::model::snapshot::Polygons { start: vec![0, 3, 6, 9], points: points.clone() };
+        let elements = enmm_observe::Polygons { start: vec![0, 3, 6, 9], points: points.clone() };
         let stress = vec![[1.0, 1.0, 9.0], [5.0, 5.0, 9.0], [-7.0, -7.0, 9.0]];
         let snapshot = Snapshot { elements, stress, block: vec![0, 0, 1], ..Snapshot::default() };
         let values = at_points(&snapshot, &points, |[xx, yy, _]| 0.5 * (xx + yy));

@@ -8,7 +8,7 @@ use super::model::{Model, ModelAnnotations};
 use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle};
 use super::slope::{BELOW_FRAME, LEFT, MARGIN, TOP, WIDTH, draw_absence, draw_title};
 use enmm::geometry::Point;
-use enmm::model::Snapshot;
+use enmm_observe::Snapshot;
 
 /// Side (px) of the detail.
 const DETAIL: f64 = 440.0;

@@ -10,8 +10,7 @@ use super::slope::{
     outlines, time_text,
 };
 use enmm::geometry::Vector;
-use enmm::model::Snapshot;
-use enmm::model::snapshot::Polygons;
+use enmm_observe::{Polygons, Snapshot};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 820.0;
@@ -187,8 +186,8 @@ mod tests {
         for _ in 0..40 {
             simulation.advance(false).expect("a step");
         }
-        let shown = exaggerated(&simulation.snapshot(), 1e4);
-        let block_of = &simulation.snapshot().block;
+        let shown = exaggerated(&Snapshot::of(&simulation), 1e4);
+        let block_of = &Snapshot::of(&simulation).block;
         let edges_of = |block: u32| {
             let of_block = (0..shown.elements.len()).filter(move |&k| block_of[k] == block);
             of_block.flat_map(|k| {

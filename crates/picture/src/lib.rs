@@ -15,7 +15,6 @@ mod displacement;
 mod font;
 mod histogram;
 mod history;
-pub mod joints;
 mod legend;
 mod model;
 mod raster;
@@ -24,7 +23,6 @@ mod sheet;
 mod signs;
 mod slope;
 mod stage;
-pub mod structures;
 mod svg;
 
 use std::io;

@@ -12,9 +12,8 @@ use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, draw_absence, draw_block_outlines, draw_filled,
     draw_title, outlines, outlines_show, time_text,
 };
-use super::structures::height_at;
 use enmm::geometry::{Point, Vector};
-use enmm::model::{BoltCondition, Snapshot};
+use enmm_observe::{BoltCondition, Snapshot, height_at};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 760.0;

@@ -8,6 +8,7 @@ use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle};
 use super::slope::{
     BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title,
 };
+use enmm_observe::Snapshot;
 use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
 
 /// Name of a quantity of a trial, and its value.
@@ -158,7 +159,7 @@ fn verb(trial: &Trial) -> &'static str {
 
 /// Draws the slope at the end of the least unstable trial, with the blocks that fail; at rest when there was none.
 pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
-    let snapshot = reduction.simulation.snapshot();
+    let snapshot = Snapshot::of(&reduction.simulation);
     let trial = reduction.first_unstable();
     let mut fails = vec![false; reduction.simulation.model().covers.block_count()];
     trial.iter().flat_map(|t| &t.failing).for_each(|block| fails[block.block as usize] = true);

@@ -4,8 +4,7 @@ use super::axes::{Bounds, LABEL_SIZE, View, is_drawable, number_text};
 use super::colour::{Colour, GREY, INK};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use enmm::geometry::Point;
-use enmm::model::Snapshot;
-use enmm::model::snapshot::Polygons;
+use enmm_observe::{Boundary, Polygons, Snapshot};
 
 /// Width (px) of every picture.
 pub const WIDTH: f64 = 1600.0;
@@ -100,11 +99,7 @@ fn holds_pixel(mut corners: impl Iterator<Item = Pixel>) -> bool {
 }
 
 /// Outlines of the blocks that `chosen` accepts, as one shape.
-pub fn block_outlines(
-    snapshot: &Snapshot,
-    view: &View,
-    chosen: impl Fn(&enmm::model::snapshot::Boundary) -> bool,
-) -> Path {
+pub fn block_outlines(snapshot: &Snapshot, view: &View, chosen: impl Fn(&Boundary) -> bool) -> Path {
     let mut path = Path::default();
     for boundary in snapshot.boundaries.iter().filter(|boundary| chosen(boundary)) {
         path.append(outlines(&boundary.loops, view));

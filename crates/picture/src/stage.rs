@@ -7,7 +7,6 @@ use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_
 use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
-use super::joints::JointPiece;
 use super::legend::{self, Entry, Legend, Sign};
 use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
 use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle};
@@ -16,9 +15,8 @@ use super::slope::{
     BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines,
     draw_filled, draw_title,
 };
-use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::{BoltCondition, Snapshot};
+use enmm_observe::{BoltCondition, ContactState, JointPiece, Snapshot, stress};
 
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 780.0;
@@ -290,10 +288,10 @@ struct Principal {
 }
 
 impl Principal {
-    fn of(&[xx, yy, xy]: &[f64; 3]) -> Self {
-        let (mean, radius) = (0.5 * (xx + yy), libm::hypot(0.5 * (xx - yy), xy));
+    fn of(of: &stress::Stress) -> Self {
+        let &[xx, yy, xy] = of;
         let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
-        Self { values: [mean + radius, mean - radius], direction: Vector::new(libm::cos(angle), libm::sin(angle)) }
+        Self { values: stress::principal(of), direction: Vector::new(libm::cos(angle), libm::sin(angle)) }
     }
 }
 

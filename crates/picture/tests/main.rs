@@ -1,5 +1,4 @@
 //! Tests of the pictures.
 
-mod joint_pieces;
 mod pictures;
 mod sample;

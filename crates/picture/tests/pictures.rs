@@ -6,10 +6,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::sample::{Sample, profile, sample};
-use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Snapshot;
-use enmm::model::snapshot::{Boundary, Polygons};
+use enmm::model::ContactState;
+use enmm_observe::{Boundary, Polygons, Snapshot};
 use enmm_picture::{
     ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
     displacement_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,

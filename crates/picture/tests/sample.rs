@@ -2,11 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use enmm::contact::ContactState;
 use enmm::geometry::{Point, Vector};
-use enmm::model::snapshot::{Boundary, Polygons};
-use enmm::model::{BoltCondition, Snapshot};
-use enmm_picture::joints::JointPiece;
+use enmm::model::ContactState;
+use enmm_observe::{BoltCondition, Boundary, JointPiece, Polygons, Snapshot};
 use enmm_picture::{BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Slope profile (m), counter-clockwise.

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use enmm::model::{BLOCK_QUANTITIES, BlockState, Quantity};
 use enmm_io::files::{at_path, write_atomic};
+use enmm_observe::{BLOCK_QUANTITIES, BlockState, Quantity};
 
 /// Columns before those of the numbers.
 const FLAGS: [&str; 4] = ["id", "fixed", "removed", "detached"];

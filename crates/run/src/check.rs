@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use enmm::geometry::Point;
-use enmm::model::Simulation;
 use enmm::model::assemble::ignored_traces;
-use enmm::state::{State, Workspace};
+use enmm::model::tables::Workspace;
+use enmm::model::{Simulation, State};
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
 

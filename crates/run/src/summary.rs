@@ -6,13 +6,12 @@ use std::path::Path;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
-use enmm::contact::{BoltCondition, BoltSegment, BoltState};
 use enmm::engine_version;
-use enmm::model::Simulation;
 use enmm::model::case::StageKind;
-use enmm::state::{ENERGIES, Ledger, Seconds};
-use enmm::step::StepError;
+use enmm::model::tables::Seconds;
+use enmm::model::{Ledger, Simulation, StepError};
 use enmm_io::files::{at_path, write_atomic};
+use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
 
@@ -206,20 +205,19 @@ pub struct BoltRecord {
 
 impl BoltRecord {
     fn of(simulation: &Simulation) -> Vec<Self> {
-        let segments = simulation.model().bolts.iter().zip(&simulation.state().bolts);
-        let record = |(segment, bolt): (&BoltSegment, &BoltState)| {
-            let case = &simulation.case().bolts[segment.bolt as usize];
-            let middle = (segment.points[0] + segment.points[1]) * 0.5;
+        let record = |line: &BoltLine| {
+            let case = &simulation.case().bolts[line.bolt as usize];
+            let middle = (line.reference[0] + line.reference[1]) * 0.5;
             Self {
                 name: case.name.clone(),
-                bolt: segment.bolt,
+                bolt: line.bolt,
                 place: [middle.x, middle.y],
-                force: bolt.force * case.spacing,
-                plastic_elongation: bolt.rest - bolt.natural,
-                state: bolt.condition(),
+                force: line.force * case.spacing,
+                plastic_elongation: line.plastic_elongation,
+                state: line.condition,
             }
         };
-        segments.map(record).collect()
+        bolts(simulation).iter().map(record).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use enmm::state::{BALANCE, ENERGIES};
+use enmm::model::{BALANCE, ENERGIES};
 use enmm_io::parse_case;
 use enmm_run::{RunOptions, RunStatus};
 

@@ -7,9 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::sample::{Sample, sample};
 use enmm::geometry::{Point, Vector};
-use enmm::model::{BoltCondition, Snapshot};
-use enmm_picture::joints::JointPiece;
-use enmm_picture::structures::{BoltLine, SupportKind, SupportPoint, WetEdge};
+use enmm_observe::{BoltCondition, BoltLine, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge};
 use enmm_run::vtu::{
     Part, PvdWriter, Structures, write_bolts_vtu, write_joints_vtu, write_supports_vtu, write_vtu, write_water_vtu,
 };
@@ -196,7 +194,7 @@ fn bolts_supports_and_water_come_back_as_they_were() {
     let directory = directory("vtu_structures");
     let ends = [Point::new(1.0, 2.0), Point::new(3.0, 4.0)];
     let conditions = [BoltCondition::Absent, BoltCondition::Elastic, BoltCondition::Yielded, BoltCondition::Broken];
-    let bolts = conditions.map(|condition| BoltLine { ends, bolt: 1, force: 2.5e5, condition });
+    let bolts = conditions.map(|condition| BoltLine { ends, bolt: 1, force: 2.5e5, condition, ..BoltLine::default() });
     let supports = [SupportKind::Fixity, SupportKind::Spring, SupportKind::Dashpot].map(|kind| SupportPoint {
         position: ends[1],
         reaction: Vector::new(-3.0, 5.0),

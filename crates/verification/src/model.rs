@@ -3,9 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
-use enmm::model::Simulation;
 use enmm::model::case::Integrator;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 use enmm_io as io;
 
 use crate::{Problem, Row, Tolerance, Values};

@@ -1,9 +1,8 @@
 //! The fractured slope that both methods solve, and what it does.
 
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm::step::energies;
+use enmm::model::tables::BlockId;
 
 use crate::Trouble;
 
@@ -65,7 +64,7 @@ impl Totals {
     }
 
     fn now(simulation: &Simulation, places: &[Vector]) -> Self {
-        let ledger = energies(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix);
+        let ledger = simulation.energies();
         let moved = block_displacements(simulation);
         let mass = &simulation.model().mass_matrix.total;
         let way: f64 = moved.iter().zip(places).zip(mass).map(|((now, then), mass)| mass * (now - then).norm()).sum();

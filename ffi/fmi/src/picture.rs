@@ -4,7 +4,7 @@ use std::io;
 
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm::model::snapshot::Boundary;
+use enmm_observe::{Boundary, Snapshot};
 use enmm_picture::{model_annotations, model_picture};
 use tiny_skia::{Color, FillRule, LineJoin, Paint, PathBuilder, Pixmap, Shader, Stroke, Transform};
 
@@ -28,14 +28,14 @@ const INK: [u8; 3] = [0x22, 0x30, 0x3c];
 
 /// The slope as a PNG: blocks, joints by law, supports, monitors and ports.
 pub fn slope(simulation: &Simulation) -> io::Result<Vec<u8>> {
-    model_picture(&simulation.snapshot(), &model_annotations(simulation)).png()
+    model_picture(&Snapshot::of(simulation), &model_annotations(simulation)).png()
 }
 
 /// The blocks alone, filled, on a clear square, as a PNG.
 pub fn icon(simulation: &Simulation) -> io::Result<Vec<u8>> {
     let mut pixels =
         Pixmap::new(ICON as u32, ICON as u32).ok_or_else(|| io::Error::other("there is no room for the icon"))?;
-    draw_blocks(&simulation.snapshot().boundaries, &mut pixels);
+    draw_blocks(&Snapshot::of(simulation).boundaries, &mut pixels);
     pixels.encode_png().map_err(io::Error::other)
 }
 

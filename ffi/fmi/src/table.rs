@@ -3,8 +3,7 @@
 use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
 use enmm::cosimulation::{Parameter, PortKind, TOTALS, parameters};
 use enmm::model::case::Port;
-use enmm::model::{BLOCK_QUANTITIES, Case};
-use enmm::state::ENERGIES;
+use enmm::model::{BLOCK_QUANTITIES, Case, ENERGIES};
 use uuid::Uuid;
 
 /// Version of the standard.

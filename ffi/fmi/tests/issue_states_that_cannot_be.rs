@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use enmm::state::bytes;
+use enmm::model::bytes;
 use enmm_fmi::instance::{Instance, Plan};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;

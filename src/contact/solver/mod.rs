@@ -71,8 +71,9 @@ struct SolverView<'a> {
 
 /// Motion at the start of an explicit step: what the springs of contacts answer to.
 pub struct Approach<'a> {
-    /// Velocities (m/s) of the covers without contact forces, and those of the last step.
+    /// Velocities of the covers without contact forces (m/s).
     pub predicted: &'a [Vector],
+    /// Velocities of the last step (m/s).
     pub velocity: &'a [Vector],
     /// Last step (s).
     pub dt_last: f64,

@@ -4,10 +4,10 @@
 //! [`VertexRule::enter`] applies them to one node. Before, the narrow phase leaves out sides that no node can enter.
 //!
 //! ```text
-//!     own block       next ●───────● node ●───────● previous       loops run with the rock on their left
+//!     own block   previous ●───────● node ───────● next            loops run with the rock on their left
 //!                                  ┊ gap: distance along the normal out of the edge, negative inside the rock
 //!     other block     ●────────────┴──────────────────────●        the edge; its side goes on to the next corner
-//!                     start ─along→                        finish  beyond: way from the foot to the edge, if any
+//!                     finish              ←─along─        start    beyond: way from the foot to the edge, if any
 //! ```
 
 mod last_step;

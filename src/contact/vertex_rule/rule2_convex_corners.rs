@@ -1,22 +1,28 @@
 //! Rule 2, convex corners: two convex corners p and q overlap when their relative position is inside both facets that
-//! meet there. The corner leaves through the less deep facet of those that can hold it.
+//! meet there. The corner leaves through the less deep facet; where the other facet cannot hold, through that of the
+//! candidate.
+//!
+//! At each end of its side a candidate gets the length along the side over which both blocks overlap there: `None`
+//! where this side is refused, infinite where the end sets no limit.
 //!
 //! ```text
-//!       other block     ──────────────● q                    side s of q: facet (p, s), of depth −gap
-//!                              ╷      │
-//!                        depth │      │ side round q         p faces that side as well: the other facet is
-//!                       under s│  ●───┼────────── p's side   (p, side round q), and its depth the way from p to it
-//!                              ╵ p│←─→│  own block
-//!                                 │   ╵ depth                p does not face it: the other facet is (q, the side of p
-//!                                 │                          that turns towards q)
+//!                                 │ second side of p; own block: rock above the sides of p and to the right of p
+//!       other block     ──────────┼───● q                    side s of q: facet (p, s), of depth −gap
+//!       rock below s,      depth ╷│   │
+//!       to the left of   under s ││   │ side round q         p faces that side as well: the other facet is
+//!       the side round q         ╵●───┼────────── p's side   (p, side round q), and its depth the way from p to it
+//!                                p│←─→│
+//!                                   ╵ depth                  p does not face it: the other facet is (q, the side of p
+//!                                                            that turns towards q)
 //! ```
 //!
-//! A facet is a pair of one's corner and a side of the other that it faces. It can hold when its corner is over its
-//! side, or when it carries force. Depths are measured with springs unloaded: the penetration that a contact of the
-//! last step causes along a direction is the compression of its spring, not depth. For a facet its own contact counts,
-//! and all others of p and q and of the node segments next to them. So a block whose foot is pressed into the floor is
-//! level with the next block of the floor, and slides onto it. A contact that carries force stays until the corners
-//! have separated. Faces that lie on each other (within 10°) do not exclude each other.
+//! A facet is a pair of one's corner and a side of the other that it faces. The other facet can hold when its corner is
+//! over its side, or when it carries force. Depths are measured with springs unloaded: the penetration that a contact
+//! of the last step causes along a direction is the compression of its spring, not depth. For a facet its own contact
+//! counts, and all others of p and q and of the node segments next to them. So a block whose foot is pressed into the
+//! floor is level with the next block of the floor, and slides onto it. A contact that carries force may lie beyond the
+//! end of its side while the corners overlap; the other facet may still take over from it. Faces that lie on each other
+//! (within 10°) do not exclude each other.
 
 use crate::contact::{Corner, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
@@ -37,7 +43,7 @@ struct Facet {
     foot: f64,
     /// Whether the node's own face lies on the candidate's side.
     is_flush: bool,
-    /// Whether the node is beyond its own side there: a sharp block has been pierced.
+    /// Whether q lies behind p's side there: a sharp block has been pierced.
     is_pierced: bool,
 }
 

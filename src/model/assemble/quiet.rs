@@ -209,6 +209,17 @@ pub(super) fn warning(case: &Case) -> Option<String> {
     })
 }
 
+/// A base motion over edges that are held: they return the waves of sliding blocks.
+pub(super) fn ringing(case: &Case) -> Option<String> {
+    let is_quiet = !case.quiets.is_empty();
+    let has_edges = case.fixes.iter().any(|fix| fix.edge.is_some());
+    (!case.base_motions.is_empty() && has_edges && !is_quiet).then(|| {
+        "a base motion acts over edges that `[[fix]]` holds: they return the waves that blocks send down, and blocks \
+         that slide go up to 3 % too far; let the wave come up through a `[[quiet]]` edge instead"
+            .into()
+    })
+}
+
 /// Whether the columns are stable at the step of the model.
 pub(super) fn check_columns(model: &Model) -> Result<(), Invalid> {
     for (k, column) in model.columns.iter().enumerate() {

@@ -22,7 +22,7 @@ thread_local! {
     static TABLES: RefCell<[Table; 2]> = RefCell::default();
 }
 
-/// What loops over chunks write: slices for all chunks, for a run of them or for one. A loop leaves out what it does
+/// Slices that loops over chunks write: for all chunks, for a run of them or for one. A loop leaves out what it does
 /// not write.
 #[derive(Default)]
 pub(super) struct ChunkSlices<'o> {

@@ -2,10 +2,9 @@
 
 use serde::Serialize;
 
-use enmm::contact::EdgeId;
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, polygon};
 use enmm::model::Simulation;
+use enmm::model::tables::{BlockId, EdgeId};
 
 /// Types that the other programs read and write.
 #[cfg(test)]

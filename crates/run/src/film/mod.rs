@@ -11,12 +11,11 @@ use enmm_report::{
     PAGE, Quantity, Structures, write_page,
 };
 
-use enmm::contact::{ContactState, EdgeId, NodeId};
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector, polygon};
-use enmm::model::{BlockState, Simulation};
+use enmm::model::Simulation;
+use enmm::model::tables::{BlockId, EdgeId};
 use enmm_io::LoadedCase;
-use enmm_picture::joints;
+use enmm_observe::{BlockState, ContactState, node_loops};
 use structures::{Beside, bolt_places};
 
 /// A film of a model.
@@ -225,26 +224,11 @@ fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
     }
 }
 
-/// Blocks in the reference configuration, and the boundary point of each corner: the nodes, of which there is one at
-/// every corner and kink and at least one in a mesh size.
+/// Blocks in the reference configuration, and the boundary point of each corner: those of the nodes.
 fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
     let model = simulation.model();
     let boundary = &model.boundary;
-    let mut loops: Vec<Vec<Vec<EdgeId>>> = vec![Vec::new(); model.covers.block_count()];
-    let mut first = 0;
-    while first < boundary.node_count() {
-        let mut node = NodeId::new(first);
-        let mut points = Vec::new();
-        loop {
-            points.push(boundary.node_point[node]);
-            node = boundary.node_next[node];
-            if node.index() == first {
-                break;
-            }
-        }
-        first += points.len();
-        loops[boundary.block[points[0]]].push(points);
-    }
+    let mut loops = node_loops(simulation);
     let place = |&point: &EdgeId| boundary.reference[point];
     let area = |points: &Vec<EdgeId>| polygon::area(&points.iter().map(place).collect::<Vec<Point>>());
     let states = simulation.block_states();
@@ -287,5 +271,5 @@ fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
         Some(ContactState::Slip) => EdgeState::Slip,
         Some(ContactState::Lock) => EdgeState::Lock,
     };
-    joints::edge_states(simulation).into_iter().map(shown).collect()
+    enmm_observe::edge_states(simulation).into_iter().map(shown).collect()
 }

@@ -2,10 +2,10 @@
 
 use enmm_report::{BoltFrame, BoltPlace, Structures, SupportFrame};
 
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm_picture::structures::{BoltLine, SupportKind, bolts, supports, water_surface};
+use enmm::model::tables::BlockId;
+use enmm_observe::{BoltLine, SupportKind, bolts, supports, water_surface, water_weight};
 
 /// Actions on the rock at one instant beside its joints.
 #[derive(Debug)]
@@ -19,16 +19,17 @@ pub struct Beside {
 impl Beside {
     /// As the model is now.
     pub fn now(simulation: &Simulation) -> Self {
-        let (lines, segments) = (bolts(simulation), &simulation.model().bolts);
-        let ends = lines.iter().zip(segments).map(|(line, segment)| [0, 1].map(|k| line.ends[k] - segment.points[k]));
+        let lines = bolts(simulation);
+        let ends = lines.iter().map(|line| [0, 1].map(|k| line.ends[k] - line.reference[k]));
         Self::with(simulation, &lines, ends)
     }
 
     /// With ends of bolts that are displaced (m) as a reference position (m) of a block is.
     pub fn moved(simulation: &Simulation, displacement: impl Fn(Point, BlockId) -> Vector) -> Self {
-        let segments = simulation.model().bolts.iter();
-        let ends = segments.map(|segment| [0, 1].map(|k| displacement(segment.points[k], segment.blocks[k])));
-        Self::with(simulation, &bolts(simulation), ends)
+        let lines = bolts(simulation);
+        let block = |line: &BoltLine, k: usize| BlockId::new(line.blocks[k] as usize);
+        let ends = lines.iter().map(|line| [0, 1].map(|k| displacement(line.reference[k], block(line, k))));
+        Self::with(simulation, &lines, ends)
     }
 
     /// With displacements (m) of both ends of each bolt.
@@ -38,12 +39,10 @@ impl Beside {
             displacement: ends.map(|end| [end.x, end.y]),
             force: line.force,
         };
-        let (model, state) = (simulation.model(), simulation.state());
-        let gravity = state.drive.gravity(state.drive.share(simulation.time())).norm();
         Self {
             bolts: lines.iter().zip(ends).map(bolt).collect(),
             supports: support_frames(simulation),
-            water_weight: model.water.as_ref().map_or(0.0, |water| water.density * gravity),
+            water_weight: water_weight(simulation),
             water_surface: water_surface(simulation).iter().map(|point| [point.x, point.y]).collect(),
         }
     }
@@ -73,14 +72,14 @@ fn support_frames(simulation: &Simulation) -> Vec<SupportFrame> {
 
 /// Free lengths of the bolts of a model, in the order of frames.
 pub fn bolt_places(simulation: &Simulation) -> Vec<BoltPlace> {
-    let bolts = &simulation.case().bolts;
-    let place = |segment: &enmm::model::BoltSegment| {
-        let bolt = segment.bolt as usize;
-        let name = bolts.get(bolt).and_then(|bolt| bolt.name.clone());
+    let of_case = &simulation.case().bolts;
+    let place = |line: &BoltLine| {
+        let bolt = line.bolt as usize;
+        let name = of_case.get(bolt).and_then(|bolt| bolt.name.clone());
         BoltPlace {
             name: name.unwrap_or_else(|| format!("bolt {bolt}")),
-            ends: segment.points.map(|point| [point.x, point.y]),
+            ends: line.reference.map(|point| [point.x, point.y]),
         }
     };
-    simulation.model().bolts.iter().map(place).collect()
+    bolts(simulation).iter().map(place).collect()
 }

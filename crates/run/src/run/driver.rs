@@ -13,19 +13,16 @@ use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
+use enmm::model::bytes::BytesError;
 use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::overlap::{Audit, Overlap};
-use enmm::model::settle;
-use enmm::model::{Restless, Simulation};
-use enmm::state::bytes::BytesError;
-use enmm::state::{Ledger, Seconds, State};
-use enmm::step::{StepError, StepReport};
+use enmm::model::tables::{BlockId, Seconds};
+use enmm::model::{Ledger, Restless, Simulation, State, StepError, StepReport, settle};
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
-use enmm_picture::joints::Joints;
+use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note, Quantity};
 use enmm_stability::strength_reduction::slide;
 
@@ -506,7 +503,7 @@ impl<'a> Driver<'a> {
         let Some(frames) = &mut self.frames else { return Ok(()) };
         self.simulation.drop_buffers();
         let beside = Structures::of(&self.simulation, &self.joints);
-        frames.push(&self.simulation.snapshot(), &beside).map_err(RunError::Output)
+        frames.push(&Snapshot::of(&self.simulation), &beside).map_err(RunError::Output)
     }
 
     fn keep_good(&mut self) {

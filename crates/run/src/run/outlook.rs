@@ -2,9 +2,8 @@
 //! The fall is exponential once the ramp is over: a line through its logarithm shows when that will be. Without a ramp
 //! it begins slowly and follows a curve of its own.
 
-use enmm::model::Simulation;
 use enmm::model::case::StageKind;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::load_at_once;
 

@@ -4,14 +4,11 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use enmm::cover::ElementId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::case::PictureKind;
-use enmm::model::snapshot::Polygons;
-use enmm::model::{Case, Simulation, Snapshot};
+use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
-use enmm_picture::joints::Joints;
-use enmm_picture::structures::water_surface;
+use enmm_observe::{Joints, Polygons, Snapshot, moved_since, references, water_surface};
 use enmm_picture::{
     StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, history_picture,
     joint_stress_pictures, joints_picture, mean_stress_contours, model_annotations, model_picture, number_text,
@@ -128,14 +125,14 @@ pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     }
     if pictures.include(PictureKind::Covers) {
         let annotations = model_annotations(simulation);
-        let picture = covers_picture(&simulation.snapshot(), &annotations, &stars(simulation));
+        let picture = covers_picture(&Snapshot::of(simulation), &annotations, &stars(simulation));
         picture.write_png(&directory.join("covers.png"))?;
     }
     Ok(())
 }
 
 fn draw_slope(simulation: &Simulation, directory: &Path) -> io::Result<()> {
-    model_picture(&simulation.snapshot(), &model_annotations(simulation)).write_png(&directory.join("model.png"))
+    model_picture(&Snapshot::of(simulation), &model_annotations(simulation)).write_png(&directory.join("model.png"))
 }
 
 /// Draws a model that is only looked at into a directory: `model.png`, and `covers.png` if the case requests it.
@@ -153,7 +150,7 @@ pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()>
 pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     let case = simulation.case();
     if case.output.pictures.include(PictureKind::Deformed) {
-        let snapshot = simulation.snapshot();
+        let snapshot = Snapshot::of(simulation);
         displacement_picture(&snapshot, &case.title, &outline(case)).write_png(&directory.join("deformed.png"))?;
     }
     if case.output.pictures.include(PictureKind::History) {
@@ -170,7 +167,7 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
     if !STAGE_PICTURES.iter().any(|(kind, _)| pictures.include(*kind)) {
         return Ok(());
     }
-    let snapshot = simulation.snapshot();
+    let snapshot = Snapshot::of(simulation);
     let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
     let number = simulation.state().stage + 1;
     let caption = format!("stage {number}, {}, t = {} s", simulation.stage().name, number_text(snapshot.time));
@@ -197,25 +194,6 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
         }
     }
     Ok(())
-}
-
-/// Elements of the blocks that are there, in the order of a snapshot.
-fn elements_there(simulation: &Simulation) -> impl Iterator<Item = ElementId> {
-    let (covers, removed) = (&simulation.model().covers, &simulation.state().removed);
-    covers.elements().filter(|&e| !removed[covers.element_block[e]])
-}
-
-/// Each point of the elements of a snapshot before it moved (m).
-fn references(simulation: &Simulation) -> Vec<Point> {
-    elements_there(simulation).flat_map(|e| simulation.model().covers.polygon(e).iter().copied()).collect()
-}
-
-/// Displacement (m) of each point of the elements of a snapshot since the covers had the displacements `started` (m).
-fn moved_since(simulation: &Simulation, snapshot: &Snapshot, started: &[Vector]) -> Vec<Vector> {
-    let model = simulation.model();
-    let of_element = |e| model.covers.polygon(e).iter().map(move |&p| model.sample(e, p, started));
-    let before = elements_there(simulation).flat_map(of_element);
-    snapshot.displacement.iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
 /// Outer loops and holes of the case.

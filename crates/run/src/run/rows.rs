@@ -6,9 +6,8 @@ use std::path::Path;
 use enmm::geometry::Vector;
 use enmm::model::case::StageKind;
 use enmm::model::settle::REST_STEPS;
-use enmm::model::{Case, Simulation};
-use enmm::state::{ENERGIES, Quantity};
-use enmm::step::StepReport;
+use enmm::model::{Case, Simulation, StepReport};
+use enmm_observe::{ENERGIES, REPORT_QUANTITIES};
 use enmm_picture::{Series, StageStart};
 
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
@@ -18,14 +17,6 @@ const ROWS: [f64; 2] = [500.0, 32.0];
 const FRAMES: [f64; 2] = [20.0, 2.0];
 /// Least and most frames of the film of a dynamic stage, and those of a doubling of the steps of a static one.
 const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
-
-/// Quantities of a step in a row, behind the energies.
-const REPORTED: [Quantity<StepReport>; 4] = [
-    Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |report| report.unbalanced),
-    Quantity::new(["penetration_max"; 2], "m", "Largest penetration", |report| report.penetration_max),
-    Quantity::count("locked", "Contacts below their shear limit", |report| f64::from(report.locked)),
-    Quantity::count("slipping", "Contacts at their shear limit", |report| f64::from(report.slipping)),
-];
 
 /// Quantity of the energies in the picture of the histories.
 const ENERGY: &str = "energy";
@@ -133,7 +124,7 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
         }
     }
     columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
-    columns.extend(REPORTED.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
+    columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
     columns.push(("sweeps_mean".to_owned(), ""));
     columns
 }
@@ -159,7 +150,7 @@ pub fn row(
         row.extend([u.x, u.y, velocity.x, velocity.y]);
     }
     row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
-    row.extend(REPORTED.iter().map(|quantity| (quantity.get)(report)));
+    row.extend(REPORT_QUANTITIES.iter().map(|quantity| (quantity.get)(report)));
     row.push(sweeps_mean);
     row
 }

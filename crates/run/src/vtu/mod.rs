@@ -12,12 +12,13 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use array::Array;
-use enmm::contact::ContactState;
 use enmm::geometry::Point;
-use enmm::model::{BoltCondition, Simulation, Snapshot};
+use enmm::model::Simulation;
 use enmm_io::files::{at_path, write_atomic, write_atomic_by};
-use enmm_picture::joints::{JointPiece, Joints};
-use enmm_picture::structures::{self, BoltLine, SupportKind, SupportPoint, WetEdge};
+use enmm_observe::{
+    BOLT_QUANTITIES, BoltCondition, BoltLine, ContactState, JOINT_QUANTITIES, JointPiece, Joints, Quantity,
+    STRESS_QUANTITIES, Snapshot, SupportKind, SupportPoint, WetEdge, bolts, supports, wet_edges,
+};
 
 use crate::folder::make_frames;
 
@@ -39,8 +40,6 @@ const POLYGON: u8 = 7;
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
 pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     let elements = &snapshot.elements;
-    let of_stress =
-        |name, part: fn([f64; 3]) -> f64| Array::numbers(name, snapshot.stress.iter().map(move |&s| part(s)));
     let yielding = !snapshot.plastic_strain.is_empty();
     let plastic = yielding.then(|| Array::numbers("plastic_strain", snapshot.plastic_strain.iter().copied()));
     let mut grid = Grid {
@@ -54,19 +53,10 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
             Array::vectors("displacement", snapshot.displacement.iter().copied()),
             Array::vectors("velocity", snapshot.velocity.iter().copied()),
         ],
-        cell_data: vec![
-            Array::tensors("stress", &snapshot.stress, &snapshot.stress_zz),
-            of_stress("stress_xx", |[xx, _, _]| xx),
-            of_stress("stress_yy", |[_, yy, _]| yy),
-            of_stress("stress_xy", |[_, _, xy]| xy),
-            of_stress("principal_max", |[xx, yy, xy]| 0.5 * (xx + yy) + libm::hypot(0.5 * (xx - yy), xy)),
-            of_stress("principal_min", |[xx, yy, xy]| 0.5 * (xx + yy) - libm::hypot(0.5 * (xx - yy), xy)),
-            of_stress("mean_stress", |[xx, yy, _]| 0.5 * (xx + yy)),
-            of_stress("max_shear", |[xx, yy, xy]| libm::hypot(0.5 * (xx - yy), xy)),
-            Array::ids("block", &snapshot.block),
-            Array::ids("rock", &snapshot.rock),
-        ],
+        cell_data: vec![Array::tensors("stress", &snapshot.stress, &snapshot.stress_zz)],
     };
+    grid.cell_data.extend(numbers(&STRESS_QUANTITIES, &snapshot.stress));
+    grid.cell_data.extend([Array::ids("block", &snapshot.block), Array::ids("rock", &snapshot.rock)]);
     grid.cell_data.extend(plastic);
     grid.write(path)
 }
@@ -84,16 +74,16 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn write_joints_vtu(joints: &[JointPiece], laws: &[String], time: f64, path: &Path) -> io::Result<()> {
-    let of_joint = |name, part: fn(&JointPiece) -> f64| Array::numbers(name, joints.iter().map(part));
+    let [opening, slip, normal_stress, shear_stress] = numbers(&JOINT_QUANTITIES, joints);
     let block = |name, k: usize| Array::integers(name, joints.iter().map(move |joint| joint.blocks[k] as usize));
     let cell_data = vec![
         block("block_1", 0),
         block("block_2", 1),
-        of_joint("opening", |joint| joint.opening),
-        of_joint("slip", |joint| joint.slip),
+        opening,
+        slip,
         Array::vectors("force", joints.iter().map(|joint| joint.force)),
-        of_joint("normal_stress", |joint| joint.normal_stress),
-        of_joint("shear_stress", |joint| joint.shear_stress),
+        normal_stress,
+        shear_stress,
         Array::bytes("state", joints.iter().map(|joint| state_code(joint.state))),
         Array::integers("law", joints.iter().map(|joint| joint.law as usize)),
         Array::bytes("is_joint", joints.iter().map(|joint| u8::from(joint.is_joint))),
@@ -112,8 +102,9 @@ pub fn write_joints_vtu(joints: &[JointPiece], laws: &[String], time: f64, path:
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn write_bolts_vtu(bolts: &[BoltLine], names: &[String], time: f64, path: &Path) -> io::Result<()> {
+    let [force] = numbers(&BOLT_QUANTITIES, bolts);
     let cell_data = vec![
-        Array::numbers("force", bolts.iter().map(|bolt| bolt.force)),
+        force,
         Array::integers("bolt", bolts.iter().map(|bolt| bolt.bolt as usize)),
         Array::bytes("state", bolts.iter().map(|bolt| bolt.condition.number())),
     ];
@@ -165,6 +156,12 @@ pub fn write_water_vtu(edges: &[WetEdge], time: f64, path: &Path) -> io::Result<
     let pressure = Array::numbers("water_pressure", pressure.iter().copied());
     let block = Array::integers("block", edges.iter().map(|edge| edge.block as usize));
     lines(time, Vec::new(), &ends, vec![pressure], vec![block]).write(path)
+}
+
+/// Arrays of the quantities of a table.
+fn numbers<'a, T, const N: usize>(quantities: &[Quantity<T>; N], values: &'a [T]) -> [Array<'a>; N] {
+    let array = |quantity: &Quantity<T>| Array::numbers(quantity.name, values.iter().map(quantity.get));
+    quantities.each_ref().map(array)
 }
 
 /// A grid of lines, two points each.
@@ -219,9 +216,9 @@ impl Structures {
         let named = |kind: &str, k: usize, name: &Option<String>| name.clone().unwrap_or(format!("{kind} {}", k + 1));
         Self {
             joints: joints.now(simulation),
-            bolts: structures::bolts(simulation),
-            supports: structures::supports(simulation),
-            water: structures::wet_edges(simulation),
+            bolts: bolts(simulation),
+            supports: supports(simulation),
+            water: wet_edges(simulation),
             bolt_names: case.bolts.iter().enumerate().map(|(k, bolt)| named("bolt", k, &bolt.name)).collect(),
             fix_names: case.fixes.iter().enumerate().map(|(k, fix)| named("fix", k, &fix.name)).collect(),
         }

@@ -1,7 +1,7 @@
 //! Where two blocks can press on each other: a shared straight piece of their faces, or a point.
 
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
+use enmm::model::tables::BlockId;
 
 /// A straight interface, or a point where a corner meets a face; forces per metre of depth.
 #[derive(Debug, Clone, Copy, PartialEq)]

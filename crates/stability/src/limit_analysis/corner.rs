@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
-use enmm::cover::{BlockId, Outlines};
 use enmm::geometry::{Point, TraceId, Vector};
+use enmm::model::tables::{BlockId, Outlines};
 
 use super::contact::{Contact, outward};
 use super::model::Strengths;

@@ -1,8 +1,7 @@
 //! The shared straight pieces of the faces of blocks.
 
-use enmm::contact::LawId;
-use enmm::cover::{BlockId, BoundaryPiece, Outlines};
 use enmm::geometry::Point;
+use enmm::model::tables::{BlockId, BoundaryPiece, LawId, Outlines};
 
 use super::contact::Contact;
 use super::model::Strengths;

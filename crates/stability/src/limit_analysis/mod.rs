@@ -9,8 +9,8 @@ mod program;
 mod refusal;
 mod search;
 
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
+use enmm::model::tables::BlockId;
 
 use contact::Contact;
 use enmm::model::Simulation;

@@ -1,10 +1,8 @@
 //! Rigid blocks with the forces on them, and the strength of their joints, bolts and fixities.
 
-use enmm::contact::LawId;
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, TraceId, Vector};
 use enmm::model::Simulation;
-use enmm::step;
+use enmm::model::tables::{BlockId, LawId};
 
 use super::contact::{Contact, outward};
 
@@ -78,11 +76,9 @@ pub struct Bar {
 pub fn bodies(simulation: &Simulation) -> Vec<Body> {
     let (model, state) = (simulation.model(), simulation.state());
     let covers = &model.covers;
-    let time = simulation.time();
-    let acceleration = step::acceleration(model, state, time);
+    let acceleration = simulation.acceleration();
     let gravity = if acceleration.norm() > 0.0 { acceleration.norm() } else { STANDARD_GRAVITY };
-    let mut pushes = vec![Vector::zeros(); covers.cover_count()];
-    step::push_forces(model, state, time, 1.0, &mut pushes);
+    let pushes = simulation.load_forces();
     let body = |b: BlockId| {
         let mass = model.mass_matrix.total[b];
         let sum: Point = covers.covers_of(b).map(|i| covers.star_position[i] * model.mass_matrix.row_sum[i]).sum();
@@ -130,7 +126,7 @@ fn hold(simulation: &Simulation, bodies: &mut [Body]) {
 pub fn bars(simulation: &Simulation) -> Vec<Bar> {
     let (model, state) = (simulation.model(), simulation.state());
     let installed = model.bolts.iter().zip(&state.bolts).filter(|(_, state)| state.active && !state.broken);
-    let bar = |(segment, _): (&enmm::contact::BoltSegment, _)| Bar {
+    let bar = |(segment, _): (&enmm::model::BoltSegment, _)| Bar {
         blocks: segment.blocks,
         ends: segment.points,
         yield_force: segment.yield_force,

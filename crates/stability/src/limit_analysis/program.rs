@@ -3,8 +3,8 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
+use enmm::model::tables::BlockId;
 
 use super::contact::Contact;
 use super::model::{Bar, Body};

@@ -3,7 +3,6 @@
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
 use crate::limit_analysis::Bound;
 use enmm::model::case::Case;
-use enmm::step::mass_of_few;
 
 /// Part of the largest term of the ledger that may stay unexplained.
 const RESIDUAL: f64 = 1e-3;
@@ -15,7 +14,7 @@ const NAMED: usize = 3;
 impl Reduction {
     /// Whether the mechanism of a bound holds more than the few blocks that do not count in trials.
     fn moves_slope(&self, bound: &Bound) -> bool {
-        let few = mass_of_few(self.simulation.model(), &self.simulation.workspace().mass_matrix);
+        let few = self.simulation.mass_of_few();
         let moving: f64 = bound.level_tops.mechanism.iter().map(|block| block.mass).sum();
         moving > few
     }

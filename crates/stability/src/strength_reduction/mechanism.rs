@@ -1,8 +1,8 @@
 //! One way to fail after the other: the next is looked for when the blocks of the last have gone.
 
-use enmm::cover::BlockId;
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Stage, StageKind};
+use enmm::model::tables::BlockId;
 
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 

@@ -12,7 +12,7 @@ mod trial;
 use std::sync::atomic::AtomicBool;
 
 use enmm::geometry::Point;
-use enmm::step::StepError;
+use enmm::model::StepError;
 
 use super::limit_analysis::{self, Bound};
 use enmm::model::case::{Case, Invalid};

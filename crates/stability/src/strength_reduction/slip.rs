@@ -1,9 +1,8 @@
 //! How far joints have slipped, and how far elasticity lets them.
 
-use enmm::contact::ContactHistory;
-use enmm::cover::BlockId;
 use enmm::geometry::polygon;
 use enmm::model::Simulation;
+use enmm::model::tables::{BlockId, ContactHistory};
 
 /// Displacement, relative to the height of the model, that elasticity of stiff rock cannot explain.
 pub const ELASTIC: f64 = 1e-3;

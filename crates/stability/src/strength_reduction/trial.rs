@@ -8,11 +8,9 @@ use nalgebra::Vector3;
 use super::judge::{self, Sample, Scales, Verdict};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
-use enmm::state::Ledger;
-use enmm::step::{StepError, StepReport, block_motion, mass_of_few};
+use enmm::model::tables::BlockId;
+use enmm::model::{Ledger, Simulation, StepError, StepReport};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
 const WINDOWS_PER_FALL: f64 = 10.0;
@@ -115,10 +113,11 @@ impl Base {
         self.moving().map(position).collect()
     }
 
-    /// The blocks that have gone farthest, as many as are too few to decide about the slope ([`mass_of_few`]).
+    /// The blocks that have gone farthest, as many as are too few to decide about the slope (see
+    /// [`Simulation::mass_of_few`]).
     fn few(&self, simulation: &Simulation) -> Vec<BlockId> {
         let mass = &simulation.model().mass_matrix.total;
-        let mut room = mass_of_few(simulation.model(), &simulation.workspace().mass_matrix);
+        let mut room = simulation.mass_of_few();
         let mut small: Vec<(BlockId, f64)> =
             self.moving().filter(|&b| mass[b] <= room).map(|b| (b, self.moved(simulation, b))).collect();
         small.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
@@ -192,8 +191,7 @@ impl Base {
     ) -> Sample {
         let most = self.moving().filter(|b| few.binary_search(b).is_err());
         let far = most.map(|b| self.moved(simulation, b)).fold(0.0, f64::max);
-        let (model, state, mass_matrix) = (simulation.model(), simulation.state(), &simulation.workspace().mass_matrix);
-        let kinetic_of_few: f64 = few.iter().map(|&b| block_motion(model, state, mass_matrix, b).3).sum();
+        let kinetic_of_few: f64 = few.iter().map(|&b| simulation.rigid_motion_of(b).3).sum();
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
             time: simulation.time() - self.simulation.time(),
@@ -213,11 +211,10 @@ impl Base {
 
     /// Motion of all free blocks since the trial began.
     fn motions(&self, simulation: &Simulation) -> Vec<FailingBlock> {
-        let (model, state) = (simulation.model(), simulation.state());
-        let mass_matrix = &simulation.workspace().mass_matrix;
+        let model = simulation.model();
         self.moving()
             .map(|b| {
-                let (_, velocity, spin, _) = block_motion(model, state, mass_matrix, b);
+                let (_, velocity, spin, _) = simulation.rigid_motion_of(b);
                 let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
                     block: b.number(),

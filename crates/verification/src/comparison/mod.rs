@@ -7,9 +7,8 @@ mod report;
 use std::time::Instant;
 
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
 use enmm::model::case::Integrator;
-use enmm::state::Counters;
+use enmm::model::{Counters, Simulation};
 use enmm_bench::Machine;
 use enmm_implicit::ImplicitBuffers;
 
@@ -183,7 +182,7 @@ fn bytes(simulation: &Simulation) -> usize {
     let (motion, sweep) = (&workspace.motion, &workspace.sweep);
     let vectors = [&workspace.load_force, &motion.predicted, &motion.damped, &sweep.increment];
     let fields = vectors.map(|v| v.len()).iter().sum::<usize>() + 2 * simulation.state().displacement.len();
-    let contacts = workspace.contacts.len() * size_of::<enmm::contact::VertexEdge>();
+    let contacts = workspace.contacts.len() * size_of::<enmm::model::tables::VertexEdge>();
     fields * size_of::<Vector>() + contacts + enmm_implicit::buffers(workspace).map_or(0, of_implicit)
 }
 

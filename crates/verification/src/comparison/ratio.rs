@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use enmm::model::Simulation;
 use enmm::model::case::{Integrator, Newmark};
-use enmm::state::Seconds;
+use enmm::model::tables::Seconds;
 
 use super::cpu_seconds;
 use crate::{Setup, Trouble, Values};

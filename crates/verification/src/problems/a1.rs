@@ -1,9 +1,8 @@
 //! A1: patch tests on covers that any joints cut.
 
-use enmm::cover::ElementId;
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
-use enmm::state::State;
+use enmm::model::tables::ElementId;
+use enmm::model::{Simulation, State};
 
 use crate::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};

@@ -1,8 +1,8 @@
 //! A2: free fall.
 
-use enmm::cover::BlockId;
 use enmm::geometry::Vector;
-use enmm::step::{StepReport, block_motion};
+use enmm::model::StepReport;
+use enmm::model::tables::BlockId;
 
 use crate::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -92,7 +92,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (slope, state) = (simulation.model(), simulation.state());
     let off = state.displacement.iter().map(|u| (u - fall).norm()).fold(0.0, f64::max);
     let stress = slope.covers.elements().flat_map(|e| slope.stress(state, e)).fold(0.0f64, |a, s| a.max(s.abs()));
-    let spin = |b: BlockId| block_motion(slope, state, &simulation.workspace().mass_matrix, b).2.abs();
+    let spin = |b: BlockId| simulation.rigid_motion_of(b).2.abs();
     let spin = slope.covers.blocks().map(spin).fold(0.0, f64::max);
     let rows = vec![
         Row::new("fall of the first cover", "m", state.displacement[0].norm(), fall.norm())

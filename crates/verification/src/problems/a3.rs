@@ -1,10 +1,8 @@
 //! A3: free spin.
 
-use enmm::contact::EdgeId;
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm::step::block_motion;
+use enmm::model::tables::{BlockId, EdgeId};
 
 use crate::random::Random;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -123,7 +121,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let turns = if setup.quick { setup.get("turns").min(0.5) } else { setup.get("turns") };
     let steps = simulation.steps_in(turns * std::f64::consts::TAU / w0);
     let every = (steps / 400).max(1);
-    let motion = |s: &Simulation| block_motion(s.model(), s.state(), &s.workspace().mass_matrix, BlockId::new(0));
+    let motion = |s: &Simulation| s.rigid_motion_of(BlockId::new(0));
     let (momentum, (_, _, spin, kinetic)) = (simulation.momentum().1, motion(&simulation));
     let (mut angle, mut arm, mut curve) = (0.0, now(&simulation).1, Vec::new());
     for k in 1..=steps {

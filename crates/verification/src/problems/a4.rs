@@ -1,7 +1,6 @@
 //! A4: momentum and energy of colliding blocks.
 
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use crate::parts::{dynamic, rock};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};

@@ -1,6 +1,5 @@
 //! B1: a simply supported beam under a uniform load and under a force in its middle.
 
-use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
 use super::beam::{Beam, Plane};
@@ -155,15 +154,14 @@ fn stress_error(simulation: &Simulation, beam: &Beam, q: f64) -> f64 {
     let slope = simulation.model();
     let covers = &slope.covers;
     let (mut sum, mut area) = (0.0, 0.0);
-    for e in 0..covers.element_count() {
+    for e in covers.elements() {
         let p = covers.element_centroid[e];
         let x = p.x - 0.5 * beam.length;
         if x.abs() > 0.25 * beam.length {
             continue;
         }
-        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i]);
-        let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
-        let computed = Deformation::new(u, gradients).stress(&slope.rocks[0], &[0.0; 3])[0];
+        let deformation = slope.deformation(e, &simulation.state().displacement);
+        let computed = deformation.stress(slope.rock_of(e), &[0.0; 3])[0];
         sum += covers.element_area[e] * (computed - beam.uniform_stress(q, x, p.y)).powi(2);
         area += covers.element_area[e];
     }

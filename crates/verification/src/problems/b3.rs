@@ -1,6 +1,5 @@
 //! B3: a confined column under its weight.
 
-use enmm::mechanics::Deformation;
 use enmm::model::Simulation;
 
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -94,14 +93,11 @@ fn text(setup: &Setup, size: f64) -> String {
 /// Stress xx and yy (Pa) of every element.
 fn stresses(simulation: &Simulation) -> Vec<[f64; 2]> {
     let slope = simulation.model();
-    let covers = &slope.covers;
-    let of = |e: usize| {
-        let u = covers.element_covers[e].map(|i| simulation.state().displacement[i]);
-        let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
-        let stress = Deformation::new(u, gradients).stress(&slope.rocks[0], &[0.0; 3]);
+    let of = |e| {
+        let stress = slope.deformation(e, &simulation.state().displacement).stress(slope.rock_of(e), &[0.0; 3]);
         [stress[0], stress[1]]
     };
-    (0..covers.element_count()).map(of).collect()
+    slope.covers.elements().map(of).collect()
 }
 
 /// Stress xx and yy (Pa) at y = 0 by an area-weighted straight line through all elements.

@@ -1,8 +1,7 @@
 //! B4: stresses about a round hole in an elastic plate.
 
 use enmm::geometry::Point;
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{QuarterPlate, cartesian, order, polar, stress_at, stress_error};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};

@@ -1,8 +1,7 @@
 //! B7: a disc under two opposite point loads.
 
 use enmm::geometry::Point;
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{list, order, quarter_circle, smooth_rise, stress_at, stress_error};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};

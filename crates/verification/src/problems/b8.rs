@@ -1,8 +1,7 @@
 //! B8: a round opening in rock that yields.
 
 use enmm::geometry::Point;
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{QuarterPlate, cartesian, polar, stress_at};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};

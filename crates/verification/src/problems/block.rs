@@ -4,8 +4,7 @@
 //! grow together: the ratio of shear to normal force, hence the kind of motion, is that of full gravity from the start.
 
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
-use enmm::step::{StepReport, block_motion};
+use enmm::model::{Simulation, StepReport};
 
 use crate::parts::turn_radians as turn;
 use crate::{Setup, Trouble};
@@ -107,7 +106,7 @@ impl Block {
         let (slope, element) = (simulation.model(), simulation.built().monitors[1].0);
         let block = slope.covers.element_block[element];
         // Counter-clockwise is uphill.
-        let spin = -block_motion(slope, simulation.state(), &simulation.workspace().mass_matrix, block).2;
+        let spin = -simulation.rigid_motion_of(block).2;
         Fate { time: simulation.time(), turned, spin, slides: toe.1.dot(&down) }
     }
 }

@@ -3,10 +3,9 @@
 use super::block::G;
 use crate::parts::{rock, turn};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Simulation;
-use enmm::step::{StepReport, block_motion};
+use enmm::model::tables::BlockId;
+use enmm::model::{Simulation, StepReport};
 
 pub const PROBLEM: Problem = Problem {
     id: "C1",
@@ -138,8 +137,7 @@ struct Slide {
 
 impl Slide {
     fn place(&self) -> f64 {
-        let (slope, state) = (self.simulation.model(), self.simulation.state());
-        block_motion(slope, state, &self.simulation.workspace().mass_matrix, self.block).0.dot(&self.down)
+        self.simulation.rigid_motion_of(self.block).0.dot(&self.down)
     }
 
     /// Way since the start (m).

@@ -1,7 +1,7 @@
 //! C12: the least tension of a bolt that holds a block on a plane.
 
 use enmm::geometry::{Point, Vector};
-use enmm::step::{StepReport, block_motion};
+use enmm::model::StepReport;
 
 use crate::parts::turn;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -121,7 +121,7 @@ fn trial(setup: &mut Setup, delta: f64, pretension: f64) -> Result<(f64, StepRep
         for step in 1..=third {
             report = simulation.advance(step == third)?;
         }
-        let motion = block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, block);
+        let motion = simulation.rigid_motion_of(block);
         places.push(motion.0.dot(&Vector::new(c, -s)));
     }
     // From ½·a·t² at the last two times.

@@ -1,10 +1,8 @@
 //! C3: two equal blocks on an incline, the upper pushing the lower.
 
-use enmm::contact::VertexEdge;
-use enmm::cover::BlockId;
 use enmm::geometry::{Point, Vector};
-use enmm::model::Simulation;
-use enmm::step::{StepReport, block_motion};
+use enmm::model::tables::{BlockId, VertexEdge};
+use enmm::model::{Simulation, StepReport};
 
 use crate::parts::turn;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -110,8 +108,7 @@ fn slide(setup: &Setup, simulation: &mut Simulation) -> Result<Slide, Trouble> {
     let block = |p: [f64; 2]| covers.element_near(Point::from(p), 0.1).map(|e| covers.element_block[e]);
     let blocks: Vec<BlockId> = middles.iter().filter_map(|p| block(*p)).collect();
     let along = |simulation: &Simulation, k: usize| {
-        let motion =
-            block_motion(simulation.model(), simulation.state(), &simulation.workspace().mass_matrix, blocks[k]);
+        let motion = simulation.rigid_motion_of(blocks[k]);
         motion.0.dot(&Vector::new(c, -s))
     };
     let start = [0, 1].map(|k| along(simulation, k));

@@ -1,7 +1,6 @@
 //! D3: direct shear of a joint, Mohr–Coulomb with softening and Barton–Bandis, and its closure.
 
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::shear_box::{Drive, JointState, joint_state, share};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};

@@ -1,7 +1,6 @@
 //! D4: a sample with a plane of weakness in rock that yields.
 
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use super::continuum::list;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};

@@ -2,7 +2,6 @@
 
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm::step::block_motion;
 
 use super::block::G;
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -64,7 +63,7 @@ fn motion(simulation: &Simulation, height: f64) -> Result<(f64, f64), Trouble> {
     let slope = simulation.model();
     let element = slope.covers.element_at(Point::new(0.51, height + 0.48));
     let block = slope.covers.element_block[element.ok_or_else(|| Trouble("D5: there is no mass".to_owned()))?];
-    let (centre, velocity, ..) = block_motion(slope, simulation.state(), &simulation.workspace().mass_matrix, block);
+    let (centre, velocity, ..) = simulation.rigid_motion_of(block);
     Ok((centre.y - height - 0.5, velocity.y))
 }
 

@@ -1,6 +1,6 @@
 //! D6: a wedge in the roof of an opening, held by the horizontal stress.
 
-use enmm::step::StepReport;
+use enmm::model::StepReport;
 
 use super::shear_box::{Drive, share};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
@@ -79,7 +79,7 @@ fn lower(setup: &mut Setup, ratio: f64) -> Result<Lowering, Trouble> {
     let text = case(setup, ratio);
     let mut simulation = setup.simulation(&format!("d6 kn/ks = {ratio}"), text)?;
     simulation.advance(false)?;
-    let thrust = |c: &enmm::contact::VertexEdge| {
+    let thrust = |c: &enmm::model::tables::VertexEdge| {
         (c.normal.x * c.history.normal_force + c.tangent().x * c.history.shear_force).abs()
     };
     let initial = 0.5 * simulation.workspace().contacts.iter().map(thrust).sum::<f64>();

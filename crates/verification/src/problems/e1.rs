@@ -1,8 +1,7 @@
 //! E1: a fractured slope by the explicit and by the implicit method.
 
-use enmm::model::Simulation;
 use enmm::model::case::Integrator;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use crate::slope::{Totals, block_displacements, difference, fail, slope_text};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};

@@ -1,8 +1,7 @@
 //! A body that is moved against joints in small steps: its supports move along, and measure the force.
 
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use crate::Trouble;
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use enmm::geometry::{Point, Vector};
-use enmm::step::{StepReport, block_motion};
+use enmm::model::StepReport;
 
 use crate::{Setup, Trouble};
 
@@ -87,8 +87,7 @@ impl Slider<'_> {
         let element = covers.element_near(middle, 1e-6).ok_or_else(|| Trouble("there is no block".into()))?;
         let block = covers.element_block[element];
         let motion = |simulation: &enmm::model::Simulation| {
-            let (slope, state) = (simulation.model(), simulation.state());
-            let (centre, velocity, ..) = block_motion(slope, state, &simulation.workspace().mass_matrix, block);
+            let (centre, velocity, ..) = simulation.rigid_motion_of(block);
             [centre.dot(&down), velocity.dot(&down)]
         };
         let start = motion(&simulation)[0];

@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use enmm::model::Simulation;
-use enmm::step::StepReport;
+use enmm::model::{Simulation, StepReport};
 
 use crate::{Setup, Trouble};
 

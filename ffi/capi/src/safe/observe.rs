@@ -1,12 +1,10 @@
 //! Values that hosts read, in the structures of C.
 
-use engine::contact::{ContactState, EdgeId};
 use engine::cosimulation::{EventKind, PortKind, Totals};
-use engine::cover::BlockId;
 use engine::geometry::{Point, polygon};
-use engine::model::BlockState;
 use engine::model::case::key::list;
-use engine::state::Ledger;
+use engine::model::tables::{BlockId, VertexEdge};
+use engine::model::{BlockState, ContactState, Ledger};
 
 use super::failure::{Failure, Outcome};
 use super::model::Model;
@@ -35,7 +33,7 @@ impl Model {
         let simulation = self.inner.simulation();
         let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
         let contacts = self.inner.contacts();
-        let of = |contact: &engine::contact::VertexEdge| {
+        let of = |contact: &VertexEdge| {
             let (history, [node_block, edge_block]) = (&contact.history, contact.blocks(boundary));
             let position = places[contact.point];
             enmm_contact {
@@ -123,23 +121,9 @@ impl Model {
     /// Boundary loops of the `wanted` blocks at their current places.
     fn loops(&self, wanted: impl Fn(BlockId) -> bool) -> Vec<(BlockId, Vec<Point>)> {
         let simulation = self.inner.simulation();
-        let boundary = &simulation.model().boundary;
         let places = simulation.positions();
-        let mut loops = Vec::new();
-        let mut k = 0;
-        while k < boundary.len() {
-            let first = EdgeId::new(k);
-            let mut last = first;
-            while boundary.after(last) != first {
-                last = boundary.after(last);
-            }
-            let points = k..last.index() + 1;
-            k = points.end;
-            if wanted(boundary.block[first]) {
-                loops.push((boundary.block[first], places[points].to_vec()));
-            }
-        }
-        loops
+        let loops = enmm_observe::loops(simulation).into_iter().filter(|(block, _)| wanted(*block));
+        loops.map(|(block, points)| (block, places[points].to_vec())).collect()
     }
 
     /// Index of the port of this name.
@@ -299,7 +283,7 @@ fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
 #[cfg(test)]
 mod tests {
     use engine::cosimulation::{Quantity, TOTALS};
-    use engine::state::ENERGIES;
+    use engine::model::ENERGIES;
 
     use super::*;
 

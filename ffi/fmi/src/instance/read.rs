@@ -2,8 +2,7 @@
 
 use enmm::cosimulation::{EventKind, PortState, TOTALS, Totals};
 use enmm::geometry::Vector;
-use enmm::model::{BLOCK_QUANTITIES, BlockState};
-use enmm::state::ENERGIES;
+use enmm::model::{BLOCK_QUANTITIES, BlockState, ENERGIES};
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use enmm::cosimulation::Saved;
-use enmm::state::bytes;
+use enmm::model::bytes;
 use serde::{Deserialize, Serialize};
 
 use crate::log::Status;

@@ -1,8 +1,7 @@
 //! Joints of frames and pictures are where the joints of the model are, and bear what statics asks of them.
 
-use enmm::contact::ContactState;
-use enmm::model::Simulation;
-use enmm_picture::joints::{JointPiece, Joints};
+use enmm::model::{ContactState, Simulation};
+use enmm_observe::{JointPiece, Joints};
 
 /// A block of 2 m × 1 m on a base, which a crack enters from above and does not part, beside a block on another base.
 const CASE: &str = r#"

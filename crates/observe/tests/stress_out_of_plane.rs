@@ -2,6 +2,7 @@
 //! keeps to its strength in all directions, and plane stress has none.
 
 use enmm::model::{Case, Simulation};
+use enmm_observe::Snapshot;
 use serde_json::json;
 
 /// A column 2 m wide and 4 m high between smooth walls, under its weight; `rock` has further keys.
@@ -30,7 +31,7 @@ fn column(rock: serde_json::Value) -> Simulation {
 
 #[test]
 fn confined_rock_is_pressed_alike_in_both_horizontal_directions() {
-    let snapshot = column(json!({})).snapshot();
+    let snapshot = Snapshot::of(&column(json!({})));
     assert!(snapshot.stress.len() > 50 && snapshot.stress.len() == snapshot.stress_zz.len());
     for (stress, zz) in snapshot.stress.iter().zip(&snapshot.stress_zz) {
         // The walls give way by their springs, 1 % of the stiffness of the rock or less.
@@ -45,7 +46,7 @@ fn yielded_rock_keeps_to_its_strength_out_of_the_plane_too() {
     let cohesion = 1e4;
     let simulation = column(json!({ "cohesion": cohesion, "friction_deg": 0.0 }));
     assert!(simulation.yielded_elements() > 20);
-    let snapshot = simulation.snapshot();
+    let snapshot = Snapshot::of(&simulation);
     for (&[xx, yy, xy], &zz) in snapshot.stress.iter().zip(&snapshot.stress_zz) {
         let (mean, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
         let all = [mean + radius, mean - radius, zz];
@@ -56,6 +57,6 @@ fn yielded_rock_keeps_to_its_strength_out_of_the_plane_too() {
 
 #[test]
 fn plane_stress_has_none_out_of_the_plane() {
-    let snapshot = column(json!({ "plane": "stress" })).snapshot();
+    let snapshot = Snapshot::of(&column(json!({ "plane": "stress" })));
     assert!(snapshot.stress_zz.iter().all(|&zz| zz == 0.0) && snapshot.stress.iter().any(|s| s[1] < -1e4));
 }

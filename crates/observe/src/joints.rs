@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use enmm::contact::{Boundary, ContactState, EdgeId, NodeId, VertexEdge};
 use enmm::geometry::{Point, TraceId, Vector, segment};
-use enmm::model::Simulation;
+use enmm::model::tables::{Boundary, EdgeId, NodeId, VertexEdge};
+use enmm::model::{ContactState, Quantity, Simulation};
 
-/// Cosine of the angle between a face and the normal of a contact on it from which the face lies flat on the other.
-const FLAT: f64 = -0.94;
+use crate::edges::EdgeStates;
+
 /// Overlap of two faces, relative to the shorter edge, below which they do not lie on each other.
 const SLIVER: f64 = 1e-6;
 
@@ -38,6 +38,14 @@ pub struct JointPiece {
     /// Whether the two faces lay on each other at the start.
     pub is_joint: bool,
 }
+
+/// Numbers of a piece of joint as outputs show them.
+pub const JOINT_QUANTITIES: [Quantity<JointPiece>; 4] = [
+    Quantity::new(["opening"; 2], "m", "Opening since the start, apart positive", |joint| joint.opening),
+    Quantity::new(["slip"; 2], "m", "Slip along the joint since the start", |joint| joint.slip),
+    Quantity::new(["normal_stress"; 2], "Pa", "Normal stress, tension positive", |joint| joint.normal_stress),
+    Quantity::new(["shear_stress"; 2], "Pa", "Shear stress", |joint| joint.shear_stress),
+];
 
 /// A piece of joint at the start: two edges of the boundary, and the share of the way along each where it begins and
 /// ends. The second edge runs back.
@@ -318,65 +326,5 @@ fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u
         shear_stress: touch.load.shear / length,
         state: touch.state,
         is_joint: false,
-    }
-}
-
-/// State of each edge of the boundary; none where neither a joint nor a contact is. A contact stands for the stretch
-/// between two nodes in which it lies, and for the stretch beside its own node that lies flat on the other block.
-pub fn edge_states(simulation: &Simulation) -> Vec<Option<ContactState>> {
-    let positions = simulation.positions();
-    let mut states = EdgeStates::new(&simulation.model().boundary, &positions);
-    simulation.each_contact(|contact| states.see(contact));
-    states.found
-}
-
-/// States of edges, as contacts give them one by one.
-struct EdgeStates<'a> {
-    boundary: &'a Boundary,
-    positions: &'a [Point],
-    found: Vec<Option<ContactState>>,
-}
-
-impl<'a> EdgeStates<'a> {
-    fn new(boundary: &'a Boundary, positions: &'a [Point]) -> Self {
-        let found = boundary.trace.iter().map(|trace| trace.map(|_| ContactState::Open)).collect();
-        Self { boundary, positions, found }
-    }
-
-    fn see(&mut self, contact: &VertexEdge) {
-        let (boundary, state) = (self.boundary, contact.history.state);
-        if state == ContactState::Open {
-            return;
-        }
-        let node = contact.history.node;
-        self.mark(boundary.node_before[contact.history.edge], state);
-        if self.lies_flat(boundary.node_point[node], contact) {
-            self.mark(node, state);
-        }
-        if self.lies_flat(boundary.node_edge_before[node], contact) {
-            self.mark(boundary.node_previous[node], state);
-        }
-    }
-
-    /// Whether an edge lies flat on that of a contact.
-    fn lies_flat(&self, edge: EdgeId, contact: &VertexEdge) -> bool {
-        let along = self.positions[self.boundary.after(edge)] - self.positions[edge];
-        Vector::new(along.y, -along.x).dot(&contact.normal) < FLAT * along.norm()
-    }
-
-    /// Marks the edges from a node to the next one.
-    fn mark(&mut self, node: NodeId, state: ContactState) {
-        let boundary = self.boundary;
-        let mut edge = boundary.node_point[node];
-        let end = boundary.node_point[boundary.node_next[node]];
-        loop {
-            if self.found[edge] != Some(ContactState::Slip) {
-                self.found[edge] = Some(state);
-            }
-            edge = boundary.after(edge);
-            if edge == end {
-                break;
-            }
-        }
     }
 }

@@ -1,0 +1,45 @@
+//! What a model shows at one instant: elements, blocks, joints, bolts, supports, water and sums over the model.
+//!
+//! Pictures, frames, the film and the summary read a model through these types, so that a joint opens by the same
+//! number everywhere. Each kind with numbers has one table of [`Quantity`]: name, unit, meaning and value.
+//!
+//! | what | type | numbers |
+//! |---|---|---|
+//! | elements | [`Snapshot`] | [`STRESS_QUANTITIES`] |
+//! | blocks | [`BlockState`] | [`BLOCK_QUANTITIES`] |
+//! | joints | [`JointPiece`] | [`JOINT_QUANTITIES`] |
+//! | bolts | [`BoltLine`] | [`BOLT_QUANTITIES`] |
+//! | supports | [`SupportPoint`] | |
+//! | water | [`WetEdge`] | |
+//! | energies and works | [`Ledger`] | [`ENERGIES`] |
+//! | sums at the end of a step | [`StepReport`] | [`REPORT_QUANTITIES`] |
+//! | sums for hosts | [`Totals`] | [`TOTALS`] |
+//!
+//! Blocks, energies and sums for hosts are worked out by the engine, because the C library and the FMUs read them
+//! between two steps.
+#![forbid(unsafe_code)]
+
+mod bolts;
+mod edges;
+mod joints;
+mod loops;
+mod snapshot;
+pub mod stress;
+mod supports;
+mod totals;
+mod water;
+
+pub use enmm::cosimulation::{TOTALS, Totals};
+pub use enmm::model::{
+    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, Quantity, StepReport,
+};
+
+pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
+pub use edges::edge_states;
+pub use joints::{JOINT_QUANTITIES, JointPiece, Joints};
+pub use loops::{loops, node_loops};
+pub use snapshot::{Boundary, Polygons, Snapshot, moved_since, references};
+pub use stress::STRESS_QUANTITIES;
+pub use supports::{SupportKind, SupportPoint, supports};
+pub use totals::REPORT_QUANTITIES;
+pub use water::{WetEdge, height_at, water_surface, water_weight, wet_edges};

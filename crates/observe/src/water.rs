@@ -1,0 +1,63 @@
+//! Water at one instant.
+
+use enmm::geometry::{Point, Vector};
+use enmm::model::Simulation;
+use enmm::model::tables::EdgeId;
+
+/// A wet edge of the boundary now.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct WetEdge {
+    /// Both ends (m), rock on the left.
+    pub ends: [Point; 2],
+    /// Number of its block.
+    pub block: u32,
+    /// Pressure of the water (Pa) at both ends.
+    pub pressure: [f64; 2],
+}
+
+/// All edges of the boundary that the water reaches at its level now.
+pub fn wet_edges(simulation: &Simulation) -> Vec<WetEdge> {
+    let (model, state) = (simulation.model(), simulation.state());
+    let Some(water) = &model.water else { return Vec::new() };
+    let weight = water_weight(simulation);
+    let surface = water_surface(simulation);
+    let positions = simulation.positions();
+    let pressure = |p: Point| weight * (height_at(&surface, p.x) - p.y).max(0.0);
+    let wet = |&edge: &EdgeId| {
+        let ends = [edge, model.boundary.after(edge)].map(|k| positions[k]);
+        WetEdge { ends, block: model.boundary.block[edge].number(), pressure: ends.map(pressure) }
+    };
+    let there = |edge: &&EdgeId| !state.removed[model.boundary.block[**edge]];
+    let edges = water.edges.iter().filter(there).map(wet);
+    edges.filter(|edge| edge.pressure.iter().any(|&p| p > 0.0)).collect()
+}
+
+/// Weight of the water now (N/m³); 0 without water.
+pub fn water_weight(simulation: &Simulation) -> f64 {
+    let drive = &simulation.state().drive;
+    let gravity = drive.gravity(drive.share(simulation.time())).norm();
+    simulation.model().water.as_ref().map_or(0.0, |water| water.density * gravity)
+}
+
+/// The surface of the water now, from left to right (m), level beyond both ends; empty without water.
+pub fn water_surface(simulation: &Simulation) -> Vec<Point> {
+    let Some(water) = &simulation.model().water else { return Vec::new() };
+    let drive = &simulation.state().drive;
+    let level = drive.water_level(drive.share(simulation.time()));
+    if water.table.is_empty() {
+        return vec![Point::new(0.0, level)];
+    }
+    let rise = Vector::new(0.0, level - water.level);
+    water.table.iter().map(|point| point + rise).collect()
+}
+
+/// Height (m) of a broken line from left to right at `x` (m), level beyond its ends.
+pub fn height_at(line: &[Point], x: f64) -> f64 {
+    let after = line.partition_point(|p| p.x <= x);
+    match (after.checked_sub(1).map(|k| line[k]), line.get(after)) {
+        (Some(p), Some(q)) => p.y + (q.y - p.y) * (x - p.x) / (q.x - p.x),
+        (Some(p), None) => p.y,
+        (None, Some(q)) => q.y,
+        (None, None) => f64::NEG_INFINITY,
+    }
+}

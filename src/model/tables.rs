@@ -1,0 +1,8 @@
+//! Names of the tables that a built model and its state hold, for those who read them: observers of a model, analyses
+//! of its stability, and reports of what it costs.
+
+pub use crate::contact::{
+    Boundary, ContactHistory, EdgeId, EntranceRule, LawId, NodeId, Resistance, SideId, VertexEdge,
+};
+pub use crate::cover::{BlockId, BoundaryPiece, CoverId, ElementId, Outlines};
+pub use crate::state::{Model, Seconds, Workspace};
