@@ -98,8 +98,8 @@ impl NarrowPhase<'_> {
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch for
     /// the time in which a mass (kg/m) swings on it once, so that an impact has a potential, and lets it go in as much
-    /// time again, or at once where it begins to share its length with another one (Eq. 86). The force stays, by an
-    /// allowance.
+    /// time again, or at once where it begins to share its length with another one (Eq. 86). The force does not grow
+    /// by that, for which it gets an allowance.
     #[inline(always)]
     fn keep_stiffness(&self, gap: f64, (now, whole): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
         let (age, kept) = (f64::from(history.age), f64::from(history.kept_stiffness));
@@ -121,7 +121,7 @@ impl NarrowPhase<'_> {
         let share = if whole { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
         let next = kept + (now - kept) * share;
         history.kept_stiffness = if whole { next as f32 } else { 0.0 };
-        history.offset += closed * (kept / next - 1.0);
+        history.offset += closed * ((kept / next).min(1.0) - 1.0);
         next / now
     }
 
