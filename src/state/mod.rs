@@ -22,8 +22,8 @@ pub use model::{
 };
 pub use quantity::Quantity;
 pub use workspace::{
-    ChunkSums, ContactOutcome, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, SweepBuffers, Workspace,
-    YieldBuffers,
+    ChunkSums, ContactOutcome, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, Suspect, SweepBuffers,
+    Workspace, YieldBuffers,
 };
 
 use serde::{Deserialize, Serialize};
