@@ -20,7 +20,7 @@ pub const EVERY: u64 = 50;
 pub const DEEP: f64 = 0.01;
 /// Depth over the mesh size by which a node may lie deeper than contacts explain: a ledge that a tip passes carries
 /// nothing up to 1e-3 and all from 2e-3 on.
-pub const UNHELD: f64 = 0.004;
+pub const UNHELD: f64 = 0.002;
 /// Pairs that have overlapped and are looked at in every audit, however far in each other they are.
 const FOLLOWED: usize = 16;
 /// Closure of springs by which an overlap is explained: faces bend between two contacts.
@@ -40,8 +40,8 @@ pub struct Overlap {
 
 impl Overlap {
     /// How much (m) of it no spring explains, anywhere and at the nodes: what is more than 1.2 times the closure of the
-    /// most deeply pressed contact between the two blocks, which is force over stiffness, and what that contact was
-    /// first seen with.
+    /// most deeply pressed contact between the two blocks, which is force over stiffness. What that contact was first
+    /// seen with has no force, and so explains nothing.
     pub fn unheld(&self, simulation: &Simulation) -> [f64; 2] {
         let boundary = &simulation.model().boundary;
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.blocks(boundary).contains(block));
@@ -51,10 +51,9 @@ impl Overlap {
     }
 }
 
-/// Closure (m) of a contact: force over stiffness or penetration, and what it was first seen with.
+/// Closure (m) of a contact: force over stiffness, or the penetration that springs resist.
 fn closure(contact: &VertexEdge) -> f64 {
-    let history = &contact.history;
-    (history.normal_force / contact.stiffness[0]).max(contact.loaded_penetration()) + history.offset
+    (contact.history.normal_force / contact.stiffness[0]).max(contact.loaded_penetration())
 }
 
 /// The blocks of a model, cut into triangles once.
@@ -198,8 +197,8 @@ fn before(boundary: &Boundary, edge: EdgeId) -> EdgeId {
 fn suspect(simulation: &Simulation, suspects: &mut Vec<Suspect>, least: f64) {
     let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
     let ends = |edge: EdgeId| [edge, boundary.after(edge)].map(|point| frames.position(point));
-    // Nearest of all edges of the block that are near. Where it is nearest by an end, the point is inside the block only
-    // if it lies behind the neighbour at that end, too.
+    // Nearest of all edges of the block that are near. Where it is nearest by an end, the point is inside the block
+    // only if it lies behind the neighbour at that end, too.
     let behind = |run: &[NearPair]| {
         let point = boundary.node_point[run[0].node];
         let place = frames.position(point);

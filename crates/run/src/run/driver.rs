@@ -558,8 +558,8 @@ impl<'a> Driver<'a> {
 fn overlap_text(simulation: &Simulation, event: &Event) -> String {
     let place = simulation.motion_of(BlockId::new(event.subject as usize)).centroid;
     format!(
-        "{} near ({:.3}, {:.3}) m at t = {:.4} s: results about them are wrong from here on; where their joint is soft, \
-         raise its normal_stiffness",
+        "{} near ({:.3}, {:.3}) m at t = {:.4} s: results about them are wrong from here on; where their joint is \
+         soft, raise its normal_stiffness",
         event.overlap_text(simulation.model().covers.mesh.size),
         place.x,
         place.y,
