@@ -21,7 +21,7 @@ pub(super) struct EdgeCells {
 /// What is known of the edges of a noder.
 pub(super) trait Edges {
     /// Visits every cell that an edge comes near, once each.
-    fn visit(&self, edge: u32, visit: &mut dyn FnMut(usize));
+    fn visit(&self, edge: u32, visit: impl FnMut(usize));
     /// Place of an edge in the order of the edges.
     fn rank(&self, edge: u32) -> Rank;
     /// Whether an edge has been made since the cells were filled.
@@ -32,7 +32,7 @@ impl EdgeCells {
     /// Fills `cells` cells with edges, which `order` visits in order.
     pub fn fill(cells: usize, edges: &impl Edges, order: impl Fn(&mut dyn FnMut(u32))) -> Self {
         let all = Groups::build(cells, |put| {
-            order(&mut |edge| edges.visit(edge, &mut |cell| put(cell, edge)));
+            order(&mut |edge| edges.visit(edge, |cell| put(cell, edge)));
         });
         Self { all, changed: Vec::new(), now: None }
     }
@@ -45,7 +45,7 @@ impl EdgeCells {
     /// Finds the edges in all cells that an untested edge comes near.
     pub fn find(&mut self, untested: &[u32], edges: &impl Edges) {
         let mut wanted = Vec::new();
-        untested.iter().for_each(|&edge| edges.visit(edge, &mut |cell| wanted.push(cell as u32)));
+        untested.iter().for_each(|&edge| edges.visit(edge, |cell| wanted.push(cell as u32)));
         wanted.sort_unstable();
         wanted.dedup();
         let mut near = Vec::new();
@@ -54,7 +54,7 @@ impl EdgeCells {
             near.extend(old.map(|&edge| (k, edges.rank(edge), edge)));
         }
         for &edge in &self.changed {
-            edges.visit(edge, &mut |cell| {
+            edges.visit(edge, |cell| {
                 if let Ok(k) = wanted.binary_search(&(cell as u32)) {
                     near.push((k, edges.rank(edge), edge));
                 }

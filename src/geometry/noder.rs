@@ -440,7 +440,7 @@ impl Noder {
 }
 
 impl Edges for Noder {
-    fn visit(&self, edge: u32, visit: &mut dyn FnMut(usize)) {
+    fn visit(&self, edge: u32, visit: impl FnMut(usize)) {
         let (a, b) = self.ends(&self.edges[edge as usize]);
         self.grid.visit_edge(a, b, self.tolerance, visit);
     }
