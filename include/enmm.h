@@ -63,6 +63,11 @@
 #define ENMM_NO_JOINT UINT32_MAX
 
 /**
+ * Other block of events that are no overlap.
+ */
+#define ENMM_NO_BLOCK UINT32_MAX
+
+/**
  * Result of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() returns the fault, the
  * limit and the remedy.
  */
@@ -146,13 +151,13 @@ enum enmm_log_level
   ENMM_LOG_ERROR = 0,
   /**
    * Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
-   * a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
+   * blocks that overlap (see ENMM_EVENT_OVERLAPPED), and a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
    * 0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
    * doubled.
    */
   ENMM_LOG_WARNING = 1,
   /**
-   * Events, and the end of the search for the initial equilibrium.
+   * Other events, and the end of the search for the initial equilibrium.
    */
   ENMM_LOG_INFO = 2,
 };
@@ -194,7 +199,7 @@ typedef int32_t enmm_contact_state;
 #endif // __cplusplus
 
 /**
- * Kind of an event. Each happens once to a block or joint, and only in dynamic stages.
+ * Kind of an event. Each happens once to a block, joint or pair of blocks; the first three only in dynamic stages.
  */
 enum enmm_event_kind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -213,6 +218,12 @@ enum enmm_event_kind
    * A block moved beyond the failure displacement.
    */
   ENMM_EVENT_FAILED = 2,
+  /**
+   * Two blocks overlap by more than 1 % of the mesh size, or deeper than the contacts between them explain: results
+   * about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
+   * initial equilibrium, too, whose times are below 0.
+   */
+  ENMM_EVENT_OVERLAPPED = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -557,6 +568,14 @@ typedef struct enmm_totals {
    * Blocks that have failed.
    */
   uint32_t failed_blocks;
+  /**
+   * Greatest depth of overlaps of blocks so far (m), see ENMM_EVENT_OVERLAPPED; 0 for none.
+   */
+  double overlap_max;
+  /**
+   * Pairs of blocks that have overlapped.
+   */
+  uint64_t overlapping_pairs;
 } enmm_totals;
 
 /**
@@ -626,13 +645,25 @@ typedef struct enmm_event {
    */
   enmm_event_kind kind;
   /**
-   * Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT.
+   * Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
    */
   uint32_t subject;
   /**
    * End of the internal step in which it happened (s), as enmm_get_time counts.
    */
   double time;
+  /**
+   * Higher block id of two blocks that overlap; ENMM_NO_BLOCK for events of other kinds.
+   */
+  uint32_t other;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * Depth of an overlap when it was found (m); 0 for events of other kinds.
+   */
+  double depth;
 } enmm_event;
 
 /**

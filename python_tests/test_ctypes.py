@@ -372,6 +372,20 @@ def test_events_tell_slip_and_failure(package, incline):
     assert [event.time for event in events] == sorted(event.time for event in events)
 
 
+def test_an_overlap_tells_both_blocks_and_the_depth(package):
+    messages = []
+    with package.Model(ROOT / "ffi" / "capi" / "tests" / "cases" / "soft.toml") as model:
+        model.set_log(lambda level, text: messages.append((level, text)))
+        model.do_step(0.0, 0.1)
+        events, totals = model.events(), model.totals()
+    [overlap] = [event for event in events if event.kind is package.EventKind.OVERLAPPED]
+    assert (overlap.subject, overlap.other) == (0, 1) and 0.005 < overlap.depth < totals.overlap_max < 0.04
+    assert all((event.other, event.depth) == (None, 0.0) for event in events if event is not overlap)
+    assert totals.overlapping_pairs == 1
+    [text] = [text for level, text in messages if level is package.LogLevel.WARNING]
+    assert "blocks 0 and 1 overlap by" in text and "% of the mesh size" in text
+
+
 def test_energies_balance(incline):
     incline.do_step(0.0, 1.0)
     e = incline.energies()

@@ -11,7 +11,7 @@ import numpy
 import pytest
 from conftest import from_environment
 from fmpy import simulate_fmu
-from fmu_support import ERROR, OK, bits, size
+from fmu_support import ERROR, OK, Fmu, bits, size
 
 ROOT = Path(__file__).parents[1]
 CASES = ROOT / "examples" / "cases"
@@ -378,6 +378,22 @@ def test_events_are_counted(incline_fmu, opened):
     run_of(instance, H, 1.0)
     count, slipped, kind, time = instance.get("event_count", "slipped_joints", "last_event_kind", "last_event_time")
     assert count >= slipped >= 1 and kind in (1, 2, 3) and 0.0 < time <= 1.0
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_overlap_is_an_event_a_warning_and_two_outputs(enmm, opened, tmp_path, version):
+    path = tmp_path / "soft.fmu"
+    done = enmm("fmu", ROOT / "ffi" / "capi" / "tests" / "cases" / "soft.toml", "-o", path, "--fmi", version)
+    assert done.returncode == 0, done.stderr
+    fmu = Fmu.unpack(path, tmp_path / "unpacked")
+    instance = opened(fmu, logging=True).initialize()
+    assert instance.get("overlap_max", "overlapping_pairs") == [0.0, 0]
+    run_of(instance, H, 0.1)
+    depth, pairs = instance.get("overlap_max", "overlapping_pairs")
+    assert 0.005 < depth < 0.04 and pairs == 1
+    kinds = instance.get("event_count", "last_event_kind")
+    assert kinds[0] >= 1 and kinds[1] in (2, 4)
+    assert sum("blocks 0 and 1 overlap by" in text for _, _, text in instance.log) == 1
 
 
 # Threads.

@@ -49,6 +49,7 @@ mod mass_scaling;
 mod near_pairs;
 mod objectivity;
 mod observe;
+mod overlap_events;
 mod polygons;
 mod quiet_boundary;
 mod runaway;

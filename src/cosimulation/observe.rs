@@ -59,11 +59,15 @@ pub struct Totals {
     pub slipped_joints: u32,
     /// Blocks that have failed.
     pub failed_blocks: u32,
+    /// Greatest depth of overlaps so far (m).
+    pub overlap_max: f64,
+    /// Pairs of blocks that have overlapped.
+    pub overlapping_pairs: u64,
 }
 
 /// Sums and extremes as outputs show them, but for the energies: the FMUs, and by their names the structures of C and
 /// Python. New ones go to the end.
-pub const TOTALS: [Quantity<Totals>; 11] = [
+pub const TOTALS: [Quantity<Totals>; 13] = [
     extreme("displacement_max", "m", "Largest displacement", |totals| totals.displacement_max),
     extreme("velocity_max", "m/s", "Largest velocity", |totals| totals.velocity_max),
     extreme("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
@@ -75,6 +79,10 @@ pub const TOTALS: [Quantity<Totals>; 11] = [
     Quantity::count("detached_blocks", "Blocks that have detached", |totals| f64::from(totals.detached_blocks)),
     Quantity::count("slipped_joints", "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
     Quantity::count("failed_blocks", "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
+    extreme("overlap_max", "m", "Greatest depth of overlaps of blocks so far", |totals| totals.overlap_max),
+    Quantity::count("overlapping_pairs", "Pairs of blocks that have overlapped", |totals| {
+        totals.overlapping_pairs as f64
+    }),
 ];
 
 const fn extreme(
@@ -121,6 +129,8 @@ impl Cosimulation {
             detached_blocks: events(EventKind::Detached),
             slipped_joints: events(EventKind::Slipped),
             failed_blocks: events(EventKind::Failed),
+            overlap_max: state.events.overlap_max,
+            overlapping_pairs: state.events.overlapped.len() as u64,
         }
     }
 

@@ -73,21 +73,20 @@ struct OuterCycle {
 /// Finds the outer cycle of each component, ordered by leftmost vertex.
 fn outer_cycles(arrangement: &Arrangement, fans: &Groups<HalfEdgeId>) -> Vec<OuterCycle> {
     let points = &arrangement.points;
-    let mut sorted: Vec<VertexId> = VertexId::all(points.len()).collect();
-    sorted.sort_unstable_by(|&i, &j| {
+    let order = |i: VertexId, j: VertexId| {
         let (p, q) = (points[i], points[j]);
         p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(&j))
-    });
+    };
     let mut reached = vec![false; points.len()];
     let (mut outers, mut stack) = (Vec::new(), Vec::<VertexId>::new());
-    for &leftmost in &sorted {
-        if reached[leftmost] {
+    for start in VertexId::all(points.len()) {
+        if std::mem::replace(&mut reached[start], true) {
             continue;
         }
-        outers.extend(most_upward(arrangement, fans, leftmost).map(|half_edge| OuterCycle { half_edge, leftmost }));
-        reached[leftmost] = true;
-        stack.push(leftmost);
+        let mut leftmost = start;
+        stack.push(start);
         while let Some(vertex) = stack.pop() {
+            leftmost = std::cmp::min_by(leftmost, vertex, |&i, &j| order(i, j));
             for &h in fans.get(vertex.index()) {
                 let target = arrangement.target(h);
                 if !std::mem::replace(&mut reached[target], true) {
@@ -95,7 +94,9 @@ fn outer_cycles(arrangement: &Arrangement, fans: &Groups<HalfEdgeId>) -> Vec<Out
                 }
             }
         }
+        outers.extend(most_upward(arrangement, fans, leftmost).map(|half_edge| OuterCycle { half_edge, leftmost }));
     }
+    outers.sort_unstable_by(|p, q| order(p.leftmost, q.leftmost));
     outers
 }
 

@@ -4,6 +4,7 @@
 //! time or files; a label carries ids whose meaning belongs to the caller.
 
 mod arrangement;
+mod edge_cells;
 pub mod ends;
 mod error;
 mod faces;

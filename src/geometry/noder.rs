@@ -3,7 +3,10 @@
 //! Knows points, edges and which edges are still where the mesh put them; nothing of faces. Vertices are never moved
 //! and lie more than the merge radius apart, so that their number, and with it the work, is bounded.
 
-use super::grid::{CellGrid, Groups, PointChains};
+use std::num::NonZeroU32;
+
+use super::edge_cells::{EdgeCells, Edges, Rank};
+use super::grid::{CellGrid, PointChains};
 use super::planar_map::{Label, NodingReport, Segment, VertexId};
 use super::work::Work;
 use super::{GeometryError, Point, cross, orientation};
@@ -29,12 +32,21 @@ pub(super) struct WorkEdge {
     pub a: VertexId,
     pub b: VertexId,
     pub label: Label,
-    /// Not yet tested against all vertices.
-    unsplit: bool,
     /// Not yet tested against all edges.
     uncrossed: bool,
     /// Still on the line where the caller put it, among edges known not to cross each other.
     lattice: bool,
+    /// Made since edges were last put into cells.
+    is_new: bool,
+    /// The next piece of the same segment.
+    next: Option<NonZeroU32>,
+}
+
+impl WorkEdge {
+    /// Whether it still has to be tested against all edges.
+    fn is_to_cross(&self) -> bool {
+        self.uncrossed && !self.lattice
+    }
 }
 
 /// A vertex that splits an edge.
@@ -54,9 +66,23 @@ struct Crossing {
 }
 
 /// The noder and its search structures.
+///
+/// A pass costs what it changes: the first piece of an edge that is split takes its place, and the others are appended.
+/// All that depends on an order takes edges by their rank, so that it is the order of the segments and along each.
 pub(super) struct Noder {
     pub points: Vec<Point>,
+    /// The edges, in order once the noder has run.
     pub edges: Vec<WorkEdge>,
+    /// Segments at the start, whose first pieces come first among the edges.
+    segments: usize,
+    /// Rank of each edge behind these.
+    ranks: Vec<Rank>,
+    /// Edges not yet tested against all vertices, in order.
+    unsplit: Vec<u32>,
+    /// Edges not yet tested against all edges, each once, and some that need no such test.
+    uncrossed: Vec<u32>,
+    /// Edges by cell, once one has had to be crossed.
+    cells: Option<EdgeCells>,
     tolerance: f64,
     /// Edges allowed.
     edges_max: usize,
@@ -66,8 +92,6 @@ pub(super) struct Noder {
     work: Work,
     /// Cells that the edges pass through.
     places: usize,
-    /// Room for the edges of the next pass.
-    spare: Vec<WorkEdge>,
 }
 
 impl Noder {
@@ -84,22 +108,43 @@ impl Noder {
         let grid = CellGrid::for_edges(cut.clone().map(|s| (s.a, s.b)), 4.0 * tolerance);
         let chains = PointChains::new(grid.len());
         let work = Work::for_lines(segments.len());
-        let (points, edges, spare) = (Vec::new(), Vec::new(), Vec::new());
-        let mut noder = Self { points, edges, tolerance, edges_max, merged: 0, grid, chains, work, places: 0, spare };
+        let (points, edges, ranks) = (Vec::new(), Vec::new(), Vec::new());
+        let (segments, unsplit, uncrossed, cells) = (0, Vec::new(), Vec::new(), None);
+        let (merged, places) = (0, 0);
+        let mut noder = Self {
+            points,
+            edges,
+            segments,
+            ranks,
+            unsplit,
+            uncrossed,
+            cells,
+            tolerance,
+            edges_max,
+            merged,
+            grid,
+            chains,
+            work,
+            places,
+        };
         for Segment { a, b, label } in cut.filter(counts) {
             let (a, b) = (noder.vertex(a)?, noder.vertex(b)?);
             if a != b {
                 let lattice = label.mesh.is_some() && label.trace.is_none() && label.outline == 0;
-                noder.edges.push(WorkEdge { a, b, label, unsplit: true, uncrossed: true, lattice });
+                noder.edges.push(WorkEdge { a, b, label, uncrossed: true, lattice, is_new: true, next: None });
             }
         }
+        noder.segments = noder.edges.len();
+        let edges = (0u32..).zip(&noder.edges);
+        noder.uncrossed = edges.filter(|(_, edge)| edge.is_to_cross()).map(|(id, _)| id).collect();
         Ok(noder)
     }
 
     /// Splits and crosses until nothing changes.
     pub fn run(&mut self) -> Result<NodingReport, GeometryError> {
         let mut passes = 1;
-        self.places = self.places(&self.edges);
+        self.places = self.edges.iter().map(|edge| self.places(edge)).sum();
+        self.unsplit = (0..self.edges.len() as u32).collect();
         while let Some(hits) = self.hits()? {
             if passes == PASSES_MAX {
                 let (p, tolerance) = (self.points[hits[0].vertex], self.tolerance);
@@ -108,6 +153,7 @@ impl Noder {
             self.split(hits)?;
             passes += 1;
         }
+        self.put_in_order();
         let (tolerance, merged_vertices) = (self.tolerance, self.merged);
         Ok(NodingReport { tolerance, passes, merged_vertices, ..Default::default() })
     }
@@ -135,12 +181,36 @@ impl Noder {
     /// Refuses edges that pass through too many cells of the grid, as dense ones across the whole plane do.
     fn check_places(&self) -> Result<(), GeometryError> {
         let limit = PLACES_RATIO.saturating_mul(self.edges_max);
-        if self.edges.is_empty() { Ok(()) } else { self.check_count(self.places, limit, self.edges.len() as u32 / 2) }
+        if self.places <= limit {
+            return Ok(());
+        }
+        let middle = self.in_order().nth(self.edges.len() / 2).unwrap_or_default();
+        self.check_count(self.places, limit, middle)
     }
 
-    /// Cells of the grid that edges pass through, each as often as one does.
-    fn places(&self, edges: &[WorkEdge]) -> usize {
-        edges.iter().map(|edge| self.ends(edge)).map(|(a, b)| self.grid.cells_along(a, b)).sum()
+    /// Cells of the grid that an edge passes through.
+    fn places(&self, edge: &WorkEdge) -> usize {
+        let (a, b) = self.ends(edge);
+        self.grid.cells_along(a, b)
+    }
+
+    /// The edges in order.
+    fn in_order(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.segments as u32).flat_map(|first| self.pieces(first))
+    }
+
+    /// The pieces of a segment, the first of which is given.
+    fn pieces(&self, first: u32) -> impl Iterator<Item = u32> + '_ {
+        std::iter::successors(Some(first), |&edge| self.edges[edge as usize].next.map(NonZeroU32::get))
+    }
+
+    /// Puts the edges in order. Their links are of no more use.
+    fn put_in_order(&mut self) {
+        if self.edges.len() > self.segments {
+            let mut edges = Vec::with_capacity(self.edges.len());
+            edges.extend(self.in_order().map(|edge| self.edges[edge as usize]));
+            self.edges = edges;
+        }
     }
 
     fn ends(&self, edge: &WorkEdge) -> (Point, Point) {
@@ -200,8 +270,8 @@ impl Noder {
     /// Finds the vertices near the edges that have not been tested yet.
     fn near_vertices(&mut self) -> Result<Vec<Hit>, GeometryError> {
         let mut hits = Vec::new();
-        for (id, edge) in (0u32..).zip(&self.edges).filter(|(_, edge)| edge.unsplit) {
-            let (a, b) = self.ends(edge);
+        for id in std::mem::take(&mut self.unsplit) {
+            let (a, b) = self.ends(&self.edges[id as usize]);
             let mut compared = 0;
             self.grid.visit_edge(a, b, self.tolerance, |cell| {
                 let near = self.chains.get(cell).inspect(|_| compared += 1);
@@ -210,18 +280,20 @@ impl Noder {
             self.work.take(compared, a)?;
             self.check_count(hits.len(), HITS_RATIO.saturating_mul(self.edges_max), id)?;
         }
-        self.edges.iter_mut().filter(|edge| edge.unsplit).for_each(|edge| edge.unsplit = false);
         Ok(hits)
     }
 
     /// Finds the crossings of edges that have not been tested yet, and the edges near the vertices made there.
     fn crossings(&mut self) -> Result<Vec<Hit>, GeometryError> {
-        if self.edges.iter().all(|edge| !edge.uncrossed || edge.lattice) {
+        let mut untested = std::mem::take(&mut self.uncrossed);
+        untested.retain(|&edge| self.edges[edge as usize].is_to_cross());
+        if untested.is_empty() {
             return Ok(Vec::new());
         }
-        let cells = self.cells_to_cross();
+        untested.sort_unstable_by_key(|&edge| self.rank(edge));
+        let cells = self.cells_to_cross(&untested);
         let first_new = self.points.len();
-        let crossings = self.cross_all(&cells)?;
+        let crossings = self.cross_all(&untested, &cells)?;
         let mut hits = Vec::with_capacity(2 * crossings.len());
         for crossing in &crossings {
             for edge in crossing.edges {
@@ -232,52 +304,44 @@ impl Noder {
             }
         }
         for vertex in VertexId::range(first_new..self.points.len()) {
-            let cell = self.grid.cell_of(self.points[vertex]);
-            self.work.take(cells.get(cell).len(), self.points[vertex])?;
-            hits.extend(cells.get(cell).iter().filter_map(|&edge| self.near(edge, vertex)));
+            let near = cells.get(self.grid.cell_of(self.points[vertex]));
+            self.work.take(near.len(), self.points[vertex])?;
+            hits.extend(near.iter().filter_map(|&edge| self.near(edge, vertex)));
         }
-        self.edges.iter_mut().filter(|edge| edge.uncrossed).for_each(|edge| edge.uncrossed = false);
+        self.cells = Some(cells);
+        untested.iter().for_each(|&edge| self.edges[edge as usize].uncrossed = false);
         Ok(hits)
     }
 
-    /// The edges in each cell that an untested edge comes near; the other cells stay empty.
-    fn cells_to_cross(&self) -> Groups {
-        let mut wanted = vec![false; self.grid.len()];
-        for edge in self.edges.iter().filter(|edge| edge.uncrossed && !edge.lattice) {
-            let (a, b) = self.ends(edge);
-            self.grid.visit_edge(a, b, self.tolerance, |cell| wanted[cell] = true);
+    /// The edges in each cell that an untested edge comes near.
+    fn cells_to_cross(&mut self, untested: &[u32]) -> EdgeCells {
+        let old = self.cells.take().filter(|cells| cells.serves(untested.len(), self.edges.len()));
+        if let Some(mut cells) = old {
+            cells.find(untested, self);
+            return cells;
         }
-        Groups::build(self.grid.len(), |put| {
-            for (id, edge) in (0u32..).zip(&self.edges) {
-                let (a, b) = self.ends(edge);
-                self.grid.visit_edge(a, b, self.tolerance, |cell| {
-                    if wanted[cell] {
-                        put(cell, id);
-                    }
-                });
-            }
-        })
+        let cells = EdgeCells::fill(self.grid.len(), self, |put| self.in_order().for_each(put));
+        self.edges.iter_mut().for_each(|edge| edge.is_new = false);
+        cells
     }
 
     /// Makes a vertex at each proper crossing of an untested edge with any other.
-    fn cross_all(&mut self, cells: &Groups) -> Result<Vec<Crossing>, GeometryError> {
+    fn cross_all(&mut self, untested: &[u32], cells: &EdgeCells) -> Result<Vec<Crossing>, GeometryError> {
         let mut crossings = Vec::new();
-        let mut seen = vec![None; self.edges.len()];
+        // The last untested edge that has seen each edge, counted from 1.
+        let mut seen = vec![0u32; self.edges.len()];
         let mut near = Vec::new();
-        for e in 0..self.edges.len() as u32 {
+        for (turn, &e) in (1u32..).zip(untested) {
             let edge = self.edges[e as usize];
-            if !edge.uncrossed || edge.lattice {
-                continue;
-            }
+            let rank = self.rank(e);
             near.clear();
             let (a, b) = self.ends(&edge);
             let mut compared = 0;
             self.grid.visit_edge(a, b, self.tolerance, |cell| {
                 compared += cells.get(cell).len();
                 for &f in cells.get(cell) {
-                    let other = &self.edges[f as usize];
-                    let taken = f <= e && other.uncrossed && !other.lattice;
-                    if !taken && seen[f as usize].replace(e) != Some(e) {
+                    let taken = self.edges[f as usize].is_to_cross() && self.rank(f) <= rank;
+                    if !taken && std::mem::replace(&mut seen[f as usize], turn) != turn {
                         near.push(f);
                     }
                 }
@@ -310,43 +374,83 @@ impl Noder {
 
     /// Replaces each edge that is hit by the chain through its vertices.
     fn split(&mut self, mut hits: Vec<Hit>) -> Result<(), GeometryError> {
-        hits.sort_unstable_by(|p, q| (p.edge.cmp(&q.edge)).then(p.at.total_cmp(&q.at)).then(p.vertex.cmp(&q.vertex)));
+        let order = |p: &Hit, q: &Hit| self.rank(p.edge).cmp(&self.rank(q.edge));
+        hits.sort_unstable_by(|p, q| order(p, q).then(p.at.total_cmp(&q.at)).then(p.vertex.cmp(&q.vertex)));
         hits.dedup_by_key(|hit| (hit.edge, hit.vertex));
         let pieces = self.edges.len() + hits.len();
         self.check_count(pieces, self.edges_max, hits[hits.len() / 2].edge)?;
-        let mut edges = std::mem::take(&mut self.spare);
-        edges.clear();
-        edges.reserve(pieces);
-        let (mut places, mut whole) = (self.places, 0);
+        self.edges.reserve(hits.len());
+        let mut last = None;
         for own in hits.chunk_by(|p, q| p.edge == q.edge) {
-            let split = own[0].edge as usize;
-            edges.extend_from_slice(&self.edges[whole..split]);
-            let first = edges.len();
-            push_chain(&self.edges[split], own, &mut edges);
-            places += self.places(&edges[first..]);
-            places -= self.places(&self.edges[split..=split]);
-            whole = split + 1;
+            let (segment, _) = self.rank(own[0].edge);
+            if let Some(done) = last.replace(segment).filter(|&done| done != segment) {
+                self.number(done);
+            }
+            self.split_edge(segment, own);
         }
-        edges.extend_from_slice(&self.edges[whole..]);
-        self.places = places;
-        self.spare = std::mem::replace(&mut self.edges, edges);
+        last.into_iter().for_each(|done| self.number(done));
         Ok(())
+    }
+
+    /// Ranks the pieces of a segment, some of which are new.
+    fn number(&mut self, segment: u32) {
+        let (mut piece, mut k) = (segment, 0);
+        while let Some(next) = self.edges[piece as usize].next {
+            (piece, k) = (next.get(), k + 1);
+            self.ranks[piece as usize - self.segments] = (segment, k);
+        }
+    }
+
+    /// Replaces an edge by the pieces through its hits, in order; bent pieces must be tested again.
+    fn split_edge(&mut self, segment: u32, hits: &[Hit]) {
+        let slot = hits[0].edge;
+        let edge = self.edges[slot as usize];
+        self.places -= self.places(&edge);
+        let (mut from, mut bent_from, mut id) = (edge.a, false, slot);
+        for (k, (to, bends)) in hits.iter().map(|hit| (hit.vertex, hit.bends)).chain([(edge.b, false)]).enumerate() {
+            let is_bent = bends || bent_from;
+            let (uncrossed, lattice) = (edge.uncrossed || is_bent, edge.lattice && !is_bent);
+            let piece = WorkEdge { a: from, b: to, uncrossed, lattice, is_new: true, ..edge };
+            if k > 0 {
+                let next = self.edges.len() as u32;
+                self.edges[id as usize].next = NonZeroU32::new(next);
+                self.edges.push(piece);
+                self.ranks.push((segment, 0));
+                id = next;
+            }
+            self.edges[id as usize] = piece;
+            self.places += self.places(&piece);
+            self.note_piece(id, is_bent, if k == 0 { Some(&edge) } else { None });
+            (from, bent_from) = (to, bends);
+        }
+    }
+
+    /// Notes what has to be done with a piece, which may be in the place of an edge.
+    fn note_piece(&mut self, id: u32, is_bent: bool, before: Option<&WorkEdge>) {
+        if is_bent {
+            self.unsplit.push(id);
+        }
+        if self.edges[id as usize].is_to_cross() && !before.is_some_and(WorkEdge::is_to_cross) {
+            self.uncrossed.push(id);
+        }
+        if let Some(cells) = self.cells.as_mut().filter(|_| !before.is_some_and(|edge| edge.is_new)) {
+            cells.changed.push(id);
+        }
     }
 }
 
-/// Appends the pieces of an edge through its hits, in order; bent pieces must be tested again.
-fn push_chain(edge: &WorkEdge, hits: &[Hit], edges: &mut Vec<WorkEdge>) {
-    let (mut from, mut bent_from) = (edge.a, false);
-    let end = (edge.b, false);
-    for (to, bends) in hits.iter().map(|hit| (hit.vertex, hit.bends)).chain([end]) {
-        let mut piece = WorkEdge { a: from, b: to, ..*edge };
-        if bends || bent_from {
-            piece.unsplit = true;
-            piece.uncrossed = true;
-            piece.lattice = false;
-        }
-        edges.push(piece);
-        (from, bent_from) = (to, bends);
+impl Edges for Noder {
+    fn visit(&self, edge: u32, visit: impl FnMut(usize)) {
+        let (a, b) = self.ends(&self.edges[edge as usize]);
+        self.grid.visit_edge(a, b, self.tolerance, visit);
+    }
+
+    fn rank(&self, edge: u32) -> Rank {
+        (edge as usize).checked_sub(self.segments).map_or((edge, 0), |k| self.ranks[k])
+    }
+
+    fn is_new(&self, edge: u32) -> bool {
+        self.edges[edge as usize].is_new
     }
 }
 

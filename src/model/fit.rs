@@ -104,8 +104,8 @@ fn same<T: PartialEq>(what: &str, found: &[T], own: &[T]) -> Fit {
     other.map_or(Ok(()), |k| unfit(format!("{what}[{k}]"), "another", "what the case says of this stage".to_owned()))
 }
 
-fn in_order(what: &str, is_sorted: bool) -> Fit {
-    if is_sorted { Ok(()) } else { unfit(format!("the order of {what}"), "broken", "by node and side".to_owned()) }
+fn in_order(what: &str, order: &str, is_sorted: bool) -> Fit {
+    if is_sorted { Ok(()) } else { unfit(format!("the order of {what}"), "broken", order.to_owned()) }
 }
 
 impl Simulation {
@@ -258,7 +258,7 @@ impl Simulation {
                 number(format_args!("contacts[{k}].{field}"), value, most)?;
             }
         }
-        in_order("contacts", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
+        in_order("contacts", "by node and side", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
     }
 
     fn check_neighbours(&self, neighbours: &NeighbourList) -> Fit {
@@ -268,7 +268,7 @@ impl Simulation {
             index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.side_ends.len())?;
             index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
         }
-        in_order("neighbours.pairs", neighbours.pairs.is_sorted())?;
+        in_order("neighbours.pairs", "by node and side", neighbours.pairs.is_sorted())?;
         let found_at = neighbours.found_at();
         length("neighbours.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
         vectors("neighbours.found_at", found_at, LENGTH)
@@ -325,17 +325,26 @@ impl Simulation {
 
     fn check_events(&self, events: &Events) -> Fit {
         let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
-        let Events { list, touching, detached, slipped, failed } = events;
+        let Events { list, touching, detached, slipped, failed, overlapped, overlap_max } = events;
         length("events.touching", touching.len(), blocks)?;
         length("events.detached", detached.len(), blocks)?;
         length("events.slipped", slipped.len(), traces + 1)?;
         length("events.failed", failed.len(), blocks)?;
-        for (k, Event { kind, subject, time }) in list.iter().enumerate() {
+        between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
+        for (k, pair) in overlapped.iter().enumerate() {
+            pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
+        }
+        in_order("events.overlapped", "by block", overlapped.is_sorted_by(|a, b| a < b))?;
+        for (k, Event { kind, subject, time, other, depth }) in list.iter().enumerate() {
             number(format_args!("events.list[{k}].time"), *time, TIME)?;
+            between(format_args!("events.list[{k}].depth"), *depth, 0.0, LENGTH)?;
+            if *kind == EventKind::Overlapped {
+                index(format_args!("events.list[{k}].other"), *other, blocks)?;
+            }
             match kind {
                 EventKind::Slipped if *subject == u32::MAX => Ok(()),
                 EventKind::Slipped => index(format_args!("events.list[{k}].subject"), *subject, traces),
-                EventKind::Detached | EventKind::Failed => {
+                EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
                     index(format_args!("events.list[{k}].subject"), *subject, blocks)
                 }
             }?;

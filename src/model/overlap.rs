@@ -1,17 +1,28 @@
-//! An audit of overlaps that knows nothing of contacts: only the polygons of the blocks at their current places.
+//! An audit of overlaps. Depths are those of the polygons of the blocks at their places in a step, and know nothing of
+//! contacts. Every [`EVERY`] steps a simulation looks for pairs that lie deeper in each other than [`DEEP`] of the mesh
+//! size, or than the contacts between them explain; these become events.
 
 use rayon::prelude::*;
 
-use crate::contact::{Boundary, EdgeId, VertexEdge};
+use crate::contact::{Boundary, EdgeId, NearPair, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, orientation, polygon, segment};
+use crate::state::Suspect;
 
 use super::Simulation;
 
 /// Opening (m) from which a crack is a way in.
 const ROOM: f64 = 1e-3;
-/// Overlap over the mesh size that no contact presses blocks to.
+/// Internal steps, counted from the start of the run, from one audit to the next. Where it looks does not depend on
+/// communication steps, reports, threads or a resumed run.
+pub const EVERY: u64 = 50;
+/// Overlap over the mesh size that no contact of sound stiffness presses blocks to.
 pub const DEEP: f64 = 0.01;
+/// Depth over the mesh size by which a node may lie deeper than contacts explain: a ledge that a tip passes carries
+/// nothing up to 1e-3 and all from 2e-3 on.
+pub const UNHELD: f64 = 0.002;
+/// Pairs that have overlapped and are looked at in every audit, however far in each other they are.
+const FOLLOWED: usize = 16;
 /// Closure of springs by which an overlap is explained: faces bend between two contacts.
 const EXPLAINED: f64 = 1.2;
 
@@ -29,17 +40,20 @@ pub struct Overlap {
 
 impl Overlap {
     /// How much (m) of it no spring explains, anywhere and at the nodes: what is more than 1.2 times the closure of the
-    /// most deeply pressed contact between the two blocks, which is force over stiffness, and what that contact was
-    /// first seen with.
+    /// most deeply pressed contact between the two blocks, which is force over stiffness. What that contact was first
+    /// seen with has no force, and so explains nothing.
     pub fn unheld(&self, simulation: &Simulation) -> [f64; 2] {
         let boundary = &simulation.model().boundary;
         let is_between = |c: &&VertexEdge| self.blocks.iter().all(|block| c.blocks(boundary).contains(block));
-        let pressed = |c: &VertexEdge| (c.history.normal_force / c.stiffness[0]).max(c.loaded_penetration());
-        let closure = |c: &VertexEdge| pressed(c) + c.history.offset;
         let contacts = simulation.workspace().contacts.iter().filter(is_between);
         let held = EXPLAINED * contacts.map(closure).fold(0.0, f64::max);
         [self.depth - held, self.at_nodes - held]
     }
+}
+
+/// Closure (m) of a contact: force over stiffness, or the penetration that springs resist.
+fn closure(contact: &VertexEdge) -> f64 {
+    (contact.history.normal_force / contact.stiffness[0]).max(contact.loaded_penetration())
 }
 
 /// The blocks of a model, cut into triangles once.
@@ -79,25 +93,10 @@ impl Audit {
         Self { points, nodes, triangles, cracked }
     }
 
-    /// Deepest overlap among all pairs of blocks that are near each other, at their places now.
+    /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
     pub fn deepest(&self, simulation: &Simulation) -> Overlap {
         let overlaps = self.overlaps(simulation).into_par_iter();
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth).then(b.blocks.cmp(&a.blocks))).unwrap_or_default()
-    }
-
-    /// Pairs of blocks that have passed into each other by more than [`DEEP`] of the mesh size, deepest first, at their
-    /// places now; those that are `known` to have done so are looked at in any case.
-    pub fn passed(&self, simulation: &Simulation, known: &[[BlockId; 2]]) -> Vec<Overlap> {
-        let limit = DEEP * simulation.model().covers.mesh.size;
-        let place = simulation.positions();
-        let suspects = distinct(suspects(simulation, &place, limit).into_iter().chain(known.iter().copied()));
-        if suspects.is_empty() {
-            return Vec::new();
-        }
-        let mut passed = self.overlaps_of(simulation, &suspects, &place);
-        passed.retain(|overlap| overlap.depth > limit);
-        passed.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.blocks.cmp(&b.blocks)));
-        passed
     }
 
     /// Deepest overlap (m), and how much of one no spring explains at most, anywhere and at the nodes.
@@ -112,41 +111,41 @@ impl Audit {
 
     /// Overlaps of all pairs of blocks that are near each other, at the places of the last step.
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
-        let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
-        let place: Vec<Point> = boundary.edges().map(|point| frames.position(point)).collect();
-        let near = simulation.state().neighbours.pairs.iter();
-        let pairs = near.map(|c| [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]));
-        self.overlaps_of(simulation, &distinct(pairs), &place)
-    }
-
-    /// Overlaps of pairs of blocks whose boundary points have these places.
-    fn overlaps_of(&self, simulation: &Simulation, pairs: &[[BlockId; 2]], place: &[Point]) -> Vec<Overlap> {
         let boundary = &simulation.model().boundary;
-        let placed: Vec<Placed> = (0..self.points.len()).map(|b| self.placed(b, place)).collect();
-        let overlap = |&blocks: &[BlockId; 2]| {
-            let [p, q] = blocks;
-            let (depth, at_nodes) = if placed[p].is_apart(placed[q].low, placed[q].high) {
-                (0.0, 0.0)
-            } else if self.cracked[p] || self.cracked[q] {
-                let depth = |of: &[Vec<EdgeId>]| {
-                    let depth = |p: BlockId, q: BlockId| corner_depth(boundary, place, &of[p], &self.points[q]);
-                    depth(p, q).max(depth(q, p))
-                };
-                (depth(&self.points), depth(&self.nodes))
-            } else {
-                let at_nodes = |p: &Placed, q: &Placed| deepest_corner(&p.nodes, q);
-                let [p, q] = [&placed[p], &placed[q]];
-                (pair_depth(p, q), at_nodes(p, q).max(at_nodes(q, p)))
-            };
-            Overlap { depth, at_nodes, blocks }
-        };
-        pairs.par_iter().map(overlap).collect()
+        let near = simulation.state().neighbours.pairs.iter();
+        let blocks = near.map(|c| [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]));
+        let mut pairs: Vec<_> = blocks.filter(|[a, b]| a != b).map(in_order).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs.par_iter().map(|&blocks| self.overlap(simulation, blocks)).collect()
     }
 
-    fn placed(&self, block: usize, place: &[Point]) -> Placed {
-        let at = |points: &[EdgeId]| -> Vec<Point> { points.iter().map(|&k| place[k]).collect() };
+    /// Overlap of two blocks at the places of the last step.
+    fn overlap(&self, simulation: &Simulation, blocks: [BlockId; 2]) -> Overlap {
+        let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
+        let place = |k: EdgeId| frames.position(k);
+        let [p, q] = blocks;
+        let placed = blocks.map(|block| self.placed(block.index(), &place));
+        let (depth, at_nodes) = if placed[0].is_apart(placed[1].low, placed[1].high) {
+            (0.0, 0.0)
+        } else if self.cracked[p] || self.cracked[q] {
+            let depth = |of: &[Vec<EdgeId>]| {
+                let depth = |p: BlockId, q: BlockId| corner_depth(boundary, &place, &of[p], &self.points[q]);
+                depth(p, q).max(depth(q, p))
+            };
+            (depth(&self.points), depth(&self.nodes))
+        } else {
+            let at_nodes = |p: &Placed, q: &Placed| deepest_corner(&p.nodes, q);
+            let [p, q] = &placed;
+            (pair_depth(p, q), at_nodes(p, q).max(at_nodes(q, p)))
+        };
+        Overlap { depth, at_nodes, blocks }
+    }
+
+    fn placed(&self, block: usize, place: &impl Fn(EdgeId) -> Point) -> Placed {
+        let at = |points: &[EdgeId]| -> Vec<Point> { points.iter().map(|&k| place(k)).collect() };
         let (points, nodes) = (at(&self.points[block]), at(&self.nodes[block]));
-        let triangles = self.triangles[block].iter().map(|t| t.map(|k| place[k])).collect();
+        let triangles = self.triangles[block].iter().map(|t| t.map(place)).collect();
         let (low, high) = polygon::bounds(&points);
         Placed { points, nodes, triangles, low, high }
     }
@@ -158,28 +157,87 @@ impl Placed {
     }
 }
 
-/// Pairs of different blocks, each once, in order.
-fn distinct(pairs: impl Iterator<Item = [BlockId; 2]>) -> Vec<[BlockId; 2]> {
-    let mut pairs: Vec<_> = pairs.filter(|[a, b]| a != b).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
-    pairs
+fn in_order([a, b]: [BlockId; 2]) -> [BlockId; 2] {
+    [a.min(b), a.max(b)]
 }
 
-/// Pairs of blocks of which a node lies behind the nearest edge of the other by more than a limit (m).
-fn suspects(simulation: &Simulation, place: &[Point], limit: f64) -> Vec<[BlockId; 2]> {
-    let boundary = &simulation.model().boundary;
-    let ends = |edge: EdgeId| [place[edge], place[boundary.after(edge)]];
-    let runs = simulation.state().neighbours.pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side));
-    let behind = runs.filter_map(|run| {
-        let node = boundary.node_point[run[0].node];
-        let distance = |edge: EdgeId| segment::distance(place[node], ends(edge)[0], ends(edge)[1]);
-        let edge = run.iter().map(|pair| pair.edge).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-        let [a, b] = ends(edge);
-        let is_behind = orientation(a, b, place[node]) > 0.0 && distance(edge) > limit;
-        is_behind.then(|| [node, edge].map(|k| boundary.block[k]))
+/// Pairs of blocks that lie deeper in each other in the last step than they should, and pairs of which that is known.
+/// Nearly always no node is where none should be: then only near pairs are looked at, and nothing is allocated.
+pub(super) fn find(simulation: &Simulation, suspects: &mut Vec<Suspect>) -> Vec<Overlap> {
+    let size = simulation.model().covers.mesh.size;
+    let is_deep = |depth: f64, unheld: f64| depth > DEEP * size || unheld > UNHELD * size;
+    suspect(simulation, suspects, UNHELD * size);
+    let events = &simulation.state().events;
+    suspects.retain(|Suspect { blocks, depth, closure }| match events.overlapped.binary_search(blocks) {
+        Ok(known) => known >= FOLLOWED && *depth > events.overlap_max,
+        Err(_) => is_deep(*depth, depth - EXPLAINED * closure),
     });
-    distinct(behind)
+    let removed = &simulation.state().removed;
+    let followed = events.overlapped.iter().take(FOLLOWED).filter(|pair| !pair.iter().any(|&block| removed[block]));
+    let pairs = followed.copied().chain(suspects.iter().map(|suspect| suspect.blocks));
+    let overlaps = pairs.map(|blocks| simulation.overlap_audit().overlap(simulation, blocks));
+    overlaps.filter(|overlap| is_deep(overlap.depth, overlap.unheld(simulation)[1])).collect()
+}
+
+/// The edge before another of the same loop.
+fn before(boundary: &Boundary, edge: EdgeId) -> EdgeId {
+    // Edges of a loop have rising numbers, so only the first one has to go round.
+    let mut last = EdgeId::new(edge.index().saturating_sub(1));
+    if boundary.after(last) != edge {
+        last = edge;
+        while boundary.after(last) != edge {
+            last = boundary.after(last);
+        }
+    }
+    last
+}
+
+/// Finds pairs of blocks of which a node lies in the other, by its nearest edge deeper than `least` (m), and the
+/// closure of the contacts between them.
+fn suspect(simulation: &Simulation, suspects: &mut Vec<Suspect>, least: f64) {
+    let (boundary, frames) = (&simulation.model().boundary, &simulation.workspace().frames);
+    let ends = |edge: EdgeId| [edge, boundary.after(edge)].map(|point| frames.position(point));
+    // Nearest of all edges of the block that are near. Where it is nearest by an end, the point is inside the block
+    // only if it lies behind the neighbour at that end, too.
+    let behind = |run: &[NearPair]| {
+        let point = boundary.node_point[run[0].node];
+        let place = frames.position(point);
+        let distance = |edge: EdgeId| segment::distance(place, ends(edge)[0], ends(edge)[1]);
+        let measured = run.iter().map(|pair| (distance(pair.edge), pair.edge));
+        let (depth, edge) = measured.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let blocks = [point, edge].map(|k| boundary.block[k]);
+        let is_behind = |edge: EdgeId| {
+            let [a, b] = ends(edge);
+            orientation(a, b, place) > 0.0
+        };
+        let [a, b] = ends(edge);
+        let along = (place - a).dot(&(b - a));
+        let is_inside = depth > least
+            && blocks[0] != blocks[1]
+            && is_behind(edge)
+            && (along > 0.0 || is_behind(before(boundary, edge)))
+            && (along < (b - a).norm_squared() || is_behind(boundary.after(edge)));
+        is_inside.then(|| Suspect { blocks: in_order(blocks), depth, closure: 0.0 })
+    };
+    let pairs = &simulation.state().neighbours.pairs;
+    let is_run = |a: &NearPair, b: &NearPair| a.node == b.node && boundary.block[a.edge] == boundary.block[b.edge];
+    suspects.clear();
+    if simulation.workspace().serial {
+        suspects.extend(pairs.chunk_by(is_run).filter_map(behind));
+    } else {
+        suspects.par_extend(pairs.par_chunk_by(is_run).filter_map(behind));
+    }
+    suspects.sort_unstable_by(|a, b| a.blocks.cmp(&b.blocks).then(b.depth.total_cmp(&a.depth)));
+    suspects.dedup_by_key(|suspect| suspect.blocks);
+    if suspects.is_empty() {
+        return;
+    }
+    for contact in &simulation.workspace().contacts {
+        let blocks = in_order(contact.blocks(boundary));
+        if let Ok(k) = suspects.binary_search_by(|suspect| suspect.blocks.cmp(&blocks)) {
+            suspects[k].closure = suspects[k].closure.max(closure(contact));
+        }
+    }
 }
 
 /// Triangles of a block, as indices of its boundary points.
@@ -216,9 +274,9 @@ fn deepest_corner(points: &[Point], q: &Placed) -> f64 {
 }
 
 /// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.
-fn corner_depth(boundary: &Boundary, place: &[Point], p: &[EdgeId], q: &[EdgeId]) -> f64 {
-    let polygon: Vec<Point> = q.iter().map(|&k| place[k]).collect();
-    let ends = |e: EdgeId| (place[e], place[boundary.after(e)]);
+fn corner_depth(boundary: &Boundary, place: &impl Fn(EdgeId) -> Point, p: &[EdgeId], q: &[EdgeId]) -> f64 {
+    let polygon: Vec<Point> = q.iter().map(|&k| place(k)).collect();
+    let ends = |e: EdgeId| (place(e), place(boundary.after(e)));
     // A crack's wall is a way in where the crack stands open by as much as the point lies behind it.
     let is_way_in = |e: EdgeId, x: Point| {
         let (a, b) = ends(e);
@@ -234,6 +292,6 @@ fn corner_depth(boundary: &Boundary, place: &[Point], p: &[EdgeId], q: &[EdgeId]
     };
     let (low, high) = polygon::bounds(&polygon);
     let is_boxed = |x: &Point| x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y;
-    let inside = p.iter().map(|&k| place[k]).filter(is_boxed).filter(|&x| polygon::contains(&polygon, x));
+    let inside = p.iter().map(|&k| place(k)).filter(is_boxed).filter(|&x| polygon::contains(&polygon, x));
     inside.map(depth).fold(0.0, f64::max)
 }

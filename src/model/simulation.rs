@@ -5,11 +5,12 @@ use std::sync::OnceLock;
 use crate::contact::{BoltState, EntranceRule, JointLaw, LawId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
-use crate::state::{Drive, Ledger, Model, MostRest, State, Workspace};
+use crate::state::{Drive, Event, EventKind, Ledger, Model, MostRest, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport};
 
 use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators, build, law_of};
 use super::case::{Case, Invalid, Stage, StageKind};
+use super::overlap::{self, Audit, Overlap};
 
 /// Unbalanced ratio at which a static stage that names none ends.
 const CONVERGENCE: f64 = 1e-4;
@@ -36,6 +37,8 @@ pub struct Simulation {
     regime: Regime,
     /// The report on the state now, once a caller has requested it: it costs a step.
     report: OnceLock<StepReport>,
+    /// The blocks as the audit of overlaps cuts them, once it has had to compare two.
+    audit: OnceLock<Audit>,
 }
 
 impl Simulation {
@@ -71,6 +74,7 @@ impl Simulation {
             workspace: Workspace::default(),
             regime: Regime::Dynamic { damping: 0.0 },
             report: OnceLock::new(),
+            audit: OnceLock::new(),
         };
         simulation.begin_stage(0, 0.0)?;
         Ok(simulation)
@@ -188,18 +192,46 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start.
+    /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start. Every
+    /// [`overlap::EVERY`] steps it looks for blocks that overlap.
     ///
     /// # Errors
     /// A numerical failure; the state is then invalid and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
         self.report.take();
         let is_due = report && self.rest_due();
+        let audits = self.state().step.is_multiple_of(overlap::EVERY);
         let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)?;
         if is_due {
             self.built.state.most_rest = self.most_rest_with(&made);
         }
+        if audits {
+            self.note_overlaps();
+        }
         Ok(made)
+    }
+
+    /// Notes pairs of blocks that the step in the buffers has found in each other, each pair once, and how deep.
+    fn note_overlaps(&mut self) {
+        // Looks at the model as a whole, so the buffer is taken out of it meanwhile.
+        let mut suspects = std::mem::take(&mut self.workspace.suspects);
+        let found = overlap::find(self, &mut suspects);
+        self.workspace.suspects = suspects;
+        let time = self.time();
+        let events = &mut self.built.state.events;
+        for Overlap { depth, blocks, .. } in found {
+            events.overlap_max = events.overlap_max.max(depth);
+            if let Err(place) = events.overlapped.binary_search(&blocks) {
+                events.overlapped.insert(place, blocks);
+                let [subject, other] = blocks.map(BlockId::number);
+                events.list.push(Event { kind: EventKind::Overlapped, subject, time, other, depth });
+            }
+        }
+    }
+
+    /// The blocks for the audit of overlaps.
+    pub(super) fn overlap_audit(&self) -> &Audit {
+        self.audit.get_or_init(|| Audit::new(self))
     }
 
     /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.

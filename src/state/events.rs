@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::cover::BlockId;
+
 /// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
@@ -11,6 +13,8 @@ pub enum EventKind {
     Slipped,
     /// A block moved beyond the failure displacement.
     Failed,
+    /// Two blocks overlap by more than the mesh or the contacts between them explain.
+    Overlapped,
 }
 
 /// Something that happened for the first time.
@@ -18,13 +22,33 @@ pub enum EventKind {
 pub struct Event {
     /// What.
     pub kind: EventKind,
-    /// Block id, or index of the joint trace; `u32::MAX` for contacts away from joints.
+    /// Block id, or index of the joint trace; `u32::MAX` for contacts away from joints. Of two blocks that overlap the
+    /// one with the lower id.
     pub subject: u32,
     /// End of the internal step in which it happened (s).
     pub time: f64,
+    /// Id of the other block of an overlap; `u32::MAX` for events of other kinds.
+    pub other: u32,
+    /// Depth of an overlap when it was found (m); 0 for events of other kinds.
+    pub depth: f64,
 }
 
-/// Everything that happened in dynamic stages, in order, and what is needed to see the next event.
+impl Event {
+    /// An event of one block or joint.
+    pub fn of(kind: EventKind, subject: u32, time: f64) -> Self {
+        Self { kind, subject, time, other: u32::MAX, depth: 0.0 }
+    }
+
+    /// An overlap in words, for warnings: both blocks, and the depth in metres and in parts of the mesh size (m).
+    pub fn overlap_text(&self, mesh_size: f64) -> String {
+        let Self { subject, other, depth, .. } = self;
+        let percent = 100.0 * depth / mesh_size;
+        format!("blocks {subject} and {other} overlap by {depth:.3e} m, {percent:.2} % of the mesh size")
+    }
+}
+
+/// Everything that happened in dynamic stages, and overlaps of blocks in any stage, in order, and what is needed to see
+/// the next event.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Events {
     /// The events.
@@ -37,6 +61,10 @@ pub struct Events {
     pub slipped: Vec<bool>,
     /// Blocks that have failed.
     pub failed: Vec<bool>,
+    /// Pairs of blocks that have overlapped, in order; of each the lower id first.
+    pub overlapped: Vec<[BlockId; 2]>,
+    /// Greatest depth of these overlaps so far (m); 0 for none.
+    pub overlap_max: f64,
 }
 
 impl Events {
@@ -48,16 +76,20 @@ impl Events {
             detached: vec![false; blocks],
             slipped: vec![false; traces + 1],
             failed: vec![false; blocks],
+            overlapped: Vec::new(),
+            overlap_max: 0.0,
         }
     }
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { list, touching, detached, slipped, failed } = other;
+        let Self { list, touching, detached, slipped, failed, overlapped, overlap_max } = other;
         self.list.clone_from(list);
         self.touching.clone_from(touching);
         self.detached.clone_from(detached);
         self.slipped.clone_from(slipped);
         self.failed.clone_from(failed);
+        self.overlapped.clone_from(overlapped);
+        self.overlap_max = *overlap_max;
     }
 }

@@ -130,6 +130,7 @@ impl Workspace {
             ("open–close iteration", sweep.open_close.bytes()),
             ("supports and bolts", sum(&[&supports.rows, &supports.bolts])),
             ("yielding", self.yielding.energy.bytes()),
+            ("overlaps", self.suspects.bytes()),
             ("implicit", self.of_integrator.as_ref().map_or(0, |buffers| buffers.bytes())),
         ]
     }
@@ -183,6 +184,6 @@ fn inputs(inputs: &Inputs) -> usize {
 }
 
 fn events(events: &Events) -> usize {
-    let Events { list, touching, detached, slipped, failed } = events;
-    sum(&[list, touching, detached, slipped, failed])
+    let Events { list, touching, detached, slipped, failed, overlapped, overlap_max: _ } = events;
+    sum(&[list, touching, detached, slipped, failed, overlapped])
 }

@@ -22,7 +22,7 @@ pub use model::{
 };
 pub use quantity::Quantity;
 pub use workspace::{
-    ChunkSums, ContactOutcome, Face, FaceBuffers, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers,
+    ChunkSums, ContactOutcome, Face, FaceBuffers, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, Suspect,
     SweepBuffers, Workspace, YieldBuffers,
 };
 

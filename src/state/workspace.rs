@@ -4,6 +4,7 @@ use crate::contact::{
     AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
     PenetratingContacts, SearchGrid, SideId, SupportRow, VertexEdge,
 };
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
@@ -38,6 +39,8 @@ pub struct Workspace {
     pub outcomes: Vec<ContactOutcome>,
     /// Whether each block touches another.
     pub touching: Vec<bool>,
+    /// Pairs of blocks that may overlap.
+    pub suspects: Vec<Suspect>,
     /// Buffers of an integrator other than the explicit one.
     pub of_integrator: Option<Box<dyn Buffers>>,
     /// Whether the step keeps to the calling thread; the bits are the same.
@@ -154,6 +157,17 @@ pub struct SweepBuffers {
     pub increment: Vec<Vector>,
     /// Impulse sums of blocks.
     pub push: Vec<BlockImpulse>,
+}
+
+/// A pair of blocks of which a node of one lies behind an edge of the other.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Suspect {
+    /// Blocks, the lower id first.
+    pub blocks: [BlockId; 2],
+    /// How far behind the deepest node lies (m).
+    pub depth: f64,
+    /// Closure (m) of the most deeply pressed contact between them.
+    pub closure: f64,
 }
 
 /// Outcome of a run of contacts in a step.

@@ -35,7 +35,7 @@ fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
         let left = events.touching[block] && !workspace.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
-            events.list.push(Event { kind: EventKind::Detached, subject: block.number(), time });
+            events.list.push(Event::of(EventKind::Detached, block.number(), time));
         }
     }
 }
@@ -50,7 +50,7 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
         if !events.slipped[joint] {
             events.slipped[joint] = true;
             let subject = trace.map_or(u32::MAX, |trace| trace.number());
-            events.list.push(Event { kind: EventKind::Slipped, subject, time });
+            events.list.push(Event::of(EventKind::Slipped, subject, time));
         }
     }
 }
@@ -72,7 +72,7 @@ fn note_failed(model: &Model, state: &mut State, workspace: &mut Workspace, time
             let sum: Vector = covers.map(|i| state.displacement[i] * model.mass_matrix.row_sum[i]).sum();
             if sum.norm() > limit * model.mass_matrix.total[block] {
                 state.events.failed[block] = true;
-                state.events.list.push(Event { kind: EventKind::Failed, subject: block.number(), time });
+                state.events.list.push(Event::of(EventKind::Failed, block.number(), time));
             }
         }
     }

@@ -180,3 +180,19 @@ fn the_schema_is_printed_as_json() {
     let schema: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
     assert!(schema["properties"]["mesh"].is_object());
 }
+
+/// The case of the C library's tests: a block sinks into a soft joint by some hundredths of the mesh size.
+#[test]
+fn blocks_that_overlap_are_a_warning_and_numbers_of_the_summary() {
+    let place = Place::with(include_str!("../../../ffi/capi/tests/cases/soft.toml"));
+    let answer = place.enmm(&["run", "case.toml"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let summary = json(&place.path("case/summary.json"));
+    let number = |key: &str| summary[key].as_f64().expect("a number");
+    assert_eq!(number("overlapping_pairs"), 1.0);
+    assert!(number("overlap_max") > 0.005 && number("overlap_max") < 0.04, "{summary}");
+    let warnings = summary["warnings"].as_array().expect("warnings");
+    let told = |text: &str| text.contains("blocks 0 and 1 overlap by ") && text.contains("% of the mesh size near (");
+    assert_eq!(warnings.iter().filter(|text| told(text.as_str().expect("text"))).count(), 1, "{warnings:?}");
+    assert_eq!(answer.stderr.matches("blocks 0 and 1 overlap by ").count(), 1, "{answer:?}");
+}

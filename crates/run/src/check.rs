@@ -124,12 +124,13 @@ fn memory(simulation: &Simulation, state: &State, workspace: &Workspace) -> Vec<
 }
 
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     values
 }
 
 fn distinct(points: &[Point]) -> usize {
-    let mut keys: Vec<[u64; 2]> = points.iter().map(|p| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()]).collect();
+    let bits = |x: f64| u128::from((x + 0.0).to_bits());
+    let mut keys: Vec<u128> = points.iter().map(|p| bits(p.x) << 64 | bits(p.y)).collect();
     keys.sort_unstable();
     keys.dedup();
     keys.len()

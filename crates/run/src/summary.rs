@@ -68,9 +68,9 @@ pub struct Summary {
     pub penetration_max: f64,
     /// The same over the mesh size.
     pub penetration_max_relative: f64,
-    /// Deepest overlap (m) of blocks that have passed into each other, by their polygons at the frames; 0 for none.
+    /// Greatest depth (m) of overlaps of blocks, see [`enmm::model::overlap`]; 0 for none.
     pub overlap_max: f64,
-    /// Pairs of such blocks.
+    /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: usize,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
@@ -301,8 +301,6 @@ pub(super) struct RunRecord<'a> {
     pub failure: Option<&'a StepError>,
     pub stages: Vec<StageRecord>,
     pub ledger: &'a Ledger,
-    /// Deepest overlap (m), and number of pairs.
-    pub overlaps: (f64, usize),
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
     pub doubt: Option<String>,
@@ -346,8 +344,8 @@ impl Summary {
             bolts: BoltRecord::of(simulation),
             penetration_max: counters.penetration_max,
             penetration_max_relative: counters.penetration_max / model.covers.mesh.size,
-            overlap_max: record.overlaps.0,
-            overlapping_pairs: record.overlaps.1,
+            overlap_max: state.events.overlap_max,
+            overlapping_pairs: state.events.overlapped.len(),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

@@ -16,6 +16,8 @@ pub const ENMM_BLOCK_REMOVED: u32 = 8;
 
 /// Subject of a slip event of a contact that lies on no joint trace of the case.
 pub const ENMM_NO_JOINT: u32 = u32::MAX;
+/// Other block of events that are no overlap.
+pub const ENMM_NO_BLOCK: u32 = u32::MAX;
 
 /// A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
 pub struct enmm_model(());
@@ -91,7 +93,7 @@ pub enum enmm_contact_state {
     ENMM_CONTACT_LOCK = 2,
 }
 
-/// Kind of an event. Each happens once to a block or joint, and only in dynamic stages.
+/// Kind of an event. Each happens once to a block, joint or pair of blocks; the first three only in dynamic stages.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum enmm_event_kind {
@@ -101,6 +103,10 @@ pub enum enmm_event_kind {
     ENMM_EVENT_SLIPPED = 1,
     /// A block moved beyond the failure displacement.
     ENMM_EVENT_FAILED = 2,
+    /// Two blocks overlap by more than 1 % of the mesh size, or deeper than the contacts between them explain: results
+    /// about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
+    /// initial equilibrium, too, whose times are below 0.
+    ENMM_EVENT_OVERLAPPED = 3,
 }
 
 /// Weight of a message.
@@ -109,12 +115,12 @@ pub enum enmm_event_kind {
 pub enum enmm_log_level {
     /// A step failed.
     ENMM_LOG_ERROR = 0,
-    /// Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
-    /// a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
-    /// 0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
-    /// doubled.
+    /// Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle,
+    /// blocks that overlap (see ENMM_EVENT_OVERLAPPED), and a motion that is worthless since energy came from nowhere
+    /// (residual over largest term of the ledger at least 0.9), which is looked at after the initial equilibrium, four
+    /// internal steps, and whenever their number has doubled.
     ENMM_LOG_WARNING = 1,
-    /// Events, and the end of the search for the initial equilibrium.
+    /// Other events, and the end of the search for the initial equilibrium.
     ENMM_LOG_INFO = 2,
 }
 
@@ -268,6 +274,10 @@ pub struct enmm_totals {
     pub slipped_joints: u32,
     /// Blocks that have failed.
     pub failed_blocks: u32,
+    /// Greatest depth of overlaps of blocks so far (m), see ENMM_EVENT_OVERLAPPED; 0 for none.
+    pub overlap_max: f64,
+    /// Pairs of blocks that have overlapped.
+    pub overlapping_pairs: u64,
 }
 
 /// A contact between a boundary node of one block and an edge of another.
@@ -308,10 +318,16 @@ pub struct enmm_event {
     pub struct_size: usize,
     /// Kind of the event.
     pub kind: enmm_event_kind,
-    /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT.
+    /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
     pub subject: u32,
     /// End of the internal step in which it happened (s), as enmm_get_time counts.
     pub time: f64,
+    /// Higher block id of two blocks that overlap; ENMM_NO_BLOCK for events of other kinds.
+    pub other: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Depth of an overlap when it was found (m); 0 for events of other kinds.
+    pub depth: f64,
 }
 
 /// A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
@@ -400,13 +416,14 @@ sized! {
     enmm_totals 72 {
         struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts
         slipping_contacts locked_contacts detached_blocks slipped_joints failed_blocks
+        overlap_max overlapping_pairs
     }
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress
         shear_stress
     }
     enmm_event 24 {
-        struct_size kind subject time
+        struct_size kind subject time other reserved depth
     }
     enmm_port_state 120 {
         struct_size displacement_x displacement_y velocity_x velocity_y rotation angular_velocity contact_force_x

@@ -97,7 +97,7 @@ pub enum Total {
     EventCount,
     /// Time of the last event (s); 0 when there was none.
     LastEventTime,
-    /// Last event: 0 none, 1 block detached, 2 joint slipped, 3 block failed.
+    /// Last event: 0 none, 1 block detached, 2 joint slipped, 3 block failed, 4 two blocks overlap.
     LastEventKind,
     /// Block or joint of the last event; −1 when there was none, or for a contact away from joints.
     LastEventSubject,
@@ -555,12 +555,15 @@ fn port_motions(kind: PortKind) -> &'static [Row] {
 
 type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
 
+/// What the numbers of the last event's kind mean.
+const KINDS: &str = "Last event: 0 none, 1 detached, 2 slipped, 3 failed, 4 overlapped";
+
 /// Outputs of the whole model that no other interface has under these names.
 const OWN_TOTALS: [TotalRow; 5] = [
     (Total::InternalDt, "internal_dt", "Internal step", "s", Type::Real),
     (Total::LastEventTime, "last_event_time", "Time of the last event, 0 if there was none", "s", Type::Real),
     (Total::EventCount, "event_count", "Events so far", "", Type::Integer),
-    (Total::LastEventKind, "last_event_kind", "Last event: 0 none, 1 detached, 2 slipped, 3 failed", "", Type::Integer),
+    (Total::LastEventKind, "last_event_kind", KINDS, "", Type::Integer),
     (Total::LastEventSubject, "last_event_subject", "Block or joint of the last event, -1 if none", "", Type::Integer),
 ];
 

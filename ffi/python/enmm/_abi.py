@@ -8,6 +8,7 @@ from typing import Any
 UINT32_MAX = 0xFFFF_FFFF
 ABI_VERSION = 1
 NO_JOINT = UINT32_MAX
+NO_BLOCK = UINT32_MAX
 
 
 class BlockFlag(IntFlag):
@@ -43,6 +44,10 @@ class EventKind(IntEnum):
     """A joint slipped."""
     FAILED = 2
     """A block moved beyond the failure displacement."""
+    OVERLAPPED = 3
+    """Two blocks overlap by more than 1 % of the mesh size, or deeper than the contacts between them explain: results
+    about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
+    initial equilibrium, too, whose times are below 0."""
 
 
 class PortKind(IntEnum):
@@ -72,11 +77,11 @@ class LogLevel(IntEnum):
     """A step failed."""
     WARNING = 1
     """Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
-    a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
+    blocks that overlap (see ENMM_EVENT_OVERLAPPED), and a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
     0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
     doubled."""
     INFO = 2
-    """Events, and the end of the search for the initial equilibrium."""
+    """Other events, and the end of the search for the initial equilibrium."""
 
 
 class StepInfo(ctypes.Structure):
@@ -164,6 +169,8 @@ class Totals(ctypes.Structure):
         ("detached_blocks", c_uint32),
         ("slipped_joints", c_uint32),
         ("failed_blocks", c_uint32),
+        ("overlap_max", c_double),
+        ("overlapping_pairs", c_uint64),
     ]
 
 
@@ -194,6 +201,9 @@ class Event(ctypes.Structure):
         ("kind", c_int32),
         ("subject", c_uint32),
         ("time", c_double),
+        ("other", c_uint32),
+        ("reserved", c_uint32),
+        ("depth", c_double),
     ]
 
 

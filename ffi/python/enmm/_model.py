@@ -347,9 +347,12 @@ class Model(Closing):
         Going back to a saved state goes back to its events.
         """
         rows = self._rows(self._events, "enmm_get_events", False, index("first", first))
-        columns = (rows[name].tolist() for name in ("kind", "subject", "time"))
-        subject = {_abi.NO_JOINT: None}
-        return [Event(EventKind(kind), subject.get(of, of), time) for kind, of, time in zip(*columns, strict=True)]
+        columns = (rows[name].tolist() for name in ("kind", "subject", "time", "other", "depth"))
+        none = {_abi.NO_JOINT: None, _abi.NO_BLOCK: None}
+        return [
+            Event(EventKind(kind), none.get(of, of), time, none.get(other, other), depth)
+            for kind, of, time, other, depth in zip(*columns, strict=True)
+        ]
 
     def energies(self) -> Energies:
         """Energies now and works since the start."""

@@ -94,6 +94,10 @@ class Totals(NamedTuple):
     """Joints that have slipped."""
     failed_blocks: int
     """Blocks that have failed."""
+    overlap_max: float
+    """Greatest depth of overlaps of blocks so far (m), see `EventKind.OVERLAPPED`; 0 for none."""
+    overlapping_pairs: int
+    """Pairs of blocks that have overlapped."""
 
 
 class Event(NamedTuple):
@@ -102,9 +106,16 @@ class Event(NamedTuple):
     kind: EventKind
     """What happened."""
     subject: int | None
-    """Block id; for a slip the number of the joint trace, or None for a contact that lies on none."""
+    """Block id; for a slip the number of the joint trace, or None for a contact that lies on none.
+
+    Of two blocks that overlap the lower id.
+    """
     time: float
     """End of the internal step in which it happened (s), as `Model.time` counts."""
+    other: int | None = None
+    """Higher id of two blocks that overlap; None for events of other kinds."""
+    depth: float = 0.0
+    """Depth of an overlap when it was found (m); 0 for events of other kinds."""
 
 
 class PortState(NamedTuple):

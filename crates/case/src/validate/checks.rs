@@ -167,7 +167,9 @@ pub fn points(key: &Key, list: &[[f64; 2]], least: usize, what: &str) -> Check {
         let message = format!("has {} points, {what} needs at least {least}; add points or remove it", list.len());
         return fail(key, message);
     }
-    list.iter().enumerate().try_for_each(|(i, place)| point(&key.index(i), place))
+    // The key of a point is written for the first that is unusable.
+    let unusable = list.iter().position(|place| point(key, place).is_err());
+    unusable.map_or(Ok(()), |i| point(&key.index(i), &list[i]))
 }
 
 /// Checks a loop, whose crossings and area are the builder's to judge.

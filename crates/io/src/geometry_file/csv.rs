@@ -26,6 +26,9 @@ enum Columns {
     Points { trace: usize, xy: [usize; 2] },
 }
 
+/// Name of rows in keys.
+const ROW: &str = "row";
+
 /// Reads the format.
 ///
 /// # Errors
@@ -109,8 +112,8 @@ struct Table<'a> {
 
 impl Table<'_> {
     fn row(&mut self, k: usize, line: usize, row: &csv::StringRecord) -> Result<(), String> {
-        let key = Key::root().field("row").index(k);
-        self.reader.geometry.lines.insert(&key, line);
+        let key = Key::root().field(ROW).index(k);
+        self.reader.geometry.lines.push(ROW, line, &[]);
         let law = self.law.and_then(|column| row.get(column)).filter(|law| !law.is_empty()).map(str::to_owned);
         match self.columns {
             Columns::Wkt(column) => {

@@ -17,9 +17,8 @@ use enmm::geometry::Vector;
 use enmm::model::bytes::BytesError;
 use enmm::model::case::{Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
-use enmm::model::overlap::{Audit, Overlap};
 use enmm::model::tables::{BlockId, Seconds};
-use enmm::model::{Ledger, Restless, Simulation, State, StepError, StepReport, settle};
+use enmm::model::{Event, EventKind, Ledger, Restless, Simulation, State, StepError, StepReport, settle};
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
 use enmm_observe::{Joints, Snapshot};
@@ -51,10 +50,6 @@ struct Progress {
     row_sweeps: [u64; 2],
     /// Largest penetration at reports of this stage (m).
     penetration_max: f64,
-    /// Deepest overlap (m) of blocks that have passed into each other.
-    overlap_max: f64,
-    /// These blocks.
-    overlapping: Vec<[BlockId; 2]>,
     /// Unbalanced ratio at the last report.
     unbalanced: f64,
     /// Ledger at the last report.
@@ -71,7 +66,7 @@ impl Progress {
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
         let Self { done, unsettled_before, potential_start, row_sweeps, .. } = self;
-        let Self { penetration_max, overlap_max, overlapping, unbalanced, ledger, started, .. } = self;
+        let Self { penetration_max, unbalanced, ledger, started, .. } = self;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
@@ -79,9 +74,6 @@ impl Progress {
         fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
         fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
         fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
-        fit::number("overlap_max", *overlap_max, fit::LENGTH)?;
-        let blocks = state.removed.len();
-        fit::at_most("the number of pairs in overlapping", overlapping.len() as u64, (blocks * blocks) as u64)?;
         fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
         if !started.is_empty() {
             let covers = state.displacement.len() as f64;
@@ -120,7 +112,6 @@ struct Driver<'a> {
     history: HistoryWriter,
     frames: Option<PvdWriter>,
     joints: Joints,
-    overlaps: Audit,
     film: Film,
     clock: Instant,
     stage_clock: Instant,
@@ -192,7 +183,7 @@ impl<'a> Driver<'a> {
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
         let progress = good.progress.clone();
-        let (joints, overlaps) = (Joints::of(&simulation), Audit::new(&simulation));
+        let joints = Joints::of(&simulation);
         let stage_clock = Instant::now();
         let mut driver = Self {
             loaded,
@@ -205,7 +196,6 @@ impl<'a> Driver<'a> {
             history,
             frames,
             joints,
-            overlaps,
             film,
             clock,
             stage_clock,
@@ -290,7 +280,6 @@ impl<'a> Driver<'a> {
         }
         if plan.frame_due(step) {
             self.push_frame().map_err(Err)?;
-            self.audit().map_err(Err)?;
         }
         if plan.film_due(step) {
             self.film.frame(&self.simulation).map_err(|error| Err(RunError::Output(error)))?;
@@ -314,7 +303,9 @@ impl<'a> Driver<'a> {
         }
         let rest_due = self.simulation.rest_due();
         let wanted = step == 0 || row || rest_due;
+        let known = self.simulation.state().events.list.len();
         let report = self.simulation.advance(wanted).map_err(|error| Ok(StageEnd::Failed(error)))?;
+        self.warn_of_overlaps(known).map_err(Err)?;
         if !wanted {
             return Ok(None);
         }
@@ -367,7 +358,6 @@ impl<'a> Driver<'a> {
         let restless = last.map_or_else(Vec::new, |report| self.simulation.restless(&report));
         self.keep_good();
         self.push_frame()?;
-        self.audit()?;
         self.film.frame(&self.simulation).map_err(RunError::Output)?;
         self.draw_stage().map_err(RunError::Output)?;
         let dt_before = self.simulation.state().dt_last;
@@ -400,21 +390,13 @@ impl<'a> Driver<'a> {
         Ok(StageEnd::Over)
     }
 
-    /// Looks for blocks that have passed into each other, which no contact need know.
-    fn audit(&mut self) -> Result<(), RunError> {
-        let passed = self.overlaps.passed(&self.simulation, &self.progress.overlapping);
-        let Some(deepest) = passed.first() else { return Ok(()) };
-        self.progress.overlap_max = self.progress.overlap_max.max(deepest.depth);
-        for overlap in passed {
-            if self.progress.overlapping.contains(&overlap.blocks) {
-                continue;
-            }
-            self.progress.overlapping.push(overlap.blocks);
-            if self.progress.overlapping.len() <= NAMED {
-                self.warn(overlap_text(&self.simulation, &overlap))?;
-            }
-        }
-        Ok(())
+    /// Warns of the first pairs of blocks that overlap, with the event of index `known` or a later one.
+    fn warn_of_overlaps(&mut self, known: usize) -> Result<(), RunError> {
+        let is_overlap = |event: &&Event| event.kind == EventKind::Overlapped;
+        let events = &self.simulation.state().events;
+        let new: Vec<Event> = events.list[known..].iter().filter(is_overlap).copied().collect();
+        let room = (NAMED + new.len()).saturating_sub(events.overlapped.len());
+        new.iter().take(room).try_for_each(|event| self.warn(overlap_text(&self.simulation, event)))
     }
 
     fn draw_stage(&self) -> io::Result<()> {
@@ -560,7 +542,6 @@ impl<'a> Driver<'a> {
             failure,
             stages,
             ledger: &self.progress.ledger,
-            overlaps: (self.progress.overlap_max, self.progress.overlapping.len()),
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
             doubt,
@@ -571,16 +552,15 @@ impl<'a> Driver<'a> {
     }
 }
 
-fn overlap_text(simulation: &Simulation, Overlap { depth, blocks: [a, b], .. }: &Overlap) -> String {
-    let place = simulation.motion_of(*a).centroid;
-    let size = simulation.model().covers.mesh.size;
+fn overlap_text(simulation: &Simulation, event: &Event) -> String {
+    let place = simulation.motion_of(BlockId::new(event.subject as usize)).centroid;
     format!(
-        "blocks {a} and {b} near ({:.3}, {:.3}) m overlap by {depth:.3e} m, {:.2} % of the mesh size, at t = {:.4} s: \
-         no contact holds them there; results about them are wrong from here on",
+        "{} near ({:.3}, {:.3}) m at t = {:.4} s: results about them are wrong from here on; where their joint is \
+         soft, raise its normal_stiffness",
+        event.overlap_text(simulation.model().covers.mesh.size),
         place.x,
         place.y,
-        100.0 * depth / size,
-        simulation.time()
+        event.time
     )
 }
 

@@ -195,20 +195,34 @@ mod tests {
     use crate::types::enmm_event_kind::ENMM_EVENT_FAILED;
 
     fn event(subject: u32) -> enmm_event {
-        enmm_event { struct_size: size_of::<enmm_event>(), kind: ENMM_EVENT_FAILED, subject, time: 1.5 }
+        let struct_size = size_of::<enmm_event>();
+        enmm_event { struct_size, kind: ENMM_EVENT_FAILED, subject, time: 1.5, other: 7, reserved: 0, depth: 0.25 }
     }
 
     #[test]
     fn a_larger_structure_keeps_what_this_library_does_not_know() {
-        let mut place = [[7_u64; 5]; 2];
-        place[0][0] = 40;
+        let mut place = [[9_u64; 7]; 2];
+        place[0][0] = 56;
         let (mut written, out) = (0, place.as_mut_ptr().cast());
         // SAFETY: two structures of the size that the first one has.
         let outcome = unsafe { fill_structs(&[event(1), event(2)], out, 2, &mut written) };
         assert_eq!((outcome, written), (Ok(()), 2));
         for (k, words) in place.iter().enumerate() {
-            assert_eq!([words[0], words[1] >> 32, words[2]], [40, k as u64 + 1, 1.5_f64.to_bits()]);
-            assert_eq!(words[3..], [7, 7]);
+            assert_eq!([words[0], words[1] >> 32, words[2]], [56, k as u64 + 1, 1.5_f64.to_bits()]);
+            assert_eq!(words[3..], [7, 0.25_f64.to_bits(), 9, 9]);
+        }
+    }
+
+    #[test]
+    fn a_structure_of_the_first_version_gets_what_it_has_room_for() {
+        let mut place = [[9_u64; 3]; 2];
+        place[0][0] = 24;
+        let (mut written, out) = (0, place.as_mut_ptr().cast());
+        // SAFETY: two structures of the size that the first one has.
+        let outcome = unsafe { fill_structs(&[event(1), event(2)], out, 2, &mut written) };
+        assert_eq!((outcome, written), (Ok(()), 2));
+        for (k, words) in place.iter().enumerate() {
+            assert_eq!([words[0], words[1] >> 32, words[2]], [24, k as u64 + 1, 1.5_f64.to_bits()]);
         }
     }
 

@@ -208,6 +208,9 @@ impl Model {
         let steps = self.inner.simulation().state().step;
         let message = || format!("the initial equilibrium was sought in {steps} steps");
         self.log.write(enmm_log_level::ENMM_LOG_INFO, message);
+        // Those of the call itself come later.
+        let before: Vec<Event> = self.inner.events().take_while(|event| event.time <= 0.0).collect();
+        before.iter().for_each(|event| self.log_event(event));
         if let Some(ratio) = self.inner.initial_residual() {
             let message = || {
                 format!(
@@ -229,9 +232,18 @@ impl Model {
         }
     }
 
+    fn log_event(&mut self, event: &Event) {
+        let mesh_size = self.inner.case().mesh.size;
+        let level = match event.kind {
+            EventKind::Overlapped => enmm_log_level::ENMM_LOG_WARNING,
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed => enmm_log_level::ENMM_LOG_INFO,
+        };
+        self.log.write(level, || sentence(event, mesh_size));
+    }
+
     fn log_step(&mut self, info: &StepInfo) {
         for event in &info.events {
-            self.log.write(enmm_log_level::ENMM_LOG_INFO, || sentence(event));
+            self.log_event(event);
         }
         if info.unsettled > 0 {
             let (count, end) = (info.unsettled, info.time);
@@ -266,12 +278,16 @@ impl Model {
     }
 }
 
-fn sentence(event: &Event) -> String {
+/// An event in words; the mesh size (m) is what the depth of an overlap is compared with.
+fn sentence(event: &Event, mesh_size: f64) -> String {
     let (subject, time) = (event.subject, event.time);
     match event.kind {
         EventKind::Detached => format!("t = {time} s: block {subject} lost its last contact"),
         EventKind::Slipped if subject == u32::MAX => format!("t = {time} s: a contact away from joints slipped"),
         EventKind::Slipped => format!("t = {time} s: joint {subject} slipped"),
         EventKind::Failed => format!("t = {time} s: block {subject} moved beyond the failure displacement"),
+        EventKind::Overlapped => {
+            format!("t = {time} s: {}: results about them are wrong from here on", event.overlap_text(mesh_size))
+        }
     }
 }

@@ -66,9 +66,13 @@ impl Model {
                 EventKind::Detached => enmm_event_kind::ENMM_EVENT_DETACHED,
                 EventKind::Slipped => enmm_event_kind::ENMM_EVENT_SLIPPED,
                 EventKind::Failed => enmm_event_kind::ENMM_EVENT_FAILED,
+                EventKind::Overlapped => enmm_event_kind::ENMM_EVENT_OVERLAPPED,
             },
             subject: event.subject,
             time: event.time,
+            other: event.other,
+            reserved: 0,
+            depth: event.depth,
         };
         self.inner.events().skip(first).map(of).collect()
     }
@@ -247,6 +251,8 @@ fn totals(totals: &Totals) -> enmm_totals {
         detached_blocks: totals.detached_blocks,
         slipped_joints: totals.slipped_joints,
         failed_blocks: totals.failed_blocks,
+        overlap_max: totals.overlap_max,
+        overlapping_pairs: totals.overlapping_pairs,
     }
 }
 
@@ -337,6 +343,8 @@ mod tests {
             detached_blocks: 9,
             slipped_joints: 10,
             failed_blocks: 11,
+            overlap_max: 12.0,
+            overlapping_pairs: 13,
         };
         hold(&format!("{:?}", totals(&sums)), &TOTALS, &sums);
     }

@@ -371,6 +371,58 @@ static void other_cases(enmm_model *model)
     OK(enmm_state_free(state));
 }
 
+struct warnings {
+    int overlaps, others;
+};
+
+static void on_warning(void *user, enmm_log_level level, const char *message)
+{
+    struct warnings *warnings = user;
+    if (level == ENMM_LOG_WARNING && strstr(message, "blocks 0 and 1 overlap by") && strstr(message, "% of the mesh size"))
+        warnings->overlaps++;
+    else
+        warnings->others += level == ENMM_LOG_WARNING;
+}
+
+/* A block sinks into a soft joint: one event with both blocks and the depth, a warning, and two totals. */
+static void overlaps(void)
+{
+    static const char *soft =
+        "title = \"t\"\n[domain]\noutline = [[0, 0], [3, 0], [3, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]\n[mesh]\n"
+        "size = 0.5\n[[joint]]\npoints = [[1, 1], [2, 1]]\n[rock.rock]\ndensity = 2650\nyoung = 5e9\npoisson = 0.25\n"
+        "[joint_law.soft]\nfriction_deg = 30\nnormal_stiffness = 1.3e6\nshear_stiffness = 1.3e6\n[[fix]]\n"
+        "edge = [[0, 0], [3, 0]]\n[[stage]]\nname = \"sink\"\nkind = \"dynamic\"\nduration = 0.2\n";
+    struct warnings warnings = {0, 0};
+    enmm_step_info info = {sizeof info, 0, 0, 0, 0, 0, 0, 0};
+    enmm_totals totals;
+    enmm_event events[8];
+    size_t written = 0, found = 8, overlaps = 0;
+    enmm_model *model = NULL;
+    OK(enmm_create_from_string(soft, NULL, &model));
+    OK(enmm_set_log_callback(model, on_warning, &warnings));
+    OK(enmm_do_step(model, 0, 0.1, &info));
+    events[0].struct_size = sizeof events[0];
+    OK(enmm_get_events(model, 0, events, 8, &written));
+    for (size_t k = 0; k < written; k++) {
+        if (events[k].kind == ENMM_EVENT_OVERLAPPED) {
+            found = k;
+            overlaps++;
+        } else {
+            CHECK(events[k].other == ENMM_NO_BLOCK && events[k].depth == 0);
+        }
+    }
+    CHECK(overlaps == 1 && info.event_count == written);
+    if (overlaps == 1) {
+        CHECK(events[found].subject == 0 && events[found].other == 1 && events[found].reserved == 0);
+        CHECK(events[found].depth > 0.005 && events[found].time > 0.03 && events[found].time < 0.05);
+    }
+    totals.struct_size = sizeof totals;
+    OK(enmm_get_totals(model, &totals));
+    CHECK(totals.overlapping_pairs == 1 && totals.overlap_max > 0.01 && totals.overlap_max < 0.04);
+    CHECK(warnings.overlaps == 1 && warnings.others == 0);
+    enmm_destroy(model);
+}
+
 struct turncoat {
     enmm_model *model;
     struct turncoat *next; /* speaks in its place from the first message on; none: the model is destroyed */
@@ -427,5 +479,6 @@ int main(int argc, char **argv)
     other_cases(model);
     enmm_destroy(model);
     turncoats(argv[1]);
+    overlaps();
     return CHECKS_RESULT;
 }

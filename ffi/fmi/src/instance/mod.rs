@@ -12,7 +12,7 @@ pub use step::{Step, Update};
 
 use std::path::Path;
 
-use enmm::cosimulation::{Cosimulation, Interpolation, Saved, apply};
+use enmm::cosimulation::{Cosimulation, Event, Interpolation, Saved, apply};
 use enmm_io::LoadedCase;
 
 use crate::log::{Category, Filter, Message, Status};
@@ -253,6 +253,8 @@ impl Instance {
         started.map_err(|error| format!("the initial equilibrium was not found: {error}"))?;
         let steps = self.model.simulation().state().step;
         self.log(Status::Ok, Category::All, format!("the initial equilibrium took {steps} internal steps"));
+        let before: Vec<Event> = self.model.events().collect();
+        before.iter().for_each(|event| self.log_event(event));
         if let Some(ratio) = self.model.initial_residual() {
             let text = format!(
                 "the model is not at rest at time 0 (unbalanced ratio {ratio:.2e}): the slope moves, or its static \

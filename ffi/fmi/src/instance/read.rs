@@ -176,6 +176,7 @@ fn kind_number(kind: EventKind) -> f64 {
         EventKind::Detached => 1.0,
         EventKind::Slipped => 2.0,
         EventKind::Failed => 3.0,
+        EventKind::Overlapped => 4.0,
     }
 }
 

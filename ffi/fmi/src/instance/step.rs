@@ -135,10 +135,18 @@ impl Instance {
     }
 
     fn log_events(&mut self, step: &Step) {
-        let start = self.experiment.start;
         for event in &step.interval.info().events[step.events_seen..] {
-            self.log(Status::Ok, Category::Events, event_text(event, start));
+            self.log_event(event);
         }
+    }
+
+    /// Logs an event; an overlap is a warning.
+    pub(super) fn log_event(&mut self, event: &Event) {
+        let (status, category) = match event.kind {
+            EventKind::Overlapped => (Status::Warning, Category::Warning),
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed => (Status::Ok, Category::Events),
+        };
+        self.log(status, category, event_text(event, self.experiment.start, self.model.case().mesh.size));
     }
 
     /// Time that the model itself has reached (s).
@@ -184,13 +192,16 @@ impl Instance {
     }
 }
 
-fn event_text(event: &Event, start: f64) -> String {
+/// An event in words, for an experiment that starts at `start` (s); the mesh size (m) is what depths are compared with.
+fn event_text(event: &Event, start: f64, mesh_size: f64) -> String {
     let time = start + event.time;
     let what = match event.kind {
         EventKind::Detached => format!("block {} detached", event.subject),
         EventKind::Slipped if event.subject == u32::MAX => "a contact away from joints slipped".to_owned(),
         EventKind::Slipped => format!("joint {} slipped", event.subject),
         EventKind::Failed => format!("block {} failed", event.subject),
+        EventKind::Overlapped => event.overlap_text(mesh_size),
     };
-    format!("{what} at t = {time} s")
+    let meaning = if event.kind == EventKind::Overlapped { ": results about them are wrong from here on" } else { "" };
+    format!("{what} at t = {time} s{meaning}")
 }

@@ -17,6 +17,9 @@ use enmm::model::case::key::Key;
 /// Layers of loops, in any letter case.
 const LOOP_LAYERS: [&str; 3] = ["OUTLINE", "HOLE", "ISLAND"];
 
+/// Name of entities in keys.
+const ENTITY: &str = "entity";
+
 /// Reads the format.
 ///
 /// # Errors
@@ -26,7 +29,7 @@ pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, CaseError>
     let mut reader = Reader { groups: &groups, case, geometry: Geometry::default(), unused: BTreeMap::new() };
     reader.units();
     for (i, entity) in entity::entities(&groups)?.into_iter().enumerate() {
-        reader.entity(&Key::root().field("entity").index(i), &entity)?;
+        reader.entity(&Key::root().field(ENTITY).index(i), &entity)?;
     }
     Ok(reader.finish())
 }
@@ -52,17 +55,17 @@ impl Reader<'_> {
     }
 
     fn entity(&mut self, key: &Key, entity: &Entity) -> Result<(), CaseError> {
-        self.geometry.lines.insert(key, entity.line);
         let shape = match entity.shape(self.groups)? {
-            Some(shape) => shape,
+            Some(shape) => {
+                self.geometry.lines.push(ENTITY, entity.line, &shape.lines);
+                shape
+            }
             None => {
+                self.geometry.lines.push(ENTITY, entity.line, &[]);
                 *self.unused.entry(format!("{} entities not used", entity.kind)).or_default() += 1;
                 return Ok(());
             }
         };
-        for (i, line) in shape.lines.iter().enumerate() {
-            self.geometry.lines.insert(&key.index(i), *line);
-        }
         if shape.high > 0 {
             *self.unused.entry("points whose height is not used".to_string()).or_default() += shape.high;
         }
