@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use enmm::contact::EntranceRule;
+use enmm::model::tables::EntranceRule;
 use enmm::geometry::Vector;
 use enmm::model::overlap::EVERY;
 use enmm::model::{Event, EventKind, Simulation};

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use enmm::cosimulation::{Cosimulation, Event, EventKind};
 use enmm::model::overlap::{DEEP, EVERY, UNHELD};
-use enmm::state::State;
+use enmm::model::State;
 use enmm_io::{load_case, parse_case};
 
 const SOFT: &str = "ffi/capi/tests/cases/soft.toml";

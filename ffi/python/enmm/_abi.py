@@ -76,10 +76,10 @@ class LogLevel(IntEnum):
     ERROR = 0
     """A step failed."""
     WARNING = 1
-    """Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle, and
-    blocks that overlap (see ENMM_EVENT_OVERLAPPED), and a motion that is worthless since energy came from nowhere (residual over largest term of the ledger at least
-    0.9), which is looked at after the initial equilibrium, four internal steps, and whenever their number has
-    doubled."""
+    """Something is unusual: warnings of the case, a start that is not at rest, contact forces that did not settle,
+    blocks that overlap (see ENMM_EVENT_OVERLAPPED), and a motion that is worthless since energy came from nowhere
+    (residual over largest term of the ledger at least 0.9), which is looked at after the initial equilibrium, four
+    internal steps, and whenever their number has doubled."""
     INFO = 2
     """Other events, and the end of the search for the initial equilibrium."""
 
