@@ -9,7 +9,8 @@ fn drop(angle_deg: f64, stiffness: f64) -> String {
     let corners =
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]: [f64; 2]| [c * x - s * y, s * x + c * y + 0.5]);
     format!(
-        "title = \"drop\"\n[domain]\njoint_law = \"smooth\"\noutline = [[-4, -1], [5, -1], [5, 0], [-4, 0]]\nislands = [{corners:?}]\n\
+        "title = \"drop\"\n[domain]\njoint_law = \"smooth\"\noutline = [[-4, -1], [5, -1], [5, 0], [-4, 0]]\n\
+         islands = [{corners:?}]\n\
          [mesh]\nsize = 0.6\nangle_deg = 7.0\norigin = [0.13, 0.29]\n[rock.rock]\ndensity = 2600.0\nyoung = 1e12\n\
          poisson = 0.25\n[joint_law.smooth]\nfriction_deg = 0.0\nnormal_stiffness = {stiffness:e}\n\
          shear_stiffness = {stiffness:e}\n[[fix]]\nblock = [0.5, -0.5]\n\

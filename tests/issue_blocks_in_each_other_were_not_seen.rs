@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use enmm::model::tables::EntranceRule;
 use enmm::geometry::Vector;
 use enmm::model::overlap::EVERY;
+use enmm::model::tables::EntranceRule;
 use enmm::model::{Event, EventKind, Simulation};
 use enmm_io::parse_case;
 

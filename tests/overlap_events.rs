@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use enmm::cosimulation::{Cosimulation, Event, EventKind};
-use enmm::model::overlap::{DEEP, EVERY, UNHELD};
 use enmm::model::State;
+use enmm::model::overlap::{DEEP, EVERY, UNHELD};
 use enmm_io::{load_case, parse_case};
 
 const SOFT: &str = "ffi/capi/tests/cases/soft.toml";

@@ -1,5 +1,5 @@
-//! Blocks that slide, with friction that follows the pressure of the last milliseconds (Eq. 84): at every mesh, step and
-//! base they go as far as rigid ones.
+//! Blocks that slide, with friction that follows the pressure of the last milliseconds (Eq. 84): at every mesh, step
+//! and base they go as far as rigid ones.
 
 use enmm::geometry::Vector;
 

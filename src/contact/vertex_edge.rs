@@ -175,13 +175,13 @@ impl VertexEdge {
     /// Normal force (N/m) that friction feels after the step.
     #[inline(always)]
     pub fn felt_after(&self, setting: &ContactSetting) -> f64 {
-        let (normal, before) = (self.history.normal_force.max(0.0), self.history.felt);
+        let (normal, before) = (self.history.normal_force, self.history.felt);
         if !self.delayed {
             return normal;
         }
         let felt = before + (normal - before) * setting.felt_share;
         // It fades to zero instead of to numbers that computers are slow with.
-        if felt < f64::MIN_POSITIVE { 0.0 } else { felt }
+        if felt.abs() < f64::MIN_POSITIVE { 0.0 } else { felt }
     }
 
     /// The normal spring.
@@ -221,7 +221,7 @@ impl VertexEdge {
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
-    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) of the node along the edge
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) of the node along it
     /// (Eq. 15).
     #[inline(always)]
     pub fn shear_after(&self, shear: f64, setting: &ContactSetting) -> (f64, f64) {

@@ -242,10 +242,10 @@ impl Simulation {
             index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
             between(format_args!("contacts[{k}].age"), age.into(), 0.0, f64::INFINITY)?;
             between(format_args!("contacts[{k}].kept_stiffness"), kept_stiffness.into(), 0.0, FORCE)?;
-            between(format_args!("contacts[{k}].felt"), felt, 0.0, FORCE)?;
             for (field, value, most) in [
                 ("normal_force", normal_force, FORCE),
                 ("shear_force", shear_force, FORCE),
+                ("felt", felt, FORCE),
                 ("trend[0]", trend[0], FORCE),
                 ("trend[1]", trend[1], FORCE),
                 ("sheared", sheared, LENGTH),

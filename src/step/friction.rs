@@ -1,5 +1,5 @@
-//! Friction that follows the pressure of the last milliseconds (theory §7, Eq. 84): how long a dynamic stage delays it,
-//! and which contacts of a step it delays. Coulomb friction at once lets sliding blocks flutter on any fine mesh.
+//! Friction that follows the pressure of the last milliseconds (theory §21, Eq. 84): how long a dynamic stage delays
+//! it, and which contacts of a step it delays. Coulomb friction at once lets sliding blocks flutter on any fine mesh.
 
 use crate::contact::VertexEdge;
 use crate::cover::{BlockId, UnionFind};

@@ -313,8 +313,8 @@ pub struct JointLaw {
     /// Dilation angle while slipping (degrees).
     #[serde(default)]
     pub dilation_deg: f64,
-    /// Slip (m) to either side at which dilation ends; default: 0.05, ten times the slip at which the shear strength of a
-    /// joint of 1 m has its peak (Barton 1982). The faces come down again on the way back.
+    /// Slip (m) to either side at which dilation ends; default: 0.05, ten times the slip at which a joint of 1 m has
+    /// its peak strength (Barton 1982). The faces come down again on the way back.
     #[serde(default)]
     pub dilation_slip: Option<f64>,
     /// Joint roughness coefficient (Barton–Bandis).
@@ -780,7 +780,7 @@ pub struct Solver {
     pub contact_tolerance: f64,
     /// Dynamic stages: time (s) by which friction follows the normal force of faces that stay in touch, so that blocks
     /// slide as far on any mesh; 0 is Coulomb friction at once. Default: a shear wave's way through the blocks that
-    /// hang together, at most 0.02 s.
+    /// hang together, or 0.02 s if that is less.
     pub friction_delay: Option<f64>,
     /// Most sweeps of the open–close iteration in a step.
     pub sweeps_max: u32,

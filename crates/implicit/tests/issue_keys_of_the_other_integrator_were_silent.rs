@@ -20,7 +20,8 @@ fn warnings(text: &str) -> Vec<String> {
 #[test]
 fn keys_of_the_other_integrator_are_told() {
     let both = "communication_step = 0.01\ndt_max = 1e-3\ncontact_stiffness = 0.7\nshear_ratio = 0.4\n\
-                penetration_limit = 0.1\nfailure_displacement = 1.0\nmemory_limit = 1000000000\n";
+                penetration_limit = 0.1\n\
+                friction_delay = 0.01\nfailure_displacement = 1.0\nmemory_limit = 1000000000\n";
     let explicit = [
         "contact_theta = 3.0\n",
         "contact_tolerance = 1e-3\n",

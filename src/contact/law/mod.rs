@@ -56,11 +56,11 @@ pub enum Limits {
     MohrCoulomb {
         /// tan φ.
         friction: f64,
-        /// Cohesive shear force (N/m).
+        /// Cohesive shear force (N/m), with what friction still feels of the pressure before this step (Eq. 84).
         cohesion: f64,
         /// Tensile force (N/m).
         tension: f64,
-        /// Shear force (N/m) by the pressure that friction still feels, whatever the normal force is now (Eq. 84).
+        /// Shear force (N/m) that friction still feels where the contact is open now.
         felt: f64,
     },
     /// Friction on a curve, without cohesion and tension.
@@ -83,12 +83,6 @@ impl Limits {
     /// positive).
     #[inline(always)]
     pub fn shear(self, normal: f64, length: f64) -> f64 {
-        self.shear_pressed(normal, length) + self.shear_open()
-    }
-
-    /// The part of it that the normal force of this step gives.
-    #[inline(always)]
-    pub fn shear_pressed(self, normal: f64, length: f64) -> f64 {
         match self {
             Self::MohrCoulomb { friction, cohesion, .. } => (normal * friction + cohesion).max(0.0),
             Self::BartonBandis { .. } if normal <= 0.0 => 0.0,
@@ -122,7 +116,8 @@ impl Limits {
         match self {
             Self::MohrCoulomb { friction, cohesion, tension, .. } => {
                 let felt = (1.0 - share) * felt * friction;
-                Self::MohrCoulomb { friction: share * friction, cohesion, tension, felt }
+                let (friction, cohesion) = (share * friction, cohesion + felt);
+                Self::MohrCoulomb { friction, cohesion, tension, felt: felt.max(0.0) }
             }
             Self::BartonBandis { .. } => self,
         }

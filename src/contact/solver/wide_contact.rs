@@ -29,7 +29,7 @@ pub struct WideContact {
     force: [F64x8; 2],
     friction: F64x8,
     cohesion: F64x8,
-    /// Shear force (N/m) by the pressure that friction still feels.
+    /// Shear force (N/m) that friction still feels where they are open.
     felt: F64x8,
     /// Normal force (N/m) at or below which each is open.
     open: F64x8,
@@ -320,7 +320,7 @@ impl WideContact {
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
         (self.open_lanes, self.compressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
-        let limit = lanes.keep_above(limit, normal, open) + lanes.load(&self.felt);
+        let limit = lanes.select(self.open_lanes, lanes.load(&self.felt), limit);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
         let impulse = turned(lanes, [x, y], step, from.options.kick);
@@ -357,7 +357,7 @@ impl WideContact {
                 asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);
             }
             if closure.is_curved() || law.is_curved() {
-                limits[lane] = law.shear_pressed(asked[lane], contact.length);
+                limits[lane] = law.shear(asked[lane], contact.length);
             }
         }
     }

@@ -231,6 +231,7 @@ shear_ratio = 0.5
 contact_theta = 4.0
 mass_scaling = 1.0
 contact_tolerance = 0.01
+friction_delay = 0.01
 sweeps_max = 12
 penetration_limit = 0.5
 implicit_step = 0.01
