@@ -44,8 +44,8 @@ impl Kernel for Settle<'_> {
             let (stored, slipped) = contact.shear_after(after[1] * dt, &setting);
             let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
             add_works(outcome, contact, moved, [stored, slipped]);
-            let (law, rise) = (&setting.laws[contact.law], 0.5 * contact.stiffness[0] * slipped.abs());
-            let steepest = stored.abs() / (contact.history.normal_force.max(0.0) + rise * law.dilation);
+            let law = &setting.laws[contact.law];
+            let steepest = stored.abs() / contact.history.normal_force.max(0.0);
             let (way, raised) = law.dilate(contact.history.way, slipped, steepest);
             outcome.dilation += raised * (contact.history.normal_force + 0.5 * contact.stiffness[0] * raised);
             add_depths(outcome, contact);

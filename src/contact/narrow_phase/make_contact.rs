@@ -98,8 +98,8 @@ impl NarrowPhase<'_> {
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch
     /// for the time in which a mass (kg/m) swings on it once, so that an impact has a potential, and lets it go in as
-    /// much time again, or at once where it begins to share its length with another one (Eq. 86). The force does not grow
-    /// by that, for which it gets an allowance.
+    /// much time again, or at once where it begins to share its length with another one (Eq. 86). The force does not
+    /// grow by that, for which it gets an allowance.
     #[inline(always)]
     fn keep_stiffness(&self, gap: f64, (now, whole): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
         let (age, kept) = (f64::from(history.age), f64::from(history.kept_stiffness));
