@@ -62,6 +62,7 @@ impl Block {
         // A point of the block, not of the plane below it.
         let inside = [0, 1].map(|k| toe[k] + 1e-4 * (turn(&about_toe, -dip)[0][k] - toe[k]));
         let pull = [self.horizontal, -G];
+        // Gravity grows in a time in which delayed friction would lag.
         format!(
             "title = \"Block on a plane\"\n[domain]\noutline = {:?}\nislands = [{:?}]\n[mesh]\nsize = {}\n\
              origin = [{}, {}]\n[joint_law.joint]\nfriction_deg = {}\n[rock.rock]\n\
@@ -69,7 +70,8 @@ impl Block {
              poisson = 0.25\n[gravity]\ny = 0.0\n[[load]]\nkind = \"body\"\nacceleration = {pull:?}\n\
              table = [[0.0, 0.0], [{:e}, 1.0]]\n[[fix]]\nblock = {middle:?}\n[[stage]]\nname = \"free\"\n\
              kind = \"dynamic\"\nduration = {duration:e}\ndamping = 0.1\n[[monitor]]\nname = \"toe\"\n\
-             point = {inside:?}\n[[monitor]]\nname = \"head\"\npoint = {head:?}\n",
+             point = {inside:?}\n[[monitor]]\nname = \"head\"\npoint = {head:?}\n\
+             [solver]\nfriction_delay = 0.0\n",
             turn(&plane, -dip),
             turn(&about_toe, -dip),
             self.mesh,
