@@ -119,7 +119,8 @@ def test_numpy_types_have_the_layout_of_the_structures(package):
 def test_values_of_models_have_the_fields_of_the_structures_in_their_order(package):
     for values in (package.Energies, package.Totals, package.StepInfo, package.PortState, package.Event):
         structure = getattr(package._abi, values.__name__)
-        assert values._fields == tuple(field for field, _ in structure._fields_[1:]), values.__name__
+        fields = tuple(field for field, _ in structure._fields_[1:] if field != "reserved")
+        assert values._fields == fields, values.__name__
 
 
 def test_every_structure_function_and_constant_of_the_header_is_there(package):
@@ -374,7 +375,7 @@ def test_events_tell_slip_and_failure(package, incline):
 
 def test_an_overlap_tells_both_blocks_and_the_depth(package):
     messages = []
-    with package.Model(ROOT / "ffi" / "capi" / "tests" / "cases" / "soft.toml") as model:
+    with package.Model.from_file(ROOT / "ffi" / "capi" / "tests" / "cases" / "soft.toml") as model:
         model.set_log(lambda level, text: messages.append((level, text)))
         model.do_step(0.0, 0.1)
         events, totals = model.events(), model.totals()
