@@ -176,9 +176,7 @@ impl NarrowPhase<'_> {
         normal: Vector,
     ) -> ContactHistory {
         let ContactCandidate { node, side, edge, .. } = *candidate;
-        // Contacts of the untouched model have rested.
-        let age = if self.first { f32::INFINITY } else { 0.0 };
-        let mut history = ContactHistory { node, side, edge, age, intact: self.first, ..ContactHistory::default() };
+        let mut history = ContactHistory { node, side, edge, intact: self.first, ..ContactHistory::default() };
         if self.rule.is_deep(candidate) {
             history.offset = -candidate.gap;
         }
@@ -190,6 +188,8 @@ impl NarrowPhase<'_> {
             history.shear_force = -traction.dot(&candidate.tangent);
             history.sheared = history.shear_force / shear_stiffness;
             history.state = ContactState::Lock;
+            // It has rested under this stress.
+            (history.age, history.felt) = (f32::INFINITY, history.normal_force.max(0.0));
         }
         history
     }
