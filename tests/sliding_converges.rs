@@ -11,7 +11,7 @@ const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 40.0;
 const GRAVITY: f64 = 9.81;
 
-/// What the rock below the block does with waves.
+/// Rock below the block, by what becomes of its waves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Base {
     Rigid,

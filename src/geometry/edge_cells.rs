@@ -18,7 +18,7 @@ pub(super) struct EdgeCells {
     now: Option<(Vec<u32>, Groups)>,
 }
 
-/// What is known of the edges of a noder.
+/// Known data of the edges of a noder.
 pub(super) trait Edges {
     /// Visits every cell that an edge comes near, once each.
     fn visit(&self, edge: u32, visit: impl FnMut(usize));
