@@ -1,4 +1,5 @@
-//! Impacts without damping keep their energy: a block that drops on a corner has as much of it afterwards (Eq. 86).
+//! Impacts without damping keep their energy: a block that drops on a corner has as much of it afterwards (Eq. 86). Rock
+//! that crushes takes what it cannot carry, and gives no more back than its strength (Eq. 87).
 
 use crate::common::simulation;
 
@@ -49,4 +50,47 @@ fn a_block_that_drops_on_a_corner_keeps_its_energy() {
             assert!(impacts >= 4 && worst < 1e-4, "{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
         }
     }
+}
+
+/// Speed (m/s) at which a square of 1 m leaves the ground that it hits flat at `speed` (m/s), and its simulation then;
+/// the rock crushes at `crush` (Pa).
+fn rebound(speed: f64, stiffness: f64, crush: &str) -> (f64, enmm::model::Simulation) {
+    let law = format!("shear_stiffness = {stiffness:e}\n");
+    let case = drop(0.0, stiffness).replace(&law, &format!("{law}crush = {crush}\n"));
+    let case = case.replace(
+        "[[stage]]",
+        &format!("[[initial_velocity]]\nblock = [0.5, 1.0]\nvelocity = [0.0, {:?}]\n[[stage]]", -speed),
+    );
+    let mut simulation = simulation(&case);
+    let block = simulation.block_states().iter().position(|block| !block.fixed).expect("a block");
+    loop {
+        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+        let state = &simulation.block_states()[block];
+        if state.velocity.y > 0.0 && state.detached {
+            return (state.velocity.y, simulation);
+        }
+    }
+}
+
+#[test]
+fn a_block_leaves_crushed_rock_as_fast_as_its_strength_allows() {
+    let (mass, speed) = (2600.0, 3.0f64);
+    let hit = (speed * speed + 2.0 * 9.81 * 0.5).sqrt();
+    for (stiffness, crush) in [(1e9, 1e6), (1e9, 3e6), (1e8, 0.5e6)] {
+        let (leaves, simulation) = rebound(speed, stiffness, &format!("{crush:e}"));
+        // What is left of the spring's energy, q²/2k, less the weight that acts while it opens.
+        let expected = ((crush * crush - 2.0 * crush * mass * 9.81) / (stiffness * mass)).sqrt();
+        println!("{stiffness:e} Pa/m, {crush:e} Pa: leaves at {leaves:.4} m/s, {expected:.4} expected");
+        assert!((leaves / expected - 1.0).abs() < 0.01, "{leaves} m/s instead of {expected} m/s");
+        let counters = &simulation.state().counters;
+        // The weight works as well while the rock crushes under it, by the crushed depth, which is the loss over q.
+        let lost = 0.5 * mass * (hit * hit - leaves * leaves) / (1.0 - mass * 9.81 / crush);
+        // A step ends with what the spring gains in it on top of the strength.
+        let error = 0.005 + stiffness * hit * simulation.model().dt / crush;
+        assert!((counters.crushing / lost - 1.0).abs() < error, "{} J/m instead of {lost} J/m", counters.crushing);
+        assert!(counters.crushed > 0);
+    }
+    let (leaves, simulation) = rebound(speed, 1e9, "1e9");
+    assert!((leaves / hit - 1.0).abs() < 1e-3, "{leaves} m/s after {hit} m/s without crushing");
+    assert_eq!(simulation.state().counters.crushed, 0);
 }

@@ -36,6 +36,8 @@ pub struct EntranceRule {
     pub tie_tolerance: f64,
     /// Least tributary length, relative to the mean of the node segments: avoids a division by zero.
     pub length_floor: f64,
+    /// Least length over which rock crushes: what a corner breaks to.
+    pub crush_floor: f64,
     /// Least share of its length that a contact has beside a corner.
     pub share_floor: f64,
     /// Gap within which a contact at rest takes part in a step.
@@ -77,6 +79,7 @@ impl Default for EntranceRule {
             corner_tolerance: 1e-9,
             tie_tolerance: 1e-6,
             length_floor: 1e-9,
+            crush_floor: 0.02,
             share_floor: 1e-3,
             reach: 0.005,
             reach_steps: 8.0,

@@ -110,6 +110,17 @@ pub struct VertexEdge {
 // Large slopes have a million of them and more.
 const _: () = assert!(size_of::<VertexEdge>() <= 224);
 
+/// What a contact loses where the rock crushes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Crushed {
+    /// Closure (m) that has no force any more.
+    pub closes: f64,
+    /// Energy (J/m) of its spring.
+    pub loss: f64,
+    /// Whether it did not crush in the last step.
+    pub begins: bool,
+}
+
 /// Data that the contacts of a step share.
 #[derive(Clone, Copy)]
 pub struct ContactSetting<'a> {
@@ -123,6 +134,8 @@ pub struct ContactSetting<'a> {
     pub strength: f64,
     /// Share of the normal force of this step in that which delayed friction feels.
     pub felt_share: f64,
+    /// Least length (m) over which rock crushes.
+    pub crush_length: f64,
 }
 
 /// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
@@ -188,6 +201,23 @@ impl VertexEdge {
     #[inline(always)]
     pub fn closure(&self, setting: &ContactSetting) -> Closure {
         Closure { stiffness: self.stiffness[0], most: setting.laws[self.law].closure_max }
+    }
+
+    /// What the contact loses because the rock carries no more than its strength over the length (Eq. 87).
+    #[inline(always)]
+    pub fn crush(&self, setting: &ContactSetting) -> Crushed {
+        let strength = setting.laws[self.law].crush;
+        let (force, most) = (self.history.normal_force, strength * self.length.max(setting.crush_length));
+        if force <= most {
+            return Crushed::default();
+        }
+        let closure = self.closure(setting);
+        let [before, after] = [force, most].map(|force| closure.under(force));
+        Crushed {
+            closes: before - after,
+            loss: closure.energy(before) - closure.energy(after),
+            begins: force - self.history.trend[0] <= most,
+        }
     }
 
     /// Energy (J/m) that the springs store at the step's start.

@@ -389,6 +389,8 @@ fn check_counters(counters: &Counters) -> Fit {
         unsettled,
         deep_contacts,
         deepest_contact,
+        crushed,
+        crushing,
         penetration_max,
         dt_min,
         dt_max,
@@ -402,6 +404,7 @@ fn check_counters(counters: &Counters) -> Fit {
         ("halved", halved),
         ("unsettled", unsettled),
         ("deep_contacts", deep_contacts),
+        ("crushed", crushed),
         ("searches", searches),
         ("contacts_solved", contacts_solved),
         ("factorisations", factorisations),
@@ -409,6 +412,7 @@ fn check_counters(counters: &Counters) -> Fit {
         at_most(format_args!("counters.{field}"), value, COUNT)?;
     }
     number("counters.deepest_contact", deepest_contact, LENGTH)?;
+    number("counters.crushing", crushing, FORCE)?;
     number("counters.penetration_max", penetration_max, LENGTH)?;
     number("counters.dt_min", dt_min, TIME)?;
     number("counters.dt_max", dt_max, TIME)

@@ -200,6 +200,10 @@ pub struct Counters {
     pub deep_contacts: u64,
     /// Deepest of them (m).
     pub deepest_contact: f64,
+    /// Times that a contact began to crush the rock.
+    pub crushed: u64,
+    /// Energy (J/m) that crushed rock took; part of what contacts dissipate.
+    pub crushing: f64,
     /// Largest penetration of all steps (m).
     pub penetration_max: f64,
     /// Shortest sub-step (s).

@@ -210,7 +210,8 @@ impl Model {
         selection: &SelectionBuffers,
     ) -> ContactSetting<'a> {
         let SelectionBuffers { strength, felt_share, .. } = *selection;
-        ContactSetting { boundary: &self.boundary, frames, laws, strength, felt_share }
+        let crush_length = self.entrance.crush_floor * self.covers.mesh.size;
+        ContactSetting { boundary: &self.boundary, frames, laws, strength, felt_share, crush_length }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

@@ -179,6 +179,10 @@ pub struct ContactOutcome {
     pub friction: f64,
     /// Part of it that dilation takes to lift the faces (J/m).
     pub dilation: f64,
+    /// Energy (J/m) that crushed rock takes from springs.
+    pub crushing: f64,
+    /// Number of contacts that began to crush.
+    pub crushed: u64,
     /// Largest penetration (m) that springs resist.
     pub penetration: f64,
     /// Number of those that were seen for the first time in this step, and deep.

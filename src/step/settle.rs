@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{ContactHistory, ContactSetting, SupportRow, VertexEdge};
+use crate::contact::{ContactHistory, Crushed, ContactSetting, SupportRow, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Counters};
 
@@ -50,7 +50,9 @@ impl Kernel for Settle<'_> {
             outcome.dilation += raised * (contact.history.normal_force + 0.5 * contact.stiffness[0] * raised);
             add_depths(outcome, contact);
             *history = history_of(contact, stored, slipped);
-            (history.way, history.rest) = (way, history.rest + raised);
+            let crushed = contact.crush(&setting);
+            add_crush(outcome, &crushed);
+            (history.way, history.rest) = (way, history.rest + raised - crushed.closes);
             history.offset *= fade;
             history.felt = contact.felt_after(&setting);
             if rests {
@@ -72,6 +74,13 @@ fn add_works(
     let history = &contact.history;
     outcome.work += history.normal_force * normal + history.shear_force * shear;
     outcome.friction += (stored * slipped).abs();
+}
+
+/// Adds the energy that crushed rock takes.
+#[inline(always)]
+fn add_crush(outcome: &mut ContactOutcome, crushed: &Crushed) {
+    outcome.crushing += crushed.loss;
+    outcome.crushed += u64::from(crushed.begins);
 }
 
 /// Adds how deep a contact is, and was when it was seen for the first time.
@@ -120,6 +129,8 @@ pub fn settle_contacts(
         runs.zip(outcomes.par_iter_mut()).for_each(settle);
     }
     for outcome in outcomes {
+        counters.crushed += outcome.crushed;
+        counters.crushing += outcome.crushing;
         counters.deep_contacts += outcome.deep;
         counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
         counters.penetration_max = counters.penetration_max.max(outcome.penetration);

@@ -48,7 +48,7 @@ pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
 /// model is built with them, and `contact_boundary.rs` varies them.
 pub fn varied_rules() -> Vec<(String, EntranceRule)> {
     type Constant = fn(&mut EntranceRule) -> &mut f64;
-    let constants: [(&str, Constant); 17] = [
+    let constants: [(&str, Constant); 18] = [
         ("ledge", |rule| &mut rule.ledge),
         ("closure_most", |rule| &mut rule.closure_most),
         ("flush_sine", |rule| &mut rule.flush_sine),
@@ -62,6 +62,7 @@ pub fn varied_rules() -> Vec<(String, EntranceRule)> {
         ("corner_tolerance", |rule| &mut rule.corner_tolerance),
         ("tie_tolerance", |rule| &mut rule.tie_tolerance),
         ("length_floor", |rule| &mut rule.length_floor),
+        ("crush_floor", |rule| &mut rule.crush_floor),
         ("share_floor", |rule| &mut rule.share_floor),
         ("reach", |rule| &mut rule.reach),
         ("reach_steps", |rule| &mut rule.reach_steps),

@@ -326,6 +326,10 @@ pub struct JointLaw {
     /// Greatest closure (m; Barton–Bandis): the normal stress is kn·v/(1 − v/this) at closure v; default: linear.
     #[serde(default)]
     pub closure_max: Option<f64>,
+    /// Pressure (Pa) over its length that a contact carries before the rock crushes; default: `jcs`, and without one
+    /// the rock does not crush.
+    #[serde(default)]
+    pub crush: Option<f64>,
 }
 
 impl JointLaw {
@@ -346,6 +350,7 @@ impl JointLaw {
             jrc: None,
             jcs: None,
             closure_max: None,
+            crush: None,
         }
     }
 }

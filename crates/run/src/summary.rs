@@ -251,6 +251,10 @@ pub struct OpenCloseRecord {
     pub deep_contacts: u64,
     /// Deepest of them (m).
     pub deepest_contact: f64,
+    /// Times that a contact began to crush the rock (`crush` of its law).
+    pub crushed: u64,
+    /// Energy (J/m) that crushed rock took, part of `contact_dissipation`.
+    pub crushing: f64,
     /// Contacts judged, over all sweeps.
     pub judged: u64,
     /// Searches for near edges.
@@ -336,6 +340,8 @@ impl Summary {
                 halved: counters.halved,
                 deep_contacts: counters.deep_contacts,
                 deepest_contact: counters.deepest_contact,
+                crushed: counters.crushed,
+                crushing: counters.crushing,
                 judged: counters.contacts_solved,
                 searches: counters.searches,
             },

@@ -43,6 +43,8 @@ pub struct JointLaw {
     pub dilation_slip: f64,
     /// Greatest closure (m); infinite for a linear normal stiffness.
     pub closure_max: f64,
+    /// Strength (Pa) of the rock that contacts crush beyond; infinite for rock that does not crush.
+    pub crush: f64,
     /// Roughness of a Barton–Bandis joint; its `friction` is tan φr, and it has neither cohesion nor tension.
     pub roughness: Option<Roughness>,
 }

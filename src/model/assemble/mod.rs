@@ -264,6 +264,7 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
         dilation: tangent(law.dilation_deg),
         dilation_slip: law.dilation_slip.unwrap_or(case::DILATION_SLIP),
         closure_max: law.closure_max.unwrap_or(f64::INFINITY),
+        crush: law.crush.or(law.jcs).unwrap_or(f64::INFINITY),
         roughness: match law.kind {
             case::JointLawKind::MohrCoulomb => None,
             case::JointLawKind::BartonBandis => Some(Roughness {

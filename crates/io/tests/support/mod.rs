@@ -69,6 +69,7 @@ residual_cohesion = 0.0
 residual_tension = 0.0
 dilation_deg = 5.0
 dilation_slip = 0.01
+crush = 60e6
 
 [gravity]
 x = 0.0
