@@ -23,15 +23,15 @@ fn no_angle_decides_what_a_corner_is() {
         let simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
         let covers = &simulation.model().covers;
         let usual = Boundary::new(covers, &outlines, &EntranceRule::default());
-        assert_eq!(usual.node_point, simulation.model().boundary.node_point, "{name}");
+        assert_eq!(usual.nodes.point, simulation.model().boundary.nodes.point, "{name}");
         for (constant, of) in constants {
             for factor in [0.5, 2.0] {
                 let mut rule = EntranceRule::default();
                 *of(&mut rule) *= factor;
                 let other = Boundary::new(covers, &outlines, &rule);
-                assert_eq!(other.side_previous, usual.side_previous, "{name}: sides with {factor} {constant}");
+                assert_eq!(other.sides.previous, usual.sides.previous, "{name}: sides with {factor} {constant}");
                 assert_eq!(other.node_count(), usual.node_count(), "{name}: nodes with {factor} {constant}");
-                let place = |boundary: &Boundary, node: usize| boundary.reference[boundary.node_point[node]];
+                let place = |boundary: &Boundary, node: usize| boundary.reference[boundary.nodes.point[node]];
                 let moved = (0..usual.node_count()).map(|k| (place(&other, k) - place(&usual, k)).norm());
                 let most = if constant == "node_snap" { rule.node_snap.max(0.1) * covers.mesh.size } else { 0.0 };
                 assert!(moved.fold(0.0, f64::max) <= most, "{name}: nodes with {factor} {constant}");

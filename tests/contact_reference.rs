@@ -91,7 +91,13 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
     let mut solver = OpenClose::default();
     solver.prepare(masses, &[], &[]);
     let near = (&state.neighbours.pairs[..], &workspace.selection.near_sides);
-    solver.arrange(&model.boundary, near, masses, &model.covers.block_covers, &workspace.selection.accepted.near_side);
+    solver.arrange(
+        &model.boundary,
+        near,
+        masses,
+        &model.covers.block_ranges.covers,
+        &workspace.selection.accepted.near_side,
+    );
     let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
     let report = solver.run(masses, &options, &approach, &mut workspace.contacts, &mut others);
     assert!(report.unsettled <= SETTLED, "the solver has not settled: {report:?}");

@@ -73,7 +73,7 @@ fn a_corner_bears_until_the_corners_part() {
         let frames = &simulation.workspace().frames;
         let lowered = frames.position(held).y - frames.position(sliding).y;
         let boundary = &simulation.model().boundary;
-        let is_corner = |contact: &&VertexEdge| boundary.node_point[contact.history.node] == held;
+        let is_corner = |contact: &&VertexEdge| boundary.nodes.point[contact.history.node] == held;
         let contact = simulation.workspace().contacts.iter().find(is_corner);
         let contact = contact.unwrap_or_else(|| panic!("the corner was let go, {lowered} m above the other one"));
         let closure = contact.penetration();

@@ -31,7 +31,7 @@ fn distance(dt_max: f64, velocity: f64) -> f64 {
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
     let block = simulation.block_states().iter().position(|block| !block.fixed).expect("a free block");
     let start = simulation.block_states()[block].displacement.x;
-    let first = &simulation.model().covers.block_covers;
+    let first = &simulation.model().covers.block_ranges.covers;
     let covers = first[block] as usize..first[block + 1] as usize;
     let mut state = simulation.state().clone();
     state.velocity[covers].iter_mut().for_each(|v| v.x += velocity);

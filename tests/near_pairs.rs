@@ -24,8 +24,8 @@ fn all_against_all(view: &SearchView) -> Vec<(NodeId, SideId, EdgeId)> {
     let counts = |point: EdgeId| !view.removed[boundary.block[point]];
     let edges: Vec<_> = boundary.edges().filter(|&edge| counts(edge)).collect();
     let mut pairs = Vec::new();
-    for node in NodeId::all(boundary.node_count()).filter(|&node| counts(boundary.node_point[node])) {
-        let p = view.frames.position(boundary.node_point[node]);
+    for node in NodeId::all(boundary.node_count()).filter(|&node| counts(boundary.nodes.point[node])) {
+        let p = view.frames.position(boundary.nodes.point[node]);
         for &edge in &edges {
             let (a, b) = (view.frames.position(edge), view.frames.position(boundary.after(edge)));
             if segment::distance(p, a, b) < view.cutoff && may_meet(boundary, view.fixed, node, edge) {

@@ -80,7 +80,7 @@ impl Stack {
         simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
         let base = simulation.block_states().iter().position(|block| block.area > 100.0).unwrap_or(0);
         let start = simulation.block_states();
-        let first = &simulation.model().covers.block_covers;
+        let first = &simulation.model().covers.block_ranges.covers;
         let mut state = simulation.state().clone();
         for block in (0..start.len()).filter(|&block| block != base) {
             let covers = first[block] as usize..first[block + 1] as usize;

@@ -56,24 +56,38 @@ pub struct Boundary {
     pub trace: Vec<Option<TraceId>>,
     /// Whether both sides of edge `k` belong to one block.
     pub partial: Vec<bool>,
-    /// Boundary point of each node.
-    pub node_point: Vec<EdgeId>,
-    /// Whether each node is the convex start of a side.
-    pub node_convex: Vec<bool>,
-    /// Edge that ends at each node: the last point before it on its loop.
-    pub node_edge_before: Vec<EdgeId>,
-    /// Node before each node on its loop.
-    pub node_previous: Vec<NodeId>,
-    /// Node after each node on its loop.
-    pub node_next: Vec<NodeId>,
-    /// Side before each side on its loop.
-    pub side_previous: Vec<SideId>,
-    /// Side after each side on its loop.
-    pub side_next: Vec<SideId>,
-    /// Both ends of each side, start and finish.
-    pub side_ends: Vec<[SideEnd; 2]>,
+    /// Its nodes.
+    pub nodes: Nodes,
+    /// Its sides.
+    pub sides: Sides,
     /// Thickness of each block: twice its area over its perimeter (m).
     pub block_thickness: Vec<f64>,
+}
+
+/// Nodes of the boundary, by [`NodeId`].
+#[derive(Debug, Clone, Default)]
+pub struct Nodes {
+    /// Boundary point of each node.
+    pub point: Vec<EdgeId>,
+    /// Whether each node is the convex start of a side.
+    pub convex: Vec<bool>,
+    /// Edge that ends at each node: the last point before it on its loop.
+    pub edge_before: Vec<EdgeId>,
+    /// Node before each node on its loop.
+    pub previous: Vec<NodeId>,
+    /// Node after each node on its loop.
+    pub next: Vec<NodeId>,
+}
+
+/// Sides of the boundary, by [`SideId`].
+#[derive(Debug, Clone, Default)]
+pub struct Sides {
+    /// Side before each side on its loop.
+    pub previous: Vec<SideId>,
+    /// Side after each side on its loop.
+    pub next: Vec<SideId>,
+    /// Both ends of each side, start and finish.
+    pub ends: Vec<[SideEnd; 2]>,
 }
 
 /// One end of a side.
@@ -128,7 +142,7 @@ impl Boundary {
 
     /// Number of nodes.
     pub fn node_count(&self) -> usize {
-        self.node_point.len()
+        self.nodes.point.len()
     }
 
     /// A cover field at point `k`.
@@ -144,7 +158,7 @@ impl Boundary {
 
     /// Joint trace of a node: that of the edge after it, or else of the edge before it.
     pub fn node_trace(&self, node: NodeId) -> Option<TraceId> {
-        self.trace[self.node_point[node]].or(self.trace[self.node_edge_before[node]])
+        self.trace[self.nodes.point[node]].or(self.trace[self.nodes.edge_before[node]])
     }
 
     /// Covers that may carry positions on an edge: its own and those of both of its ends.
@@ -154,7 +168,7 @@ impl Boundary {
 
     /// Edges before and after a node on its loop.
     pub fn edges_of_node(&self, node: NodeId) -> [EdgeId; 2] {
-        [self.node_edge_before[node], self.node_point[node]]
+        [self.nodes.edge_before[node], self.nodes.point[node]]
     }
 
     /// Sides before and after a node: those that lie towards the start and the finish of a side that it faces.
@@ -170,7 +184,7 @@ impl Boundary {
 
     /// Side that ends at or passes through a node.
     pub fn side_of_node_before(&self, node: NodeId) -> SideId {
-        self.side[self.node_edge_before[node]]
+        self.side[self.nodes.edge_before[node]]
     }
 
     fn measure_blocks(&mut self, covers: &Covers) {
@@ -190,19 +204,19 @@ impl Boundary {
         block: BlockId,
         stations: &[Station],
     ) {
-        let (first, first_node, first_side) = (self.len(), self.node_count(), self.side_ends.len());
+        let (first, first_node, first_side) = (self.len(), self.node_count(), self.sides.ends.len());
         let last = first + stations.len() - 1;
         for (k, station) in stations.iter().enumerate() {
             let edge = EdgeId::new(first + k);
             if station.corner {
                 let corner = if station.turn > 0.0 { Corner::Convex } else { Corner::Reflex };
                 let [start, end] = [edge, edge].map(|edge| SideEnd { edge, round: edge, point: edge, corner });
-                self.side_ends.push([start, end]);
+                self.sides.ends.push([start, end]);
             }
             if station.node {
-                self.node_point.push(edge);
-                self.node_convex.push(station.corner && station.turn > 0.0);
-                self.node_edge_before.push(EdgeId::new(if k == 0 { last } else { first + k - 1 }));
+                self.nodes.point.push(edge);
+                self.nodes.convex.push(station.corner && station.turn > 0.0);
+                self.nodes.edge_before.push(EdgeId::new(if k == 0 { last } else { first + k - 1 }));
             }
             let before = &stations[if k == 0 { stations.len() } else { k } - 1];
             let [before, after] = [before, station].map(|station| station.piece.element);
@@ -213,20 +227,20 @@ impl Boundary {
             self.reference.push(station.piece.a);
             self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));
             self.block.push(block);
-            self.side.push(SideId::new(self.side_ends.len() - 1));
+            self.side.push(SideId::new(self.sides.ends.len() - 1));
             self.node_before.push(NodeId::new(self.node_count() - 1));
             self.trace.push(station.piece.trace);
             self.partial.push(station.piece.partial);
-            if let Some([_, end]) = self.side_ends.last_mut() {
+            if let Some([_, end]) = self.sides.ends.last_mut() {
                 end.edge = edge;
             }
         }
-        ring(&mut self.node_previous, &mut self.node_next, first_node..self.node_point.len(), NodeId::new);
-        ring(&mut self.side_previous, &mut self.side_next, first_side..self.side_ends.len(), SideId::new);
-        for side in first_side..self.side_ends.len() {
-            let (previous, next) = (self.side_previous[side], self.side_next[side]);
-            let (last_before, first_after) = (self.side_ends[previous][1].edge, self.side_ends[next][0]);
-            let [start, end] = &mut self.side_ends[side];
+        ring(&mut self.nodes.previous, &mut self.nodes.next, first_node..self.nodes.point.len(), NodeId::new);
+        ring(&mut self.sides.previous, &mut self.sides.next, first_side..self.sides.ends.len(), SideId::new);
+        for side in first_side..self.sides.ends.len() {
+            let (previous, next) = (self.sides.previous[side], self.sides.next[side]);
+            let (last_before, first_after) = (self.sides.ends[previous][1].edge, self.sides.ends[next][0]);
+            let [start, end] = &mut self.sides.ends[side];
             start.round = last_before;
             *end = SideEnd { edge: end.edge, round: first_after.edge, point: first_after.edge, ..first_after };
         }

@@ -105,7 +105,7 @@ impl Frames {
     /// Updates all edges and nodes from the current positions of the boundary points (m).
     pub fn update(&mut self, boundary: &Boundary, position: impl Fn(EdgeId) -> Point + Sync, serial: bool) {
         let Self { edges, nodes } = self;
-        let Boundary { next, node_point, node_previous, node_next, .. } = boundary;
+        let Boundary { next, nodes: of, .. } = boundary;
         edges.resize(next.len(), [Pair::zeros(); EDGE_PAIRS]);
         if serial {
             fill(edges, 0, next, &position);
@@ -115,14 +115,14 @@ impl Frames {
         }
         let at = |point: EdgeId| edges[point.index()][0];
         let node = |((point, previous), next): ((&EdgeId, &NodeId), &NodeId)| {
-            let to = [*previous, *next].map(|q| at(node_point[q]) - at(*point));
+            let to = [*previous, *next].map(|q| at(of.point[q]) - at(*point));
             [at(*point), to[0], to[1], Pair::new(to[0].norm(), to[1].norm())]
         };
         if serial {
             nodes.clear();
-            nodes.extend(node_point.iter().zip(node_previous).zip(node_next).map(node));
+            nodes.extend(of.point.iter().zip(&of.previous).zip(&of.next).map(node));
         } else {
-            let all = node_point.par_iter().zip(node_previous).zip(node_next).with_min_len(GRAIN);
+            let all = of.point.par_iter().zip(&of.previous).zip(&of.next).with_min_len(GRAIN);
             all.map(node).collect_into_vec(nodes);
         }
     }

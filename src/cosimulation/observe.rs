@@ -201,7 +201,7 @@ impl Cosimulation {
 
 /// Blocks of node and edge of a contact.
 fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [BlockId; 2] {
-    let node = boundary.node_point[contact.node];
+    let node = boundary.nodes.point[contact.node];
     [boundary.block[node], boundary.block[contact.edge]]
 }
 

@@ -25,30 +25,56 @@ pub struct Covers {
     pub element_polar: Vec<f64>,
     /// Block of each element.
     pub element_block: Vec<BlockId>,
-    /// First point of each element's polygon in `polygon_points`, and their number at the end.
-    pub polygon_start: Vec<u32>,
-    /// Corners of the elements (m), counter-clockwise; holes are joined by bridges.
-    pub polygon_points: Vec<Point>,
+    /// Polygons of the elements.
+    pub polygons: Polygons,
     /// Lattice node of each physical cover.
     pub star: Vec<[i32; 2]>,
     /// Position of that node (m).
     pub star_position: Vec<Point>,
     /// Block of each physical cover.
     pub cover_block: Vec<BlockId>,
-    /// First element of each block, and the number of elements at the end.
-    pub block_elements: Vec<u32>,
-    /// First physical cover of each block, and the number of covers at the end.
-    pub block_covers: Vec<u32>,
+    /// Elements and physical covers of the blocks.
+    pub block_ranges: BlockRanges,
     /// Element whose covers carry what acts on the boundary of each element: itself, or a heavier one beside a sliver.
     pub host: Vec<ElementId>,
     /// Elements in the order of their lattice triangles, row by row, for finding them by position.
     pub(super) by_triangle: Vec<ElementId>,
 }
 
+/// Polygons of the elements, one after the other.
+#[derive(Debug, Clone)]
+pub struct Polygons {
+    /// First point of each element's polygon, and the number of points at the end.
+    pub start: Vec<u32>,
+    /// Corners (m), counter-clockwise; holes are joined by bridges.
+    pub points: Vec<Point>,
+}
+
+impl Polygons {
+    /// Ends the polygon of the points that were pushed last; the first call begins the first one.
+    pub(super) fn close(&mut self) {
+        self.start.push(self.points.len() as u32);
+    }
+
+    /// Corners of a polygon.
+    pub(super) fn of(&self, k: usize) -> &[Point] {
+        &self.points[self.start[k] as usize..self.start[k + 1] as usize]
+    }
+}
+
+/// Elements and physical covers of the blocks, of which each has a run.
+#[derive(Debug, Clone)]
+pub struct BlockRanges {
+    /// First element of each block, and the number of elements at the end.
+    pub elements: Vec<u32>,
+    /// First physical cover of each block, and the number of covers at the end.
+    pub covers: Vec<u32>,
+}
+
 impl Covers {
     /// Number of blocks.
     pub fn block_count(&self) -> usize {
-        self.block_elements.len() - 1
+        self.block_ranges.elements.len() - 1
     }
 
     /// All blocks.
@@ -73,17 +99,17 @@ impl Covers {
 
     /// Elements of a block, by their indices.
     pub fn elements_of(&self, block: BlockId) -> std::ops::Range<usize> {
-        self.block_elements[block] as usize..self.block_elements[block.index() + 1] as usize
+        self.block_ranges.elements[block] as usize..self.block_ranges.elements[block.index() + 1] as usize
     }
 
     /// Physical covers of a block, by their indices.
     pub fn covers_of(&self, block: BlockId) -> std::ops::Range<usize> {
-        self.block_covers[block] as usize..self.block_covers[block.index() + 1] as usize
+        self.block_ranges.covers[block] as usize..self.block_ranges.covers[block.index() + 1] as usize
     }
 
     /// Reference polygon of an element.
     pub fn polygon(&self, element: ElementId) -> &[Point] {
-        &self.polygon_points[self.polygon_start[element] as usize..self.polygon_start[element.index() + 1] as usize]
+        self.polygons.of(element.index())
     }
 
     /// Weights of an element's covers at a reference point (Eq. 1).

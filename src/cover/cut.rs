@@ -2,7 +2,7 @@
 
 use crate::geometry::{Arrangement, FaceId, HalfEdgeId, Point, Vector, id, polygon};
 
-use super::covers::Covers;
+use super::covers::{BlockRanges, Covers, Polygons};
 use super::host::hosts;
 use super::mesh::{RegularMesh, Triangle};
 use super::order::{self, hilbert};
@@ -78,8 +78,7 @@ struct RawElements {
     area: Vec<f64>,
     centroid: Vec<Point>,
     polar: Vec<f64>,
-    polygon_start: Vec<u32>,
-    polygon_points: Vec<Point>,
+    polygons: Polygons,
 }
 
 impl RawElements {
@@ -93,8 +92,7 @@ impl RawElements {
             area: Vec::with_capacity(face.len()),
             centroid: Vec::with_capacity(face.len()),
             polar: Vec::with_capacity(face.len()),
-            polygon_start: Vec::with_capacity(face.len() + 1),
-            polygon_points: Vec::new(),
+            polygons: Polygons { start: Vec::with_capacity(face.len() + 1), points: Vec::new() },
             face: Vec::new(),
             of_face: Vec::new(),
         };
@@ -103,7 +101,7 @@ impl RawElements {
             let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
             raw.integrate(&loops);
         }
-        raw.polygon_start.push(raw.polygon_points.len() as u32);
+        raw.polygons.close();
         raw.face = face;
         raw.of_face = of_face;
         raw
@@ -120,12 +118,12 @@ impl RawElements {
         self.area.push(total.area);
         self.centroid.push(base + centroid);
         self.polar.push(total.second[0] + total.second[1] - total.area * centroid.norm_squared());
-        self.polygon_start.push(self.polygon_points.len() as u32);
-        self.polygon_points.extend(bridge(loops));
+        self.polygons.close();
+        self.polygons.points.extend(bridge(loops));
     }
 
     fn polygon(&self, k: RawId) -> &[Point] {
-        &self.polygon_points[self.polygon_start[k] as usize..self.polygon_start[k.index() + 1] as usize]
+        self.polygons.of(k.index())
     }
 }
 
@@ -233,12 +231,12 @@ fn order_blocks(raw: &RawElements, joined: &Joined) -> BlockOrder {
 }
 
 fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -> Covers {
-    let mut polygon_start = Vec::with_capacity(blocks.order.len() + 1);
-    let mut polygon_points = Vec::with_capacity(raw.polygon_points.len());
-    polygon_start.push(0);
+    let (start, points) = (Vec::with_capacity(blocks.order.len() + 1), Vec::with_capacity(raw.polygons.points.len()));
+    let mut polygons = Polygons { start, points };
+    polygons.close();
     for &k in &blocks.order {
-        polygon_points.extend_from_slice(raw.polygon(k));
-        polygon_start.push(polygon_points.len() as u32);
+        polygons.points.extend_from_slice(raw.polygon(k));
+        polygons.close();
     }
     let element_block: Vec<BlockId> = blocks.order.iter().map(|&k| blocks.block[k]).collect();
     Covers {
@@ -249,14 +247,12 @@ fn lay_out_elements(mesh: RegularMesh, raw: &RawElements, blocks: &BlockOrder) -
         element_area: blocks.order.iter().map(|&k| raw.area[k]).collect(),
         element_centroid: blocks.order.iter().map(|&k| raw.centroid[k]).collect(),
         element_polar: blocks.order.iter().map(|&k| raw.polar[k]).collect(),
-        block_elements: starts(&element_block, blocks.count),
+        block_ranges: BlockRanges { elements: starts(&element_block, blocks.count), covers: Vec::new() },
         element_block,
-        polygon_start,
-        polygon_points,
+        polygons,
         star: Vec::new(),
         star_position: Vec::new(),
         cover_block: Vec::new(),
-        block_covers: Vec::new(),
         host: Vec::new(),
         by_triangle: Vec::new(),
     }
@@ -282,7 +278,7 @@ fn lay_out_covers(covers: &mut Covers, raw: &RawElements, joined: &Joined, block
         covers.star_position.push(covers.mesh.node(star_of(s)));
         covers.cover_block.push(blocks.block[s.element()]);
     }
-    covers.block_covers = starts(&covers.cover_block, blocks.count);
+    covers.block_ranges.covers = starts(&covers.cover_block, blocks.count);
     joined.slot_root.iter().map(|&r| cover_of_root[r]).collect()
 }
 

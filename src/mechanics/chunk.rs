@@ -153,8 +153,8 @@ impl Chunks {
                 first += 1;
                 continue;
             }
-            let start = covers.block_covers[first] as usize;
-            let fits = |b: &usize| covers.block_covers[b + 1] as usize - start <= PATCH;
+            let start = covers.block_ranges.covers[first] as usize;
+            let fits = |b: &usize| covers.block_ranges.covers[b + 1] as usize - start <= PATCH;
             let end = first + 1 + (first + 1..count).take_while(fits).count();
             cutter.push_blocks(first..end);
             first = end;

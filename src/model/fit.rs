@@ -238,7 +238,7 @@ impl Simulation {
                 intact: _,
             } = contact;
             index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
-            index(format_args!("contacts[{k}].side"), side.number(), boundary.side_ends.len())?;
+            index(format_args!("contacts[{k}].side"), side.number(), boundary.sides.ends.len())?;
             index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
             between(format_args!("contacts[{k}].age"), age.into(), 0.0, f64::INFINITY)?;
             between(format_args!("contacts[{k}].kept_stiffness"), kept_stiffness.into(), 0.0, FORCE)?;
@@ -265,7 +265,7 @@ impl Simulation {
         let boundary = &self.model().boundary;
         for (k, pair) in neighbours.pairs.iter().enumerate() {
             index(format_args!("neighbours.pairs[{k}].node"), pair.node.number(), boundary.node_count())?;
-            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.side_ends.len())?;
+            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.sides.ends.len())?;
             index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
         }
         in_order("neighbours.pairs", "by node and side", neighbours.pairs.is_sorted())?;

@@ -92,7 +92,7 @@ impl Simulation {
         let mut states: Vec<BlockState> = self.model().covers.blocks().map(|block| self.motion_of(block)).collect();
         let boundary = &self.model().boundary;
         for contact in &self.state().contacts {
-            let node = boundary.node_point[contact.node];
+            let node = boundary.nodes.point[contact.node];
             let depth = penetration(self.model(), &positions, contact);
             for block in [boundary.block[node], boundary.block[contact.edge]] {
                 let state = &mut states[block];
@@ -227,6 +227,6 @@ fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
 fn penetration(model: &Model, positions: &[Point], contact: &ContactHistory) -> f64 {
     let edge = contact.edge;
     let (a, b) = (positions[edge], positions[model.boundary.after(edge)]);
-    let node = positions[model.boundary.node_point[contact.node]];
+    let node = positions[model.boundary.nodes.point[contact.node]];
     ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

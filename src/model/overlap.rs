@@ -87,7 +87,7 @@ impl Audit {
             points[block].push(k);
             cracked[block] |= boundary.partial[k];
         }
-        let is_node = |k: &EdgeId| boundary.node_point[boundary.node_before[*k]] == *k;
+        let is_node = |k: &EdgeId| boundary.nodes.point[boundary.node_before[*k]] == *k;
         let nodes = points.iter().map(|points| points.iter().copied().filter(is_node).collect()).collect();
         let triangles = (0..blocks).map(|b| if cracked[b] { Vec::new() } else { cut(boundary, &points[b]) }).collect();
         Self { points, nodes, triangles, cracked }
@@ -113,7 +113,7 @@ impl Audit {
     pub fn overlaps(&self, simulation: &Simulation) -> Vec<Overlap> {
         let boundary = &simulation.model().boundary;
         let near = simulation.state().neighbours.pairs.iter();
-        let blocks = near.map(|c| [boundary.node_point[c.node], c.edge].map(|k| boundary.block[k]));
+        let blocks = near.map(|c| [boundary.nodes.point[c.node], c.edge].map(|k| boundary.block[k]));
         let mut pairs: Vec<_> = blocks.filter(|[a, b]| a != b).map(in_order).collect();
         pairs.sort_unstable();
         pairs.dedup();
@@ -200,7 +200,7 @@ fn suspect(simulation: &Simulation, suspects: &mut Vec<Suspect>, least: f64) {
     // Nearest of all edges of the block that are near. Where it is nearest by an end, the point is inside the block
     // only if it lies behind the neighbour at that end, too.
     let behind = |run: &[NearPair]| {
-        let point = boundary.node_point[run[0].node];
+        let point = boundary.nodes.point[run[0].node];
         let place = frames.position(point);
         let distance = |edge: EdgeId| segment::distance(place, ends(edge)[0], ends(edge)[1]);
         let measured = run.iter().map(|pair| (distance(pair.edge), pair.edge));

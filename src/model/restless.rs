@@ -73,7 +73,7 @@ impl Simulation {
         let (place, velocity, spin, _) = block_motion(model, self.state(), &self.workspace().mass_matrix, block);
         let area = model.covers.block_area(block);
         let touches = |contact: &&VertexEdge| {
-            [boundary.node_point[contact.history.node], contact.history.edge]
+            [boundary.nodes.point[contact.history.node], contact.history.edge]
                 .iter()
                 .any(|&point| boundary.block[point] == block)
         };

@@ -41,7 +41,7 @@ impl Model {
         let ports = self.ports.iter().map(|port| port.edges.bytes()).sum::<usize>();
         vec![
             ("elements", elements(&self.covers) + self.element_rock.bytes()),
-            ("polygons of elements", sum(&[&self.covers.polygon_start, &self.covers.polygon_points])),
+            ("polygons of elements", sum(&[&self.covers.polygons.start, &self.covers.polygons.points])),
             ("patches", self.chunks.bytes()),
             ("covers", covers(&self.covers)),
             ("boundary", boundary(&self.boundary)),
@@ -121,7 +121,7 @@ impl Workspace {
         vec![
             ("fields on covers", sum(&fields)),
             ("masses", mass_matrix(&self.mass_matrix)),
-            ("blocks", sum(&[&motion.blocks, &motion.start, &self.sums, &sweep.push, &motion.turns, &self.touching])),
+            ("blocks", sum(&[&motion.blocks, &motion.start, &self.sums, &sweep.push, &motion.turns, &motion.touching])),
             ("places", self.frames.bytes()),
             ("near sides", selection.near_sides.bytes()),
             ("accepted pairs", accepted.bytes() + cache.bytes() + penetrating.bytes() + faces.of_side.bytes()),
@@ -138,24 +138,23 @@ impl Workspace {
 
 fn elements(covers: &Covers) -> usize {
     let Covers { element_covers, element_triangle, element_area, element_centroid, element_polar, .. } = covers;
-    let Covers { element_block, block_elements, host, .. } = covers;
+    let Covers { element_block, block_ranges, host, .. } = covers;
     sum(&[element_covers, element_triangle, element_area, element_centroid, element_polar])
-        + sum(&[element_block, block_elements, host])
+        + sum(&[element_block, &block_ranges.elements, host])
         + covers.index_bytes()
 }
 
 fn covers(covers: &Covers) -> usize {
-    sum(&[&covers.star, &covers.star_position, &covers.cover_block, &covers.block_covers])
+    sum(&[&covers.star, &covers.star_position, &covers.cover_block, &covers.block_ranges.covers])
 }
 
 fn boundary(boundary: &Boundary) -> usize {
     let Boundary { covers, edge_covers, weights, reference, next, block, side, node_before, trace, partial, .. } =
         boundary;
-    let Boundary { node_point, node_convex, node_edge_before, node_previous, node_next, .. } = boundary;
-    let Boundary { side_previous, side_next, side_ends, block_thickness, .. } = boundary;
+    let Boundary { nodes, sides, block_thickness, .. } = boundary;
     sum(&[covers, edge_covers, weights, reference, next, block, side, node_before, trace, partial])
-        + sum(&[node_point, node_convex, node_edge_before, node_previous, node_next])
-        + sum(&[side_previous, side_next, side_ends, block_thickness])
+        + sum(&[&nodes.point, &nodes.convex, &nodes.edge_before, &nodes.previous, &nodes.next])
+        + sum(&[&sides.previous, &sides.next, &sides.ends, block_thickness])
 }
 
 /// Bytes that the buffers share with the model.

@@ -37,8 +37,6 @@ pub struct Workspace {
     pub sweep: SweepBuffers,
     /// Outcomes of the contacts in this step, by run.
     pub outcomes: Vec<ContactOutcome>,
-    /// Whether each block touches another.
-    pub touching: Vec<bool>,
     /// Pairs of blocks that may overlap.
     pub suspects: Vec<Suspect>,
     /// Buffers of an integrator other than the explicit one.
@@ -75,6 +73,8 @@ pub struct MotionBuffers {
     pub movable: Vec<bool>,
     /// Whether contacts, supports or bolts may read the predicted velocity of each cover: only these have it whole.
     pub exposed: Vec<bool>,
+    /// Whether each block touches another.
+    pub touching: Vec<bool>,
     /// How each block turns at the end of the step; none for one that does not.
     pub turns: Vec<Option<Turn>>,
     /// Velocities of free-field columns after this step (m/s).

@@ -12,11 +12,11 @@ const SLIP_MIN: f64 = 1e-6;
 
 /// Notes what the step that ends at `time` (s) has brought; static stages bring nothing, since their path is no motion.
 pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Workspace, time: f64) {
-    let touching = &mut workspace.touching;
+    let touching = &mut workspace.motion.touching;
     touching.clear();
     touching.resize(model.covers.block_count(), false);
     for contact in &state.contacts {
-        let node = model.boundary.node_point[contact.node];
+        let node = model.boundary.nodes.point[contact.node];
         touching[model.boundary.block[node]] = true;
         touching[model.boundary.block[contact.edge]] = true;
     }
@@ -25,14 +25,14 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
         note_slipped(model, state, time);
         note_failed(model, state, workspace, time);
     }
-    state.events.touching.copy_from_slice(&workspace.touching);
+    state.events.touching.copy_from_slice(&workspace.motion.touching);
 }
 
 fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
     let events = &mut state.events;
-    for block in BlockId::all(workspace.touching.len()) {
+    for block in BlockId::all(workspace.motion.touching.len()) {
         let free = !workspace.mass_matrix.fixed[block] && !state.removed[block];
-        let left = events.touching[block] && !workspace.touching[block];
+        let left = events.touching[block] && !workspace.motion.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
             events.list.push(Event::of(EventKind::Detached, block.number(), time));

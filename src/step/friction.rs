@@ -36,7 +36,7 @@ pub fn delay_friction(
     }
     let boundary = &model.boundary;
     let block = |contact: &VertexEdge| boundary.block[contact.point];
-    selection.faces.of_side.resize(boundary.side_ends.len(), 0);
+    selection.faces.of_side.resize(boundary.sides.ends.len(), 0);
     for contacts in contacts.chunk_by_mut(|a, b| block(a) == block(b)) {
         find_faces(contacts, delay, &mut selection.faces);
         for contact in contacts {

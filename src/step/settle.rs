@@ -3,7 +3,7 @@
 use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
-use crate::contact::{ContactHistory, Crushed, ContactSetting, SupportRow, VertexEdge};
+use crate::contact::{ContactHistory, ContactSetting, Crushed, SupportRow, VertexEdge};
 use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Counters};
 

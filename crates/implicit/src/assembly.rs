@@ -46,7 +46,7 @@ impl ImplicitStep<'_> {
             PAIRS[3..].iter().for_each(|&[a, b]| couple(ids[a], ids[b]));
         }
         for near in &self.state.neighbours.pairs {
-            let node = boundary.covers[boundary.node_point[near.node]];
+            let node = boundary.covers[boundary.nodes.point[near.node]];
             for a in node {
                 boundary.covers_on(near.edge).for_each(|b| couple(a, b));
             }

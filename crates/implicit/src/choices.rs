@@ -52,7 +52,7 @@ impl Implicit {
     /// The choices of a case, and the consistent masses of its elements.
     pub fn new(case: &Case, covers: &Covers, rocks: &[Elasticity], element_rock: &[u16]) -> Self {
         let solver = &case.solver;
-        let (low, high) = polygon::bounds(&covers.polygon_points);
+        let (low, high) = polygon::bounds(&covers.polygons.points);
         let ratio = solver.displacement_ratio * 0.5 * (high - low).y;
         let mass = covers.elements().map(|e| {
             let centroid = covers.element_centroid[e];

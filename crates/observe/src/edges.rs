@@ -39,11 +39,11 @@ impl<'a> EdgeStates<'a> {
         }
         let node = contact.history.node;
         self.mark(boundary.node_before[contact.history.edge], state);
-        if self.lies_flat(boundary.node_point[node], contact) {
+        if self.lies_flat(boundary.nodes.point[node], contact) {
             self.mark(node, state);
         }
-        if self.lies_flat(boundary.node_edge_before[node], contact) {
-            self.mark(boundary.node_previous[node], state);
+        if self.lies_flat(boundary.nodes.edge_before[node], contact) {
+            self.mark(boundary.nodes.previous[node], state);
         }
     }
 
@@ -56,8 +56,8 @@ impl<'a> EdgeStates<'a> {
     /// Marks the edges from a node to the next one.
     fn mark(&mut self, node: NodeId, state: ContactState) {
         let boundary = self.boundary;
-        let mut edge = boundary.node_point[node];
-        let end = boundary.node_point[boundary.node_next[node]];
+        let mut edge = boundary.nodes.point[node];
+        let end = boundary.nodes.point[boundary.nodes.next[node]];
         loop {
             if self.found[edge] != Some(ContactState::Slip) {
                 self.found[edge] = Some(state);

@@ -202,7 +202,7 @@ impl Joints {
         match self.face_between(boundary, history.edge, history.node) {
             Some((face, is_first)) => add(&mut forces.faces[face], if is_first { -1.0 } else { 1.0 }),
             None => {
-                let other = boundary.block[boundary.node_point[history.node]];
+                let other = boundary.block[boundary.nodes.point[history.node]];
                 let key = (boundary.node_before[history.edge], other.number());
                 let touch = forces.touched.entry(key).or_default();
                 add(&mut touch.load, -1.0);
@@ -214,7 +214,7 @@ impl Joints {
 
     /// The face of a contact between a node and an edge, and whether the edge is on the first block of the face.
     fn face_between(&self, boundary: &Boundary, edge: EdgeId, node: NodeId) -> Option<(usize, bool)> {
-        let other = boundary.block[boundary.node_point[node]];
+        let other = boundary.block[boundary.nodes.point[node]];
         let facing = |edge: EdgeId, block| {
             self.on(edge).iter().find_map(|&piece| {
                 let Facing { edges, face, .. } = self.pieces[piece as usize];
@@ -311,7 +311,7 @@ fn seen(simulation: &Simulation, positions: &[Point], piece: &Facing) -> JointPi
 /// The stretch between two nodes that another block touches.
 fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u32), touch: Touch) -> JointPiece {
     let boundary = &simulation.model().boundary;
-    let [from, to] = [node, boundary.node_next[node]].map(|node| boundary.node_point[node]);
+    let [from, to] = [node, boundary.nodes.next[node]].map(|node| boundary.nodes.point[node]);
     let ends = [positions[from], positions[to]];
     let length = (ends[1] - ends[0]).norm().max(f64::MIN_POSITIVE);
     JointPiece {

@@ -34,8 +34,8 @@ pub fn node_loops(simulation: &Simulation) -> Vec<Vec<Vec<EdgeId>>> {
         let mut node = NodeId::new(first);
         let mut points = Vec::new();
         loop {
-            points.push(boundary.node_point[node]);
-            node = boundary.node_next[node];
+            points.push(boundary.nodes.point[node]);
+            node = boundary.nodes.next[node];
             if node.index() == first {
                 break;
             }

@@ -86,7 +86,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         stars: stars_by_cover_count.values().sum(),
         stars_by_cover_count,
         cover_masses: sorted(model.mass_matrix.row_sum.to_vec()),
-        vertices: distinct(&covers.polygon_points),
+        vertices: distinct(&covers.polygons.points),
         boundary_edges: built.boundary_pieces,
         initial_contacts: workspace.contacts.len(),
         critical_dt: model.critical_dt,

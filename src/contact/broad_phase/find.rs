@@ -68,7 +68,7 @@ impl Find<'_> {
     fn next_few(&mut self) -> (Range<usize>, BlockId, Span) {
         let (boundary, frames) = (self.view.boundary, self.view.frames);
         let Range { start, end } = self.nodes;
-        let point = |node: usize| boundary.node_point[node];
+        let point = |node: usize| boundary.nodes.point[node];
         let block = boundary.block[point(start)];
         let others = (start + 1..end.min(start + FEW)).take_while(|&node| boundary.block[point(node)] == block);
         let (mut span, mut last) = (Span::at(frames.position(point(start))), start);
@@ -113,7 +113,7 @@ impl Find<'_> {
     fn near_edges<L: Lanes>(&mut self, within: &Within<L>, node: NodeId, block: BlockId) {
         let (boundary, grid) = (self.view.boundary, self.grid);
         let Run { near_pairs, around, boxes, near } = &mut *self.run;
-        let p = self.view.frames.position(boundary.node_point[node]);
+        let p = self.view.frames.position(boundary.nodes.point[node]);
         let mut marks = Marks::default();
         near.clear();
         let mut list = |eight: u32, lane: usize| near.push(around[eight as usize * LANES + lane]);
@@ -155,7 +155,7 @@ fn sort(list: &mut [u32]) {
 
 /// Which of eight consecutive edges a node of their own block can touch.
 fn may_meet(boundary: &Boundary, node: NodeId, first: EdgeId) -> u8 {
-    let sides = [boundary.side[boundary.node_point[node]], boundary.side_of_node_before(node)];
+    let sides = [boundary.side[boundary.nodes.point[node]], boundary.side_of_node_before(node)];
     let edges = (first.index()..boundary.len()).take(LANES).enumerate();
     let may = |edge: usize| boundary.partial[edge] && !sides.contains(&boundary.side[edge]);
     if boundary.node_partial(node) { edges.fold(0, |bits, (k, edge)| bits | u8::from(may(edge)) << k) } else { 0 }

@@ -47,7 +47,8 @@ impl NeighbourList {
     pub fn is_stale(&self, boundary: &Boundary, frames: &Frames, slack: f64) -> bool {
         self.found_at.len() != boundary.node_count()
             || boundary
-                .node_point
+                .nodes
+                .point
                 .iter()
                 .zip(&self.found_at)
                 .any(|(&p, old)| (frames.position(p) - old).norm_squared() > slack * slack)
@@ -131,6 +132,6 @@ impl SearchGrid {
             runs[..count].iter().for_each(|run| pairs.extend_from_slice(&run.near_pairs));
         }
         found_at.clear();
-        found_at.extend(view.boundary.node_point.iter().map(|&point| view.frames.position(point)));
+        found_at.extend(view.boundary.nodes.point.iter().map(|&point| view.frames.position(point)));
     }
 }

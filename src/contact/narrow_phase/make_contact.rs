@@ -50,7 +50,7 @@ impl NarrowPhase<'_> {
     #[inline(always)]
     fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
         let (boundary, node) = (self.rule.boundary, candidate.node);
-        let (point, edge) = (boundary.node_point[node], candidate.edge);
+        let (point, edge) = (boundary.nodes.point[node], candidate.edge);
         let p = self.rule.position(node);
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
@@ -181,7 +181,7 @@ impl NarrowPhase<'_> {
             history.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
-            let [xx, yy, xy] = stress.at(self.rule.boundary.reference[self.rule.boundary.node_point[node]]);
+            let [xx, yy, xy] = stress.at(self.rule.boundary.reference[self.rule.boundary.nodes.point[node]]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
             history.rest = closure.under(history.normal_force);

@@ -61,11 +61,11 @@ impl NarrowPhase<'_> {
         let frame = self.rule.frames.node(node);
         let p = frame.position.dot(&candidate.tangent);
         let before = boundary.node_before[candidate.edge];
-        let after = boundary.node_next[before];
+        let after = boundary.nodes.next[before];
         let position = |n: NodeId| self.rule.position(n).dot(&candidate.tangent);
         let (from, to) = (position(before), position(after));
         let over = |q: f64| (p.max(q).min(to) - p.min(q).max(from)).max(0.0);
-        let [q, r] = [boundary.node_previous[node], boundary.node_next[node]].map(position);
+        let [q, r] = [boundary.nodes.previous[node], boundary.nodes.next[node]].map(position);
         let [low, high] = self.tie_shares(node, candidate, before, [p - from, to - p]);
         let flush_cosine = self.rule.flush_cosine;
         let mut facing = Facing::default();
@@ -78,12 +78,12 @@ impl NarrowPhase<'_> {
         };
         if q > p {
             let beyond =
-                if high > 0.0 { high * self.reach_beyond(boundary.node_next[after], to, q, candidate) } else { 0.0 };
+                if high > 0.0 { high * self.reach_beyond(boundary.nodes.next[after], to, q, candidate) } else { 0.0 };
             add(over(q) + beyond, q - p, frame.distance[0], candidate.overlap[1]);
         }
         if r < p {
             let beyond = if low > 0.0 {
-                low * self.reach_beyond(boundary.node_previous[before], from, r, candidate)
+                low * self.reach_beyond(boundary.nodes.previous[before], from, r, candidate)
             } else {
                 0.0
             };
@@ -97,13 +97,13 @@ impl NarrowPhase<'_> {
     #[inline(always)]
     fn tie_shares(&self, node: NodeId, candidate: &ContactCandidate, before: NodeId, distances: [f64; 2]) -> [f64; 2] {
         let (boundary, band) = (self.rule.boundary, self.rule.constants.held_beyond * self.rule.size);
-        if !boundary.node_convex[node] {
+        if !boundary.nodes.convex[node] {
             return [0.0; 2];
         }
         let is_inner = |k: usize| match k {
-            0 => boundary.side_ends[candidate.side][0].edge != boundary.node_point[before],
+            0 => boundary.sides.ends[candidate.side][0].edge != boundary.nodes.point[before],
             _ => {
-                let after = boundary.node_point[boundary.node_next[before]];
+                let after = boundary.nodes.point[boundary.nodes.next[before]];
                 boundary.side[after] == candidate.side
             }
         };
@@ -128,10 +128,10 @@ impl NarrowPhase<'_> {
     fn share_at_corner(&self, node: NodeId, candidate: &ContactCandidate) -> f64 {
         let EntranceRule { held_beyond, share_floor, .. } = self.rule.constants;
         let band = held_beyond * self.rule.size;
-        let least = if self.rule.boundary.node_convex[node] { CORNER_SHARE } else { 0.0 };
+        let least = if self.rule.boundary.nodes.convex[node] { CORNER_SHARE } else { 0.0 };
         let mut share = 1.0f64;
         for (end, within) in [(End::Start, candidate.along), (End::Finish, candidate.length - candidate.along)] {
-            let at = self.rule.boundary.side_ends[candidate.side][end as usize];
+            let at = self.rule.boundary.sides.ends[candidate.side][end as usize];
             if within < band && at.edge == candidate.edge && at.corner == Corner::Convex {
                 let kept = |overlap: f64| within.max((overlap - band).min(0.0));
                 let is_past = candidate.is_held && within < 0.0;

@@ -63,7 +63,7 @@ impl<'a> NearBlocks<'a> {
     /// Blocks of node and side, the lower one first.
     fn blocks(&self, near_side: usize) -> [BlockId; 2] {
         let near = self.near_sides.as_slice()[near_side];
-        let points = [self.boundary.node_point[near.node], self.near_pairs[near.first as usize].edge];
+        let points = [self.boundary.nodes.point[near.node], self.near_pairs[near.first as usize].edge];
         let [own, other] = points.map(|point| self.boundary.block[point]);
         [own.min(other), own.max(other)]
     }
@@ -346,7 +346,7 @@ impl Groups {
 /// Adds the covers of held blocks that a node and the near edges of a side may push.
 fn held_covers(boundary: &Boundary, edges: &[NearPair], view: &SolverView, covers: &mut Vec<CoverId>) {
     let is_held = |point: EdgeId| !view.mass_matrix.is_free(boundary.block[point]);
-    let node = boundary.node_point[edges[0].node];
+    let node = boundary.nodes.point[edges[0].node];
     if is_held(node) {
         covers.extend(boundary.covers[node]);
     }

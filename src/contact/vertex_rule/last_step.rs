@@ -139,7 +139,7 @@ impl VertexRule<'_> {
                 depth = depth.max(contact.closure * contact.outward.dot(&direction));
             }
         }
-        for node in [self.boundary.node_previous[node], node] {
+        for node in [self.boundary.nodes.previous[node], node] {
             for contact in self.penetrating.after(node) {
                 if !contact.own.iter().any(|side| others.contains(side)) {
                     depth = depth.max(-contact.closure * contact.outward.dot(&direction));

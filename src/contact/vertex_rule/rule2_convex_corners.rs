@@ -57,7 +57,7 @@ impl VertexRule<'_> {
         let tolerance = self.corner_tolerance(candidate);
         let mut overlap = [f64::INFINITY; 2];
         for end in [End::Start, End::Finish] {
-            let at = self.boundary.side_ends[candidate.side][end as usize];
+            let at = self.boundary.sides.ends[candidate.side][end as usize];
             let past = match end {
                 End::Start => candidate.along < 0.0,
                 End::Finish => candidate.along > candidate.length,
@@ -94,7 +94,7 @@ impl VertexRule<'_> {
         if -candidate.gap < rule.closure_most * self.size && facet.depth > rule.clear_depth() * self.size {
             return Some(facet.depth / slope);
         }
-        let q = self.boundary.node_before[self.boundary.side_ends[candidate.side][end as usize].point];
+        let q = self.boundary.node_before[self.boundary.sides.ends[candidate.side][end as usize].point];
         let compression = |own: f64, out: Vector| own.max(self.closure_of_others(candidate.node, q, out));
         let unloaded = facet.depth - compression(self.closure_with(facet.tip, facet.side), facet.out);
         let can_hold = facet.foot >= -tolerance || self.carries(facet.tip, facet.side);
@@ -111,7 +111,7 @@ impl VertexRule<'_> {
     #[inline(always)]
     fn other_facet(&self, candidate: &ContactCandidate, p: Point, end: End) -> Facet {
         let (boundary, node) = (self.boundary, candidate.node);
-        let SideEnd { round, point, .. } = boundary.side_ends[candidate.side][end as usize];
+        let SideEnd { round, point, .. } = boundary.sides.ends[candidate.side][end as usize];
         let (q, tangent) = (self.frames.position(point), self.frames.edge(round).tangent);
         let outward = right_of(tangent);
         let frame = self.frames.node(node);
@@ -144,7 +144,7 @@ impl VertexRule<'_> {
     /// Depth (m) of the node inside the facet round an end of the side, or of the corner there inside both facets of
     /// the node, unless that corner is a contact itself; negative where the two have separated.
     pub(in crate::contact) fn overlap_at(&self, candidate: &ContactCandidate, end: End) -> f64 {
-        let at = self.boundary.side_ends[candidate.side][end as usize];
+        let at = self.boundary.sides.ends[candidate.side][end as usize];
         let frame = self.frames.node(candidate.node);
         let to = self.frames.position(at.point) - frame.position;
         let inside = to.dot(&self.frames.edge(at.round).normal());

@@ -22,7 +22,7 @@ impl VertexRule<'_> {
         for i in 0..candidates.len() {
             for j in i + 1..candidates.len() {
                 let (a, b) = (&candidates[i], &candidates[j]);
-                let corner = |end: End| self.boundary.side_ends[a.side][end as usize].corner;
+                let corner = |end: End| self.boundary.sides.ends[a.side][end as usize].corner;
                 let is_notch = self.end_between(a.side, b.side).is_some_and(|end| corner(end) == Corner::Reflex);
                 if block(a) != block(b) || is_notch {
                     continue;
@@ -63,10 +63,10 @@ impl VertexRule<'_> {
 
     /// The end of side `s` at which it meets side `t`.
     pub(super) fn end_between(&self, s: SideId, t: SideId) -> Option<End> {
-        if self.boundary.side_next[s] == t {
+        if self.boundary.sides.next[s] == t {
             Some(End::Finish)
         } else {
-            (self.boundary.side_previous[s] == t).then_some(End::Start)
+            (self.boundary.sides.previous[s] == t).then_some(End::Start)
         }
     }
 }

@@ -24,9 +24,9 @@ impl VertexRule<'_> {
         if candidate.held.is_some() || candidate.gap >= -tie {
             return false;
         }
-        let Boundary { block, node_point, .. } = self.boundary;
+        let Boundary { block, nodes, .. } = self.boundary;
         let is_deep = self.is_deep(candidate);
-        if block[node_point[candidate.node]] == block[candidate.edge] {
+        if block[nodes.point[candidate.node]] == block[candidate.edge] {
             return is_deep;
         }
         let (depth, nearest) = self.depth_in_rock(candidate.node, candidate.edge);
@@ -39,8 +39,8 @@ impl VertexRule<'_> {
 
     /// Whether a candidate is deeper than a node moves in one step.
     pub(in crate::contact) fn is_deep(&self, candidate: &ContactCandidate) -> bool {
-        let Boundary { block, block_thickness, node_point, .. } = self.boundary;
-        let blocks = [node_point[candidate.node], candidate.edge].map(|point| block[point]);
+        let Boundary { block, block_thickness, nodes, .. } = self.boundary;
+        let blocks = [nodes.point[candidate.node], candidate.edge].map(|point| block[point]);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
         -candidate.gap > (self.constants.deep * self.size).min(self.constants.deep_share * thin)
     }

@@ -90,7 +90,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     warnings.extend(quiet::warning(case));
     warnings.extend(quiet::ringing(case));
     warnings.extend(warnings::of_values(case, &model, &positions));
-    let (low, high) = polygon::bounds(&model.covers.polygon_points);
+    let (low, high) = polygon::bounds(&model.covers.polygons.points);
     warnings.extend(slips::of_values(case, low.y, high.y));
     Ok(Built {
         model,

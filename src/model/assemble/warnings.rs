@@ -188,7 +188,7 @@ fn rocks(case: &Case) -> Vec<String> {
 
 /// A model that is larger than slopes are, or smaller than its mesh.
 fn extent(case: &Case, model: &Model) -> Option<String> {
-    let (low, high) = polygon::bounds(&model.covers.polygon_points);
+    let (low, high) = polygon::bounds(&model.covers.polygons.points);
     let span = high - low;
     if span.max() > LONGEST {
         let area: f64 = model.covers.element_area.iter().sum();

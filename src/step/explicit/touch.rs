@@ -62,7 +62,7 @@ pub(super) fn arrange(
 ) {
     let near = (&neighbours.pairs[..], &selection.near_sides);
     let accepted = &selection.accepted.near_side;
-    open_close.arrange(&model.boundary, near, mass_matrix, &model.covers.block_covers, accepted);
+    open_close.arrange(&model.boundary, near, mass_matrix, &model.covers.block_ranges.covers, accepted);
 }
 
 /// Motion that the contacts find, and by which they answer.

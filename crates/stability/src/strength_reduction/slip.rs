@@ -20,7 +20,7 @@ pub fn largest_slip(simulation: &Simulation, before: &[ContactHistory], without:
     let tied: Vec<[BlockId; 2]> = bolts.map(|(segment, _)| segment.blocks).collect();
     let mut before = before.iter().peekable();
     let counts = |contact: &&ContactHistory| {
-        let points = [boundary.node_point[contact.node], contact.edge];
+        let points = [boundary.nodes.point[contact.node], contact.edge];
         let blocks = points.map(|point| boundary.block[point]);
         blocks.iter().all(|block| without.binary_search(block).is_err())
             && !tied.iter().any(|pair| blocks.iter().all(|block| pair.contains(block)))
