@@ -15,7 +15,7 @@ pub use clock::timed;
 pub use machine::{Bandwidth, Machine};
 pub use measure::{Measured, StageMilliseconds, measure, sizes};
 pub use models::{LARGE, Model, STANDARD, advance};
-pub use report::{Origin, digits, markdown, none, push_machine, push_table, write_report};
+pub use report::{Origin, REPORT_FILES, digits, markdown, none, push_machine, push_table, write_report};
 pub use slope::{continuum_case, slope_case};
 
 use enmm::engine_version;

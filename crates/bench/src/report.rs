@@ -18,6 +18,9 @@ pub struct Origin {
     pub command: String,
 }
 
+/// Files of a report: data, page, and the plots of steps and of slopes.
+pub const REPORT_FILES: [&str; 4] = ["results.json", "results.md", "step.svg", "slope.svg"];
+
 /// Writes results into a directory, which is made if it is not there.
 ///
 /// # Errors
@@ -26,10 +29,11 @@ pub fn write_report(report: &BenchReport, origin: &Origin, directory: &Path) -> 
     std::fs::create_dir_all(directory).map_err(at_path(directory))?;
     let json = serde_json::json!({ "label": origin.label, "command": origin.command, "report": report });
     let write = |name: &str, text: &str| write_atomic(&directory.join(name), text.as_bytes());
-    write("results.json", &format!("{json:#}\n"))?;
-    write("results.md", &markdown(report, origin))?;
-    write("step.svg", &chart_picture(&step_chart(report)).svg())?;
-    write("slope.svg", &chart_picture(&slope_chart(report)).svg())
+    let [data, page, steps, slopes] = REPORT_FILES;
+    write(data, &format!("{json:#}\n"))?;
+    write(page, &markdown(report, origin))?;
+    write(steps, &chart_picture(&step_chart(report)).svg())?;
+    write(slopes, &chart_picture(&slope_chart(report)).svg())
 }
 
 /// The results as a page.

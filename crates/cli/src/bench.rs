@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm_bench::{BenchOptions, BenchReport, LARGE, Measured, Model, Origin, STANDARD, bench, write_report};
+use enmm_bench::{
+    BenchOptions, BenchReport, LARGE, Measured, Model, Origin, REPORT_FILES, STANDARD, bench, write_report,
+};
 use enmm_io::files::write_atomic;
+use enmm_run::make_place;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 
@@ -52,6 +55,11 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     };
     if let Some(folder) = &arguments.write {
         return write_cases(&models, folder);
+    }
+    if let Some(folder) = &arguments.output
+        && let Err(error) = make_place(folder, &REPORT_FILES)
+    {
+        return fail(&error, BAD_INPUT);
     }
     let options = BenchOptions {
         models,

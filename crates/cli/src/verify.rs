@@ -9,6 +9,7 @@ use std::sync::Mutex;
 
 use clap::{Args, ValueEnum};
 use enmm::model::case;
+use enmm_run::make_place;
 use enmm_verification::{
     Parameter, Problem, ProblemRecord, Record, Request, Solved, choose, problems, report, solve_all, text, write_cases,
 };
@@ -75,11 +76,16 @@ pub fn verify(arguments: &Arguments) -> ExitCode {
         print_line(&list(&jobs.iter().map(|job| job.problem).collect::<Vec<_>>(), arguments.json));
         return ExitCode::SUCCESS;
     }
-    for directory in [&arguments.write, &arguments.output].into_iter().flatten() {
-        if let Err(error) = std::fs::create_dir_all(directory) {
-            let place = directory.display();
-            return fail(&format!("cannot write to {place} ({error}): choose another directory"), BAD_INPUT);
+    let places = [(&arguments.write, &[][..]), (&arguments.output, &[report::DOCUMENT, report::RECORD][..])];
+    for (directory, files) in places.into_iter().filter_map(|(place, files)| Some((place.as_ref()?, files))) {
+        if let Err(error) = make_place(directory, files) {
+            return fail(&error, BAD_INPUT);
         }
+    }
+    if let Some(directory) = &arguments.output
+        && let Err(error) = make_place(&directory.join(report::PLOTS), &[])
+    {
+        return fail(&error, BAD_INPUT);
     }
     let tables = InOrder::default();
     let solved = solve_all(jobs, THREADS, |place, solved| {

@@ -85,3 +85,20 @@ fn wrong_arguments_exit_with_2_and_name_the_remedy() {
     assert_eq!(place.enmm(&["verify", "--integrator", "magic"]).status, Some(2));
     assert_eq!(place.names(), ["case.toml"]);
 }
+
+#[test]
+fn an_output_name_that_is_taken_by_a_folder_is_found_before_the_work() {
+    let place = place();
+    for (command, name) in [
+        (&["verify", "--only", "D5", "--quick", "-o", "out"][..], "out/verification.json"),
+        (&["bench", "--models", "continuum_200", "--seconds", "0.1", "-o", "out"], "out/step.svg"),
+    ] {
+        std::fs::create_dir_all(place.path(name)).expect("a folder");
+        let answer = place.enmm(command);
+        answer.assert_bad_input(&[name, "no regular file"]);
+        assert_eq!(answer.stdout, "", "{answer:?}");
+        std::fs::remove_dir(place.path(name)).expect("removed");
+    }
+    std::fs::write(place.path("out/verification"), "").expect("a file");
+    place.enmm(&["verify", "--only", "D5", "--quick", "-o", "out"]).assert_bad_input(&["out/verification"]);
+}

@@ -200,6 +200,18 @@ pub fn check_output(path: &Path, inputs: &[PathBuf]) -> io::Result<()> {
     check_against(path, &handles(inputs))
 }
 
+/// Makes a directory for results and looks at the places of its `files`, before the work that leads to them.
+///
+/// # Errors
+/// The directory cannot be made, or one of the files is there and no regular file; with the path in the message.
+pub fn make_place(directory: &Path, files: &[&str]) -> io::Result<()> {
+    fs::create_dir_all(directory).map_err(|error| {
+        let place = directory.display();
+        io::Error::new(error.kind(), format!("cannot write to {place} ({error}): choose another directory"))
+    })?;
+    files.iter().try_for_each(|file| check_output(&directory.join(file), &[]))
+}
+
 /// Inputs that are files, with what the system knows them by; to ask that of a pipe would wait for its other end.
 fn handles(inputs: &[PathBuf]) -> Vec<(&Path, Handle)> {
     let files = inputs.iter().filter(|input| input.is_file());

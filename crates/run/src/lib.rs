@@ -19,7 +19,7 @@ pub mod vtu;
 pub use bound::{BoundFailure, bound, bound_record};
 pub use check::check;
 pub use ensemble::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
-pub use folder::{Folder, STORE, check_output, is_result};
+pub use folder::{Folder, STORE, check_output, is_result, make_place};
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::write_bound_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};
