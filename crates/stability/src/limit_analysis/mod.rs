@@ -19,7 +19,7 @@ use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
 use program::{Program, Unsolved};
-pub use refusal::staged;
+pub use refusal::{staged, staged_rock};
 use search::{Limit, Search};
 
 /// Range of factors that is searched; outside it the result is `AtMost` or `AtLeast`.

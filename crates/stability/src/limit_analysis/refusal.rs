@@ -15,7 +15,7 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     staged_rock(case)
 }
 
-/// The same for rock that may yield.
+/// The same for rock that may yield, which yields nowhere in the model: limit analysis takes strength from the case.
 ///
 /// # Errors
 /// A key that cannot be treated or does not fit the model.
@@ -42,6 +42,10 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     if case.yields() {
         refuse_points(&case)?;
     }
+    // No element takes part, so that none yields, and no doubt about elements that yield has a place.
+    for rock in case.rocks.values_mut() {
+        (rock.friction_deg, rock.cohesion, rock.dilation_deg, rock.tension) = (None, None, None, None);
+    }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
     warnings.extend(simulation.built().warnings.iter().cloned());
@@ -60,8 +64,8 @@ fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
             (None, cohesion) => ("cohesion", cohesion.unwrap_or_default()),
         };
         let message = format!(
-            "is {value}, but limit analysis takes blocks as rigid, and this rock yields: leave out its strength, or \
-             use `enmm fos`"
+            "is {value}, but limit analysis of rigid blocks knows no rock that yields: leave out its strength, or \
+             use `enmm bound`, which brackets the factor of such rock"
         );
         return Err(refused(key.field(field), message));
     }

@@ -129,7 +129,7 @@ pub fn turned([x, y]: [Sum; 2], normal: Vector) -> [Sum; 2] {
     [along(normal), along(Vector::new(-normal.y, normal.x))]
 }
 
-/// Limits of all stresses (Eqs. 95, 96), and of the search for the missing cohesion.
+/// Limits of all stresses (Eqs. 87, 88), and of the search for the missing cohesion.
 fn yields(program: &mut Conic, patches: &[Patch], strength: f64) {
     program.is_positive(Sum { terms: vec![(MISSING, 1.0)], constant: SPARE }.into());
     for (t, patch) in patches.iter().enumerate().filter(|(_, patch)| !patch.is_held) {
@@ -164,7 +164,7 @@ fn yields_at(program: &mut Conic, s: usize, rock: Strength, x: f64) {
     }
 }
 
-/// Limits of a joint's traction (Eq. 77), given along its normal, tension positive, and along its tangent.
+/// Limits of a joint's traction (Eq. 89), given along its normal, tension positive, and along its tangent.
 pub fn slips(program: &mut Conic, [normal, shear]: [Sum; 2], joint: Strength, x: f64) {
     let tension = joint.tension.unwrap_or_default();
     let missing = Sum { terms: vec![(MISSING, 1.0)], constant: 0.0 };

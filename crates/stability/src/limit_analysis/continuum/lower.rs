@@ -1,5 +1,5 @@
 //! The lower bound: stresses linear in each triangle, in equilibrium everywhere and within the strength everywhere
-//! (Eqs. 93–96).
+//! (Eqs. 87–90).
 
 use super::conic::{Conic, Sum};
 use super::ground::{Edge, Patch, Rock, begin, slips, traction, turned};

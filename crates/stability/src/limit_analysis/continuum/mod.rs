@@ -1,5 +1,5 @@
 //! Limit analysis of rock that yields, by finite elements: a factor with a field of stress that proves it from below,
-//! and one with a mechanism that proves it from above (theory, section 19).
+//! and one with a mechanism that proves it from above (theory, section 22).
 
 mod conic;
 mod drawing;
@@ -13,13 +13,13 @@ mod upper;
 
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::assemble::outlines;
-use enmm::model::case::{Case, Invalid};
+use enmm::model::case::{self, Case, Invalid};
 use enmm::model::tables::BlockId;
 use enmm::model::{BoltSegment, Simulation};
 
 use super::model::{Strengths, bodies};
 use super::{BoundError, Factor, refusal};
-use drawing::{Drawing, Marks};
+use drawing::{Drawing, Marks, Side};
 use ground::{Bar, Edge, Patch, Rock, Strength};
 use loads::Loads;
 use mesh::Mesh;
@@ -33,6 +33,12 @@ pub const TRIANGLES: usize = 2000;
 const COARSER: [usize; 2] = [9, 3];
 /// Strength by which the search for the lower bound begins above that of the upper bound.
 const AHEAD: f64 = 0.01;
+/// Speed, relative to the greatest, from which rock is part of a mechanism.
+const MOVES: f64 = 0.1;
+/// Most points about which the mesh for stresses has fans.
+const FANNED: usize = 2;
+/// Triangles that a fan adds.
+const FAN: usize = 20;
 /// Share of its triangles that a mesh has at least, and the meshes that are tried for it.
 const FULL: f64 = 0.85;
 const MESHES: usize = 8;
@@ -56,6 +62,13 @@ pub struct Bracket {
     pub warnings: Vec<String>,
 }
 
+impl Bracket {
+    /// The rock that moves: triangles with more than a tenth of the greatest speed.
+    pub fn moving(&self) -> impl Iterator<Item = &Motion> {
+        self.mechanism.iter().filter(|motion| motion.velocity.norm() > MOVES)
+    }
+}
+
 /// Motion of a triangle of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
@@ -77,6 +90,8 @@ struct Ground {
     simulation: Simulation,
     loads: Loads,
     is_held: Vec<bool>,
+    /// Strength of each rock; none for one that never yields.
+    kinds: Vec<Option<Strength>>,
     /// Length (m) and stress (Pa) that count as one.
     units: [f64; 2],
     area: f64,
@@ -88,9 +103,9 @@ struct Ground {
 /// A case that cannot be built, that holds what cannot be treated, or whose program is not solved.
 pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     let (simulation, warnings) = refusal::staged_rock(case)?;
-    let ground = Ground::new(simulation)?;
+    let ground = Ground::new(simulation, case)?;
     let found = ground.upper(triangles)?;
-    let stresses = ground.rock(&ground.mesh(&found.sizes, triangles / 3)?.parted());
+    let stresses = ground.rock(&ground.fanned(&found.sizes, triangles)?);
     let unsolved = |status| unsolved(stresses.patches.len(), status);
     let start = found.proven.factor.strength() * (1.0 + AHEAD);
     let lower = prove(|x| lower::program(&stresses, x).solve(), start, Proof::Equilibrium).map_err(unsolved)?;
@@ -107,6 +122,10 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
 
 fn unsolved(triangles: usize, status: impl std::fmt::Debug) -> BoundError {
     BoundError::UnsolvedRock { triangles, status: format!("{status:?}") }
+}
+
+fn close(mesh::Close(at): mesh::Close) -> BoundError {
+    BoundError::Close { x: at.x, y: at.y }
 }
 
 /// The upper bound on the finest mesh.
@@ -138,7 +157,7 @@ impl Upper {
 }
 
 impl Ground {
-    fn new(simulation: Simulation) -> Result<Self, Invalid> {
+    fn new(simulation: Simulation, case: &Case) -> Result<Self, Invalid> {
         let outlines = outlines(simulation.case())?;
         let bodies = bodies(&simulation);
         let loads = Loads::new(&simulation);
@@ -148,9 +167,10 @@ impl Ground {
         let area: f64 = covers.blocks().filter(there).map(|b| covers.block_area(b)).sum();
         let densest = simulation.model().rocks.iter().map(|rock| rock.density).fold(0.0, f64::max);
         let length = area.sqrt();
-        let stress = (densest * loads.acceleration.norm() * length).max(loads.greatest());
+        let stress = (densest * loads.acceleration.norm() * length).max(loads.greatest()).max(f64::MIN_POSITIVE);
         let is_held = refusal::held_blocks(&simulation);
-        Ok(Self { units: [length, stress.max(f64::MIN_POSITIVE)], drawing, loads, is_held, area, simulation })
+        let kinds = case.rocks.values().map(|rock| strength(rock, stress)).collect();
+        Ok(Self { kinds, units: [length, stress], drawing, loads, is_held, area, simulation })
     }
 
     /// The upper bound on meshes that are finer from one to the next, and finest where the last has sheared.
@@ -192,8 +212,22 @@ impl Ground {
         Ok(mesh)
     }
 
+    /// A mesh for stresses: with fans about the ends of sides where the rock shears most, and parted.
+    fn fanned(&self, sizes: &Sizes, triangles: usize) -> Result<Mesh, BoundError> {
+        let is_outer = |side: &&Side| side.marks.right.is_none() && !side.marks.is_seam;
+        let mut ends: Vec<usize> = self.drawing.sides.iter().filter(is_outer).flat_map(|side| side.ends).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let size = |end: &usize| sizes.at(self.drawing.points[*end]);
+        ends.sort_by(|a, b| size(a).total_cmp(&size(b)).then(a.cmp(b)));
+        ends.truncate(FANNED);
+        let (whole, fans) = (triangles / 3, FAN * ends.len());
+        let mut mesh = self.mesh(&sizes.for_stress(), whole.saturating_sub(fans).max(whole / 2))?;
+        mesh.fan(&self.drawing, &ends).map_err(close)?;
+        Ok(mesh.parted())
+    }
+
     fn mesh_of(&self, sizes: &Sizes, scale: f64) -> Result<Mesh, BoundError> {
-        let close = |mesh::Close(at): mesh::Close| BoundError::Close { x: at.x, y: at.y };
         Mesh::new(&self.drawing, |p| scale * sizes.at(p)).map_err(close)
     }
 
@@ -253,14 +287,9 @@ impl Ground {
             let block = mesh.triangles[t].block;
             let rock = self.kind(block, mesh.centroid(t));
             let model = self.simulation.model();
-            let strength = model.strengths[rock].map(|s| Strength {
-                friction: s.friction,
-                cohesion: s.cohesion / stress,
-                tension: s.tension.map(|tension| tension / stress),
-            });
             Patch {
                 corners: mesh.corners(t).map(|p| p / length),
-                strength,
+                strength: self.kinds[rock],
                 body: self.loads.acceleration * (model.rocks[rock].density * length / stress),
                 is_held: self.is_held[block.number() as usize],
                 edges: [0, 1, 2].map(|k| self.edge(mesh, t, k)),
@@ -309,4 +338,13 @@ impl Ground {
         let background = || rocks().find(|(_, rock)| rock.region.is_none() && rock.blocks.is_empty());
         by_block.or_else(by_region).or_else(background).map_or(0, |(k, _)| k)
     }
+}
+
+/// Strength of a rock in a unit of stress (Pa); none when it gives neither friction nor cohesion.
+fn strength(rock: &case::Rock, unit: f64) -> Option<Strength> {
+    rock.yields().then(|| Strength {
+        friction: libm::tan(rock.friction_deg.unwrap_or_default().to_radians()),
+        cohesion: rock.cohesion.unwrap_or_default() / unit,
+        tension: rock.tension.map(|tension| tension / unit),
+    })
 }

@@ -1,5 +1,5 @@
 //! The upper bound: velocities quadratic in each triangle and apart at joints, as the forces that balance their control
-//! points (Eqs. 97–100).
+//! points (Eqs. 87–89, 91–93).
 
 use enmm::geometry::Vector;
 
