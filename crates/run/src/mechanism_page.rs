@@ -163,12 +163,13 @@ fn trials(search: &Reduction, name: &str) -> TrialTable {
         (None, Some(least)) => format!("at least {least:.4}"),
         (None, None) => format!("not found{bracket}"),
     };
-    let bound = match &search.bound {
-        Ok(bound) => format!(
+    let bound = match (&search.bracket, &search.bound) {
+        (Some(bracket), _) => format!("limit analysis: {} to {}", bracket.lower, bracket.upper),
+        (None, Ok(bound)) => format!(
             "limit analysis: {} where level tops pass, {} associated",
             bound.level_tops.factor, bound.associated.factor
         ),
-        Err(refused) => format!("limit analysis: none, {refused}"),
+        (None, Err(refused)) => format!("limit analysis: none, {refused}"),
     };
     let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
     TrialTable { result: format!("{mechanism}{result}; {bound}"), trials: search.trials.iter().map(row).collect() }

@@ -37,8 +37,8 @@ const AHEAD: f64 = 0.01;
 const MOVES: f64 = 0.1;
 /// Most points about which the mesh for stresses has fans.
 const FANNED: usize = 2;
-/// Triangles that a fan adds.
-const FAN: usize = 20;
+/// Root of the area of triangles about such a point over their distance from it.
+const SECTOR: f64 = 0.3;
 /// Share of its triangles that a mesh has at least, and the meshes that are tried for it.
 const FULL: f64 = 0.85;
 const MESHES: usize = 8;
@@ -105,7 +105,8 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     let (simulation, warnings) = refusal::staged_rock(case)?;
     let ground = Ground::new(simulation, case)?;
     let found = ground.upper(triangles)?;
-    let stresses = ground.rock(&ground.fanned(&found.sizes, triangles)?);
+    let turning = ground.turning(&found.sizes);
+    let stresses = ground.rock(&ground.mesh(&found.sizes.for_stress(), triangles / 3, &turning)?.parted());
     let unsolved = |status| unsolved(stresses.patches.len(), status);
     let start = found.proven.factor.strength() * (1.0 + AHEAD);
     let lower = prove(|x| lower::program(&stresses, x).solve(), start, Proof::Equilibrium).map_err(unsolved)?;
@@ -188,7 +189,7 @@ impl Ground {
     }
 
     fn upper_on(&self, sizes: Sizes, triangles: usize, start: f64) -> Result<Upper, BoundError> {
-        let mesh = self.mesh(&sizes, triangles)?;
+        let mesh = self.mesh(&sizes, triangles, &[])?;
         let rock = self.rock(&mesh);
         let controls = Controls::new(&rock.patches);
         let solve = |x| upper::program(&rock, &controls, x).solve();
@@ -197,23 +198,38 @@ impl Ground {
         Ok(Upper { mesh, rock, controls, proven, sizes, programs })
     }
 
-    /// A mesh of at most so many triangles, as far as the sides of the drawing allow.
-    fn mesh(&self, sizes: &Sizes, triangles: usize) -> Result<Mesh, BoundError> {
+    /// A mesh of at most so many triangles, as far as the sides of the drawing allow; about some points of the drawing
+    /// as fine as stress asks that turns about them.
+    fn mesh(&self, sizes: &Sizes, triangles: usize, turning: &[usize]) -> Result<Mesh, BoundError> {
         let mut scale = 1.0 / triangles.max(1) as f64;
-        let mut mesh = self.mesh_of(sizes, scale)?;
+        let mut mesh = self.mesh_of(sizes, scale, turning)?;
         for _ in 0..MESHES {
             let excess = mesh.triangles.len() as f64 / triangles.max(1) as f64;
             if (FULL..=1.0).contains(&excess) {
                 break;
             }
             scale *= excess / (1.0 + FULL) * 2.0;
-            mesh = self.mesh_of(sizes, scale)?;
+            mesh = self.mesh_of(sizes, scale, turning)?;
         }
         Ok(mesh)
     }
 
-    /// A mesh for stresses: with fans about the ends of sides where the rock shears most, and parted.
-    fn fanned(&self, sizes: &Sizes, triangles: usize) -> Result<Mesh, BoundError> {
+    fn mesh_of(&self, sizes: &Sizes, scale: f64, turning: &[usize]) -> Result<Mesh, BoundError> {
+        let about: Vec<(Point, f64)> =
+            turning.iter().map(|&end| self.drawing.points[end]).map(|at| (at, (scale * sizes.at(at)).sqrt())).collect();
+        let area = |p: Point| {
+            let turns = |&(at, least): &(Point, f64)| (SECTOR * (p - at).norm().max(least)).powi(2);
+            about.iter().map(turns).fold(scale * sizes.at(p), f64::min)
+        };
+        let mut mesh = Mesh::new(&self.drawing, area).map_err(close)?;
+        if !turning.is_empty() {
+            mesh.fan(&self.drawing, turning).map_err(close)?;
+        }
+        Ok(mesh)
+    }
+
+    /// The ends of sides on the outline where the rock shears most.
+    fn turning(&self, sizes: &Sizes) -> Vec<usize> {
         let is_outer = |side: &&Side| side.marks.right.is_none() && !side.marks.is_seam;
         let mut ends: Vec<usize> = self.drawing.sides.iter().filter(is_outer).flat_map(|side| side.ends).collect();
         ends.sort_unstable();
@@ -221,14 +237,7 @@ impl Ground {
         let size = |end: &usize| sizes.at(self.drawing.points[*end]);
         ends.sort_by(|a, b| size(a).total_cmp(&size(b)).then(a.cmp(b)));
         ends.truncate(FANNED);
-        let (whole, fans) = (triangles / 3, FAN * ends.len());
-        let mut mesh = self.mesh(&sizes.for_stress(), whole.saturating_sub(fans).max(whole / 2))?;
-        mesh.fan(&self.drawing, &ends).map_err(close)?;
-        Ok(mesh.parted())
-    }
-
-    fn mesh_of(&self, sizes: &Sizes, scale: f64) -> Result<Mesh, BoundError> {
-        Mesh::new(&self.drawing, |p| scale * sizes.at(p)).map_err(close)
+        ends
     }
 
     fn mechanism(&self, found: &Upper) -> Vec<Motion> {

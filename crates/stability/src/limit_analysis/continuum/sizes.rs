@@ -7,8 +7,8 @@ use super::mesh::Mesh;
 
 /// Density of triangles in rock that does not shear, over the mean that shear adds.
 const FLOOR: f64 = 0.1;
-/// Power of the areas that makes them more even.
-const EVEN: f64 = 0.7;
+/// Least area of triangles for stress, over the mean: about a point stress turns as much far from it as close to it.
+const LEAST: f64 = 0.3;
 /// Mean rate of shear, over the greatest speed and the size of the rock, that counts as none: blocks move as rigid ones.
 const RIGID: f64 = 1e-4;
 
@@ -35,10 +35,10 @@ impl Sizes {
         Some(Self((0..patches.len()).map(size).map(|(at, size)| (at, size * unit)).collect()))
     }
 
-    /// For stress, which varies over more of the rock than shear does: the same, more even.
+    /// For stress, which varies over more of the rock than shear does: more even.
     pub fn for_stress(&self) -> Self {
         let unit = self.0.iter().map(|(_, area)| area).sum::<f64>() / self.0.len() as f64;
-        Self(self.0.iter().map(|(at, area)| (*at, unit * libm::pow(area / unit, EVEN))).collect())
+        Self(self.0.iter().map(|(at, area)| (*at, unit * libm::sqrt(area / unit).max(LEAST))).collect())
     }
 
     /// Area (m²) at a position.
