@@ -62,6 +62,12 @@ pub struct Mesh {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Close(pub Point);
 
+/// Both ends of the edge from corner `k` on, the lesser first.
+fn edge(corners: &[usize; 3], k: usize) -> [usize; 2] {
+    let (a, b) = (corners[k], corners[(k + 1) % 3]);
+    [a.min(b), a.max(b)]
+}
+
 impl Mesh {
     /// Triangles no larger than `area_at` (m²) at their centroids.
     ///
@@ -94,34 +100,66 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Parts the triangles about some points of the drawing into narrow ones, so that stress can turn about them.
-    ///
-    /// # Errors
-    /// As [`Mesh::new`].
-    pub fn fan(&mut self, drawing: &Drawing, about: &[usize]) -> Result<(), Close> {
+    /// Parts the triangles about some points of the drawing into narrow ones, so that stress can turn about them, and
+    /// the triangles behind those with them.
+    pub fn fan(&mut self, about: &[usize]) {
         for _ in 0..FANS {
-            let count = self.points.len();
-            let mut splits = vec![false; self.lines.len()];
+            let mut middles = BTreeMap::new();
             for triangle in &self.triangles {
                 for k in (0..3).filter(|&k| about.contains(&triangle.corners[k])) {
                     let [v, a, b] = [0, 1, 2].map(|i| self.points[triangle.corners[(k + i) % 3]]);
                     if libm::atan2((a - v).perp(&(b - v)), (a - v).dot(&(b - v))) > NARROW {
-                        match triangle.lines[(k + 1) % 3] {
-                            Some(line) => splits[line] = true,
-                            None => self.points.push((a + b) / 2.0),
-                        }
+                        let far = edge(&triangle.corners, (k + 1) % 3);
+                        middles.entry(far).or_insert_with(|| {
+                            self.points.push((a + b) / 2.0);
+                            self.points.len() - 1
+                        });
                     }
                 }
             }
-            // Two of the points may see the same edge.
-            let mut added = self.points.split_off(count);
-            added.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
-            added.dedup();
-            self.points.append(&mut added);
-            self.split_where(|k, _| splits[k]);
-            self.triangulate(drawing)?;
+            self.split_edges(&middles);
         }
-        Ok(())
+    }
+
+    /// Splits edges at points, with the lines along them and the triangles on both sides.
+    fn split_edges(&mut self, middles: &BTreeMap<[usize; 2], usize>) {
+        for k in 0..self.lines.len() {
+            let line = self.lines[k];
+            let [a, b] = line.ends;
+            if let Some(&at) = middles.get(&[a.min(b), a.max(b)]) {
+                self.lines[k].ends[1] = at;
+                self.lines.push(Line { ends: [at, b], ..line });
+            }
+        }
+        let mut open: Vec<Triangle> = std::mem::take(&mut self.triangles);
+        open.reverse();
+        while let Some(triangle) = open.pop() {
+            let corners = triangle.corners;
+            match (0..3).find_map(|k| Some((k, *middles.get(&edge(&corners, k))?))) {
+                Some((k, at)) => {
+                    let apex = corners[(k + 2) % 3];
+                    open.push(Triangle { corners: [apex, at, corners[(k + 1) % 3]], ..triangle });
+                    open.push(Triangle { corners: [apex, corners[k], at], ..triangle });
+                }
+                None => self.triangles.push(triangle),
+            }
+        }
+        self.connect();
+    }
+
+    /// Finds for every edge of every triangle the line along it and the triangle across it.
+    fn connect(&mut self) {
+        let lines: BTreeMap<[usize; 2], usize> =
+            self.lines.iter().enumerate().map(|(k, line)| (edge(&[line.ends[0], line.ends[1], 0], 0), k)).collect();
+        let mut starts = BTreeMap::new();
+        for (t, triangle) in self.triangles.iter().enumerate() {
+            (0..3).for_each(|k| _ = starts.insert([triangle.corners[k], triangle.corners[(k + 1) % 3]], t));
+        }
+        for triangle in &mut self.triangles {
+            let corners = triangle.corners;
+            triangle.lines = [0, 1, 2].map(|k| lines.get(&edge(&corners, k)).copied());
+            triangle.across = [0, 1, 2].map(|k| starts.get(&[corners[(k + 1) % 3], corners[k]]).copied());
+        }
     }
 
     /// The same with every triangle parted into three at its centroid.
@@ -284,15 +322,8 @@ impl Mesh {
         let corners: Vec<[usize; 3]> = faces.iter().map(|face| face.vertices().map(|v| v.index())).collect();
         let across: Vec<[Option<usize>; 3]> =
             faces.iter().map(|face| face.adjacent_edges().map(|edge| index(edge.rev().face()))).collect();
-        let lines: Vec<[Option<usize>; 3]> = corners
-            .iter()
-            .map(|c| {
-                [0, 1, 2].map(|k| {
-                    let (a, b) = (c[k], c[(k + 1) % 3]);
-                    line_of.get(&[a.min(b), a.max(b)]).copied()
-                })
-            })
-            .collect();
+        let lines: Vec<[Option<usize>; 3]> =
+            corners.iter().map(|c| [0, 1, 2].map(|k| line_of.get(&edge(c, k)).copied())).collect();
         let blocks = self.blocks(drawing, &corners, &lines, &across);
         self.keep_rock(&corners, &lines, &across, &blocks);
         Ok(())

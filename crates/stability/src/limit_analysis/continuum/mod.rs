@@ -222,9 +222,7 @@ impl Ground {
             about.iter().map(turns).fold(scale * sizes.at(p), f64::min)
         };
         let mut mesh = Mesh::new(&self.drawing, area).map_err(close)?;
-        if !turning.is_empty() {
-            mesh.fan(&self.drawing, turning).map_err(close)?;
-        }
+        mesh.fan(turning);
         Ok(mesh)
     }
 
@@ -343,7 +341,7 @@ impl Ground {
         let by_block = rocks().find(|(_, rock)| rock.blocks.iter().any(is_in));
         let holds =
             |region: &Vec<[f64; 2]>| polygon::contains(&region.iter().map(|p| Point::from(*p)).collect::<Vec<_>>(), at);
-        let by_region = || rocks().find(|(_, rock)| rock.region.as_ref().is_some_and(|region| holds(region)));
+        let by_region = || rocks().find(|(_, rock)| rock.region.as_ref().is_some_and(holds));
         let background = || rocks().find(|(_, rock)| rock.region.is_none() && rock.blocks.is_empty());
         by_block.or_else(by_region).or_else(background).map_or(0, |(k, _)| k)
     }
