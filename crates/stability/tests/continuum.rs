@@ -189,7 +189,16 @@ fn without_a_limit_the_factor_is_beyond_the_range() {
         + STAGE;
     let found = of_text(&flat, 100);
     assert_eq!((found.lower.value(), found.upper.value()), (f64::INFINITY, f64::INFINITY), "{found:?}");
-    assert!(found.mechanism.is_empty());
+    assert!(found.mechanism.is_empty() && found.warnings.is_empty(), "{found:?}");
+    let without_weight = flat.replace("[mesh]", "[gravity]\ny = 0.0\n[mesh]");
+    assert_eq!(of_text(&without_weight, 100).lower.value(), f64::INFINITY);
+}
+
+#[test]
+fn bounds_that_are_far_apart_ask_for_more_triangles() {
+    let found = of_text(&griffiths_and_lane("", ""), 60);
+    holds(&found, 1.380, 0.3);
+    assert!(found.warnings.iter().any(|warning| warning.contains("--triangles")), "{:?}", found.warnings);
 }
 
 #[test]

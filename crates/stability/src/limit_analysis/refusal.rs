@@ -129,8 +129,8 @@ fn refuse_points(case: &Case) -> Result<(), Invalid> {
         return Err(refused(key.field(field), format!("is given, but {remedy}")));
     }
     if let Some(k) = case.loads.iter().position(|load| matches!(load.kind, LoadKind::Point | LoadKind::Block)) {
-        let message = "acts on a point or a block, but limit analysis of rock that yields spreads loads over edges: use \
-                       \"traction\" or \"pressure\"";
+        let message = "acts on a point or a block, but limit analysis of rock that yields spreads loads over edges: \
+                       use \"traction\" or \"pressure\"";
         return Err(refused(root.field("load").index(k).field("kind"), message));
     }
     let pushes =

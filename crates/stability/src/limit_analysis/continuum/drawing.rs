@@ -4,29 +4,11 @@ use std::collections::BTreeMap;
 
 use enmm::geometry::{Point, segment};
 use enmm::model::Simulation;
-use enmm::model::tables::{BlockId, BoundaryPiece, LawId, Outlines};
+use enmm::model::tables::{BlockId, BoundaryPiece, Outlines};
 
 use super::loads::Loads;
+use super::marks::Marks;
 use crate::limit_analysis::model::Strengths;
-
-/// What is the same all along a side.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Marks {
-    /// Block on its left.
-    pub left: Option<BlockId>,
-    /// Block on its right.
-    pub right: Option<BlockId>,
-    /// Law of the joint between them.
-    pub law: Option<LawId>,
-    /// Axes along which a fixity holds it.
-    pub held: [bool; 2],
-    /// Loads on it, by their place in the case.
-    pub loads: Vec<usize>,
-    /// Whether water reaches it.
-    pub is_wet: bool,
-    /// Whether it only parts two rocks of one block.
-    pub is_seam: bool,
-}
 
 /// A straight side between two points.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use enmm::model::Simulation;
 use enmm::model::case::LoadKind;
 use enmm::model::tables::BoundaryPiece;
 
-use super::drawing::Marks;
+use super::marks::Marks;
 
 /// A load on sides of the rock.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@ mod drawing;
 mod ground;
 mod loads;
 mod lower;
+mod marks;
 mod mesh;
 mod search;
 mod sizes;
@@ -19,9 +20,10 @@ use enmm::model::{BoltSegment, Simulation};
 
 use super::model::{Strengths, bodies};
 use super::{BoundError, Factor, refusal};
-use drawing::{Drawing, Marks, Side};
+use drawing::{Drawing, Side};
 use ground::{Bar, Edge, Patch, Rock, Strength};
 use loads::Loads;
+use marks::Marks;
 use mesh::Mesh;
 use search::{Proof, Proven, prove};
 use sizes::Sizes;
@@ -39,6 +41,8 @@ const MOVES: f64 = 0.1;
 const FANNED: usize = 2;
 /// Root of the area of triangles about such a point over their distance from it.
 const SECTOR: f64 = 0.3;
+/// Distance of both bounds, relative to the lower one, that is worth a warning.
+const APART: f64 = 0.05;
 /// Share of its triangles that a mesh has at least, and the meshes that are tried for it.
 const FULL: f64 = 0.85;
 const MESHES: usize = 8;
@@ -102,7 +106,7 @@ struct Ground {
 /// # Errors
 /// A case that cannot be built, that holds what cannot be treated, or whose program is not solved.
 pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
-    let (simulation, warnings) = refusal::staged_rock(case)?;
+    let (simulation, mut warnings) = refusal::staged_rock(case)?;
     let ground = Ground::new(simulation, case)?;
     let found = ground.upper(triangles)?;
     let turning = ground.turning(&found.sizes);
@@ -110,6 +114,7 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     let unsolved = |status| unsolved(stresses.patches.len(), status);
     let start = found.proven.factor.strength() * (1.0 + AHEAD);
     let lower = prove(|x| lower::program(&stresses, x).solve(), start, Proof::Equilibrium).map_err(unsolved)?;
+    warnings.extend(apart(lower.factor, found.proven.factor));
     Ok(Bracket {
         lower: lower.factor,
         upper: found.proven.factor,
@@ -118,6 +123,19 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
         mechanism: ground.mechanism(&found),
         notes: ground.simulation.built().notes.clone(),
         warnings,
+    })
+}
+
+/// What to do where the bounds are far apart.
+fn apart(lower: Factor, upper: Factor) -> Option<String> {
+    let (Factor::Found(lower), Factor::Found(upper)) = (lower, upper) else { return None };
+    let share = upper / lower - 1.0;
+    (share > APART).then(|| {
+        format!(
+            "the bounds are {:.1} % apart: ask `enmm bound` for more triangles with --triangles, more so where joints \
+             cut the rock into many blocks",
+            100.0 * share
+        )
     })
 }
 
@@ -168,7 +186,8 @@ impl Ground {
         let area: f64 = covers.blocks().filter(there).map(|b| covers.block_area(b)).sum();
         let densest = simulation.model().rocks.iter().map(|rock| rock.density).fold(0.0, f64::max);
         let length = area.sqrt();
-        let stress = (densest * loads.acceleration.norm() * length).max(loads.greatest()).max(f64::MIN_POSITIVE);
+        let stress = (densest * loads.acceleration.norm() * length).max(loads.greatest());
+        let stress = if stress > 0.0 { stress } else { 1.0 };
         let is_held = refusal::held_blocks(&simulation);
         let kinds = case.rocks.values().map(|rock| strength(rock, stress)).collect();
         Ok(Self { kinds, units: [length, stress], drawing, loads, is_held, area, simulation })

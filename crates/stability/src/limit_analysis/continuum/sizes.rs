@@ -9,7 +9,8 @@ use super::mesh::Mesh;
 const FLOOR: f64 = 0.1;
 /// Least area of triangles for stress, over the mean: about a point stress turns as much far from it as close to it.
 const LEAST: f64 = 0.3;
-/// Mean rate of shear, over the greatest speed and the size of the rock, that counts as none: blocks move as rigid ones.
+/// Mean rate of shear, over the greatest speed and the size of the rock, that counts as none: blocks move as rigid
+/// ones.
 const RIGID: f64 = 1e-4;
 
 /// Areas (m²) of triangles, up to a factor, by position.
