@@ -1,12 +1,15 @@
 //! `enmm bound`: limit analysis of a case, a second opinion on its factor of safety.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm_io::LoadedCase;
 use enmm_report::PAGE;
-use enmm_run::{BoundFailure, Folder, bound_record, write_bound_page};
-use enmm_stability::limit_analysis::{Bound, Collapse};
+use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound_page, write_bracket_page};
+use enmm_stability::limit_analysis::continuum::{Bracket, TRIANGLES};
+use enmm_stability::limit_analysis::{Bound, Collapse, Factor};
+use serde_json::Value;
 
 use crate::case::CaseArguments;
 use crate::run::directory_for;
@@ -23,22 +26,71 @@ pub struct Arguments {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    /// Most triangles of a mesh, where rock yields.
+    #[arg(long, value_name = "N", default_value_t = TRIANGLES, value_parser = triangles)]
+    triangles: usize,
+}
+
+fn triangles(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if count >= LEAST => Ok(count),
+        _ => Err(format!("give a whole number of at least {LEAST}")),
+    }
+}
+
+/// Fewest triangles that one can ask for.
+const LEAST: usize = 30;
+
+/// Limit analysis of rigid blocks, or of rock that yields.
+enum Found {
+    Blocks(Bound),
+    Rock(Bracket),
+}
+
+impl Found {
+    fn of(loaded: &LoadedCase, triangles: usize) -> Result<Self, BoundFailure> {
+        match loaded.case.yields() {
+            true => enmm_run::bracket(loaded, triangles).map(Self::Rock),
+            false => enmm_run::bound(loaded).map(Self::Blocks),
+        }
+    }
+
+    fn record(&self) -> Value {
+        match self {
+            Self::Blocks(bound) => bound_record(bound),
+            Self::Rock(bracket) => bracket_record(bracket),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Blocks(bound) => text(bound),
+            Self::Rock(bracket) => bracket_text(bracket),
+        }
+    }
+
+    fn write_page(&self, directory: &Path, loaded: &LoadedCase) -> std::io::Result<()> {
+        match self {
+            Self::Blocks(bound) => write_bound_page(directory, loaded, bound),
+            Self::Rock(bracket) => write_bracket_page(directory, loaded, bracket),
+        }
+    }
 }
 
 /// Finds the bounds of a case, prints them and writes their page.
 pub fn bound(arguments: &Arguments) -> ExitCode {
-    let Arguments { case, output, json } = arguments;
+    let Arguments { case, output, json, triangles } = arguments;
     let json = *json;
     let directory = output.clone().unwrap_or_else(|| directory_for(&case.path, "bound"));
     let loaded = case.load().map_err(BoundFailure::from);
     let found = loaded.and_then(|loaded| {
         let held = Folder::open(&directory, loaded.source.inputs()).map_err(BoundFailure::Directory)?;
-        enmm_run::bound(&loaded).map(|bound| (loaded, held, bound))
+        Found::of(&loaded, *triangles).map(|found| (loaded, held, found))
     });
     match found {
-        Ok((loaded, _held, bound)) => {
-            print_line(&if json { bound_record(&bound).to_string() } else { text(&bound) });
-            if let Err(error) = write_bound_page(&directory, &loaded, &bound) {
+        Ok((loaded, _held, found)) => {
+            print_line(&if json { found.record().to_string() } else { found.text() });
+            if let Err(error) = found.write_page(&directory, &loaded) {
                 return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
             }
             if !json {
@@ -55,6 +107,23 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+fn bracket_text(bracket: &Bracket) -> String {
+    let row = |name: &str, factor: Factor, meaning: &str| format!("{name:<21} {:<14} {meaning}", factor.to_string());
+    let [area, mass] = bracket.moving().fold([0.0; 2], |[area, mass], m| [area + m.area, mass + m.mass]);
+    let mut lines = vec![
+        row("lower bound", bracket.lower, "stresses in equilibrium, nowhere beyond the strength: nothing collapses"),
+        row("upper bound", bracket.upper, "a mechanism of rock that dilates by its friction angle"),
+        format!("{:<21} {area:.2} m², {mass:.4e} kg/m with more than a tenth of the greatest speed", "mechanism"),
+        format!(
+            "{:<21} {} and {} triangles; {} conic programs",
+            "model", bracket.triangles[0], bracket.triangles[1], bracket.programs
+        ),
+    ];
+    lines.extend(bracket.notes.iter().map(|note| format!("note: {note}")));
+    lines.extend(bracket.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.join("\n")
 }
 
 fn text(bound: &Bound) -> String {

@@ -177,13 +177,19 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
     } else if let Some(least) = reduction.at_least() {
         tell("factor of safety", format!("at least {least:.4}"));
     }
-    match &reduction.bound {
-        Ok(bound) => {
+    match (&reduction.bracket, &reduction.bound) {
+        (Some(bracket), _) => {
+            tell(
+                "limit analysis",
+                format!("{} to {} where rock dilates by its friction", bracket.lower, bracket.upper),
+            );
+        }
+        (None, Ok(bound)) => {
             let [level, associated] =
                 [&bound.level_tops, &bound.associated].map(|collapse| collapse.factor.to_string());
             tell("limit analysis", format!("{level} where level tops pass, {associated} associated"));
         }
-        Err(refused) => tell("limit analysis", format!("none: {refused}")),
+        (None, Err(refused)) => tell("limit analysis", format!("none: {refused}")),
     }
     if let Some(trial) = reduction.first_unstable() {
         tell("mechanism", mechanism(trial, reduction, found));

@@ -40,10 +40,31 @@ fn a_block_on_a_level_floor_never_falls() {
     assert!(answer.stdout.contains("\"at_least\""), "{answer:?}");
 }
 
+/// Rock of 10 MPa holds the block, so that the joint decides.
+fn yielding(more: &str) -> Place {
+    Place::with(&incline(0.65, more).replace("poisson = 0.25", "poisson = 0.25\ncohesion = 1e7"))
+}
+
 #[test]
-fn rock_that_yields_is_bad_input() {
-    let place = Place::with(&incline(0.65, "").replace("poisson = 0.25", "poisson = 0.25\nfriction_deg = 30.0"));
+fn rock_that_yields_is_bounded_from_both_sides() {
+    let place = yielding("");
+    let answer = place.enmm(&["bound", "case.toml", "--triangles", "300"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("lower bound") && answer.stdout.contains("upper bound"), "{answer:?}");
+    let answer = place.enmm(&["bound", "case.toml", "--triangles", "300", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(answer.stdout.trim()).expect("one JSON object");
+    let [lower, upper] = ["lower", "upper"].map(|kind| found[kind]["factor"].as_f64().expect("a factor"));
+    assert!(1.26 < lower && lower <= 1.3 && (1.3 - 1e-4..1.301).contains(&upper), "{lower} to {upper}");
+    assert!(found["upper"]["mechanism"].as_array().is_some_and(|moving| moving.len() > 10), "{found}");
+    assert_eq!(place.names(), ["case", "case.toml"], "the page goes to the folder of the case");
+}
+
+#[test]
+fn what_rock_that_yields_cannot_bear_is_bad_input() {
+    let place = yielding("[[load]]\nkind = \"point\"\npoint = [0.1, 0.1]\nforce = [0.0, -1.0]\n");
     let answer = place.enmm(&["bound", "case.toml", "--json"]);
     assert_eq!(answer.status, Some(2), "{answer:?}");
-    assert!(answer.stdout.contains("\"error\"") && answer.stderr.contains("rock.rock.friction_deg"), "{answer:?}");
+    assert!(answer.stdout.contains("\"error\"") && answer.stderr.contains("load[0].kind"), "{answer:?}");
+    let answer = place.enmm(&["bound", "case.toml", "--triangles", "10"]);
+    assert_eq!(answer.status, Some(2), "{answer:?}");
 }

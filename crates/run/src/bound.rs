@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use enmm_io::CaseError;
 use enmm_io::LoadedCase;
+use enmm_stability::limit_analysis::continuum::{Bracket, Motion, bracket as bracket_of};
 use enmm_stability::limit_analysis::{self, Bound, BoundError, Collapse, Factor};
 
 /// Why there is no bound.
@@ -27,12 +28,51 @@ pub enum BoundFailure {
 /// # Errors
 /// When the case cannot be built or treated, with file and line, or was not solved.
 pub fn bound(loaded: &LoadedCase) -> Result<Bound, BoundFailure> {
-    let mut bound = limit_analysis::bound(&loaded.case).map_err(|error| match error {
-        BoundError::Case(invalid) => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),
-        unsolved @ BoundError::Unsolved { .. } => BoundFailure::Unsolved(unsolved),
-    })?;
+    let mut bound = limit_analysis::bound(&loaded.case).map_err(|error| failure(loaded, error))?;
     bound.warnings.splice(0..0, loaded.warnings.iter().cloned());
     Ok(bound)
+}
+
+/// Finds the bracket of a case file whose rock yields, with meshes of at most so many triangles.
+///
+/// # Errors
+/// As [`bound`].
+pub fn bracket(loaded: &LoadedCase, triangles: usize) -> Result<Bracket, BoundFailure> {
+    let mut bracket = bracket_of(&loaded.case, triangles).map_err(|error| failure(loaded, error))?;
+    bracket.warnings.splice(0..0, loaded.warnings.iter().cloned());
+    Ok(bracket)
+}
+
+fn failure(loaded: &LoadedCase, error: BoundError) -> BoundFailure {
+    match error {
+        BoundError::Case(invalid) => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),
+        unsolved => BoundFailure::Unsolved(unsolved),
+    }
+}
+
+/// A bracket as JSON, its factors as those of a bound.
+pub fn bracket_record(bracket: &Bracket) -> Value {
+    let motion = |m: &Motion| {
+        json!({
+            "block": m.block,
+            "x": m.position.x,
+            "y": m.position.y,
+            "vx": m.velocity.x,
+            "vy": m.velocity.y,
+            "area": m.area,
+            "mass": m.mass,
+        })
+    };
+    let mut upper = factor(bracket.upper);
+    upper["mechanism"] = bracket.moving().map(motion).collect();
+    json!({
+        "lower": factor(bracket.lower),
+        "upper": upper,
+        "triangles": { "lower": bracket.triangles[0], "upper": bracket.triangles[1] },
+        "programs": bracket.programs,
+        "notes": bracket.notes,
+        "warnings": bracket.warnings,
+    })
 }
 
 /// A bound as JSON: factors that are none are null, with a word on the way in which they are.
@@ -53,12 +93,17 @@ pub fn bound_record(bound: &Bound) -> Value {
     })
 }
 
-fn collapse(collapse: &Collapse) -> Value {
-    let (factor, end, limit) = match collapse.factor {
+/// A factor with a word on the way in which it is or is not one.
+fn factor(factor: Factor) -> Value {
+    let (factor, end, limit) = match factor {
         Factor::Found(factor) => (Some(factor), "found", factor),
         Factor::AtLeast(least) => (None, "at_least", least),
         Factor::AtMost(most) => (None, "at_most", most),
     };
+    json!({ "factor": factor, "end": end, "limit": limit })
+}
+
+fn collapse(collapse: &Collapse) -> Value {
     let block = |b: &limit_analysis::MovingBlock| {
         json!({
             "block": b.block,
@@ -72,6 +117,7 @@ fn collapse(collapse: &Collapse) -> Value {
             "mass": b.mass,
         })
     };
-    let mechanism: Vec<Value> = collapse.mechanism.iter().map(block).collect();
-    json!({ "factor": factor, "end": end, "limit": limit, "mechanism": mechanism })
+    let mut record = factor(collapse.factor);
+    record["mechanism"] = collapse.mechanism.iter().map(block).collect();
+    record
 }

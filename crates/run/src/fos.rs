@@ -9,7 +9,7 @@ use std::{fs, io};
 
 use serde_json::{Value, json};
 
-use super::bound::bound_record;
+use super::bound::{bound_record, bracket_record};
 use super::folder::Folder;
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
@@ -246,9 +246,10 @@ fn search_record(reduction: &Reduction) -> Value {
             "share": trial.failing_area() / reduction.free_area,
         })),
         "failing_blocks": failing.map_or(&[][..], |trial| &trial.failing).iter().map(block_record).collect::<Vec<_>>(),
-        "bound": match &reduction.bound {
-            Ok(bound) => bound_record(bound),
-            Err(refused) => json!({ "refused": refused }),
+        "bound": match (&reduction.bracket, &reduction.bound) {
+            (Some(bracket), _) => bracket_record(bracket),
+            (None, Ok(bound)) => bound_record(bound),
+            (None, Err(refused)) => json!({ "refused": refused }),
         },
         "remedy": remedy(reduction),
         "notes": reduction.simulation.built().notes,

@@ -12,6 +12,7 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_io::files::temporary_beside;
+use enmm_stability::limit_analysis::continuum::{Bracket, Motion};
 use enmm_stability::limit_analysis::{self, Bound, Collapse};
 use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
 
@@ -90,6 +91,50 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     close(film, &path)
 }
 
+/// Writes the page of a limit analysis of rock that yields.
+///
+/// # Errors
+/// As [`write_bound_page`].
+pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Bracket) -> io::Result<()> {
+    let staged = limit_analysis::staged_rock(&loaded.case);
+    let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
+    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
+    let path = temporary_beside(&directory.join(FILM))?;
+    let opening = Opening { command: "bound", film: path.clone(), axis, quantities: Vec::new(), columns: &[] };
+    let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
+    film.frame_at(&simulation, 0.0)?;
+    let reach = SHOWN * greater_side(&simulation);
+    move_by(&mut simulation, bracket, reach);
+    film.frame_at(&simulation, 1.0)?;
+    let factors = [("lower bound", bracket.lower.to_string()), ("upper bound", bracket.upper.to_string())];
+    let text = |(name, value): (&str, String)| (name.to_owned(), value);
+    film.note(0.0, &facts("Factor of safety by limit analysis", factors.map(text)))?;
+    let shown = [
+        ("0", "the slope before it moves".to_owned()),
+        ("1", format!("the mechanism of the upper bound; its size is free, so the fastest rock moves {reach:.3} m")),
+    ];
+    film.note(0.0, &facts("What the slider shows", shown.map(text)))?;
+    note_warnings(&mut film, bracket.warnings.iter())?;
+    film.note_changes(&simulation)?;
+    close(film, &path)
+}
+
+/// Moves every cover as the triangle of its block that lies nearest to it, by `reach` (m) where that is fastest.
+fn move_by(simulation: &mut Simulation, bracket: &Bracket, reach: f64) {
+    let mut state = simulation.state().clone();
+    let covers = &simulation.model().covers;
+    for block in covers.blocks() {
+        let own: Vec<&Motion> = bracket.mechanism.iter().filter(|motion| motion.block == block.number()).collect();
+        for cover in covers.covers_of(block) {
+            let at = covers.star_position[cover];
+            let away = |motion: &Motion| (motion.position - at).norm_squared();
+            let nearest = own.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            state.displacement[cover] = nearest.map_or_else(Vector::zeros, |motion| motion.velocity * reach);
+        }
+    }
+    simulation.restore(state);
+}
+
 /// Ends the film, writes its page and removes the film, which the page holds.
 fn close(mut film: Film, path: &Path) -> io::Result<()> {
     film.close(1.0, "finished".to_owned())?;
@@ -118,12 +163,13 @@ fn trials(search: &Reduction, name: &str) -> TrialTable {
         (None, Some(least)) => format!("at least {least:.4}"),
         (None, None) => format!("not found{bracket}"),
     };
-    let bound = match &search.bound {
-        Ok(bound) => format!(
+    let bound = match (&search.bracket, &search.bound) {
+        (Some(bracket), _) => format!("limit analysis: {} to {}", bracket.lower, bracket.upper),
+        (None, Ok(bound)) => format!(
             "limit analysis: {} where level tops pass, {} associated",
             bound.level_tops.factor, bound.associated.factor
         ),
-        Err(refused) => format!("limit analysis: none, {refused}"),
+        (None, Err(refused)) => format!("limit analysis: none, {refused}"),
     };
     let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
     TrialTable { result: format!("{mechanism}{result}; {bound}"), trials: search.trials.iter().map(row).collect() }

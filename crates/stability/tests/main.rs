@@ -2,6 +2,7 @@
 
 #[path = "../../../tests/common/mod.rs"]
 mod common;
+mod continuum;
 mod examples_of_claims;
 mod fos_against_bound;
 mod fos_block_on_incline;

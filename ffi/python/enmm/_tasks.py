@@ -266,9 +266,10 @@ def fos(
 
 
 def bound(case: CaseLike, output: str | os.PathLike[str] | None = None) -> dict[str, Any]:
-    """Bounds of the factor of safety by limit analysis of rigid blocks, the object of `enmm bound --json`.
+    """Bounds of the factor of safety by limit analysis, the object of `enmm bound --json`.
 
-    `associated`, `level_tops` and `catching` have `factor`, `end` and `mechanism` each. `output` is a directory for
+    `associated`, `level_tops` and `catching` of rigid blocks, and `lower` and `upper` of rock that yields, have
+    `factor` and `end` each, and all but `lower` a `mechanism`. `output` is a directory for
     `report.html`, which shows the mechanism; without it no page is left. Raises CaseError for a case that limit
     analysis cannot treat.
     """

@@ -2,6 +2,7 @@
 //! second opinion beside strength reduction (theory, section 19).
 
 mod contact;
+pub mod continuum;
 mod corner;
 mod interfaces;
 mod model;
@@ -18,7 +19,7 @@ use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
 use program::{Program, Unsolved};
-pub use refusal::staged;
+pub use refusal::{staged, staged_rock};
 use search::{Limit, Search};
 
 /// Range of factors that is searched; outside it the result is `AtMost` or `AtLeast`.
@@ -48,6 +49,13 @@ impl std::fmt::Display for Factor {
 }
 
 impl Factor {
+    /// The strength at the factor, or at the end of the range beyond which it lies.
+    fn strength(&self) -> f64 {
+        match *self {
+            Self::Found(factor) | Self::AtLeast(factor) | Self::AtMost(factor) => 1.0 / factor,
+        }
+    }
+
     /// The factor where equilibrium ends; infinite when it does not, zero when there is none.
     pub fn value(&self) -> f64 {
         match *self {
@@ -130,6 +138,27 @@ pub enum BoundError {
         blocks: usize,
         /// Status of the solver.
         status: String,
+    },
+    /// A conic program has a solution, but the solver did not reach it.
+    #[error(
+        "the conic program of {triangles} triangles was not solved ({status}): hold the rock by [[fix]] where it goes \
+         on, remove slivers of rock, or ask for another number of triangles"
+    )]
+    UnsolvedRock {
+        /// Triangles of the mesh.
+        triangles: usize,
+        /// Status of the solver.
+        status: String,
+    },
+    /// No mesh of triangles fits the rock.
+    #[error(
+        "points of the drawing nearly coincide at ({x:.6}, {y:.6}) m: snap them with a larger domain.snap_tolerance"
+    )]
+    Close {
+        /// Position (m).
+        x: f64,
+        /// Position (m).
+        y: f64,
     },
 }
 

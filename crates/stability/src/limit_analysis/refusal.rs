@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 use enmm::model::case::key::Key;
-use enmm::model::case::{Case, Invalid, JointLawKind, Solver, StageKind};
+use enmm::model::case::{Axes, Case, Invalid, JointLawKind, LoadKind, Plane, Port, Solver, StageKind};
 
 use crate::left_out_stages;
 
@@ -11,6 +11,15 @@ use crate::left_out_stages;
 /// # Errors
 /// A key that cannot be treated or does not fit the model.
 pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
+    refuse_yielding(case)?;
+    staged_rock(case)
+}
+
+/// The same for rock that may yield, which yields nowhere in the model: limit analysis takes strength from the case.
+///
+/// # Errors
+/// A key that cannot be treated or does not fit the model.
+pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     case.validate()?;
     let mut case = case.clone();
     // No step is taken, so the integrator and its keys do not matter.
@@ -28,9 +37,15 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
         warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();
     }
-    refuse_yielding(&case)?;
     refuse_motion(&case)?;
     refuse_curves(&case)?;
+    if case.yields() {
+        refuse_points(&case)?;
+    }
+    // No element takes part, so that none yields, and no doubt about elements that yield has a place.
+    for rock in case.rocks.values_mut() {
+        (rock.friction_deg, rock.cohesion, rock.dilation_deg, rock.tension) = (None, None, None, None);
+    }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
     warnings.extend(simulation.built().warnings.iter().cloned());
@@ -49,8 +64,8 @@ fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
             (None, cohesion) => ("cohesion", cohesion.unwrap_or_default()),
         };
         let message = format!(
-            "is {value}, but limit analysis takes blocks as rigid, and this rock yields: leave out its strength, or \
-             use `enmm fos`"
+            "is {value}, but limit analysis of rigid blocks knows no rock that yields: leave out its strength, or \
+             use `enmm bound`, which brackets the factor of such rock"
         );
         return Err(refused(key.field(field), message));
     }
@@ -90,4 +105,53 @@ fn refuse_curves(case: &Case) -> Result<(), Invalid> {
         return Err(refused(Key::root().field("joint_law").field(name).field("kind"), message));
     }
     Ok(())
+}
+
+/// What acts on a point or on a whole block, in rock that yields: no stress that is finite carries it.
+fn refuse_points(case: &Case) -> Result<(), Invalid> {
+    let root = Key::root();
+    for (name, rock) in &case.rocks {
+        if rock.plane == Plane::Stress {
+            let message = "is \"stress\", but limit analysis takes rock that yields in plane strain: use \"strain\"";
+            return Err(refused(root.field("rock").field(name).field("plane"), message));
+        }
+    }
+    for (k, fix) in case.fixes.iter().enumerate() {
+        let key = root.field("fix").index(k);
+        let remedy =
+            "limit analysis of rock that yields holds edges and whole blocks: give edge, or block with both axes";
+        let field = match (fix.point, fix.region, fix.block) {
+            (Some(_), ..) => "point",
+            (_, Some(_), _) => "box",
+            (.., Some(_)) if fix.axes != Axes::default() => "axes",
+            _ => continue,
+        };
+        return Err(refused(key.field(field), format!("is given, but {remedy}")));
+    }
+    if let Some(k) = case.loads.iter().position(|load| matches!(load.kind, LoadKind::Point | LoadKind::Block)) {
+        let message = "acts on a point or a block, but limit analysis of rock that yields spreads loads over edges: \
+                       use \"traction\" or \"pressure\"";
+        return Err(refused(root.field("load").index(k).field("kind"), message));
+    }
+    let pushes =
+        |port: &Port| port.force != [0.0; 2] || port.traction != [0.0; 2] || port.moment != 0.0 || port.pressure != 0.0;
+    if let Some(k) = case.ports.iter().position(pushes) {
+        let message = "pushes at the start, but limit analysis of rock that yields knows no ports: give a [[load]]";
+        return Err(refused(root.field("port").index(k), message));
+    }
+    Ok(())
+}
+
+/// Blocks that fixities hold altogether.
+pub fn held_blocks(simulation: &Simulation) -> Vec<bool> {
+    let covers = &simulation.model().covers;
+    let mut held = vec![false; covers.block_count()];
+    for (k, fix) in simulation.case().fixes.iter().enumerate() {
+        let Some(point) = fix.block.filter(|_| simulation.state().fix_active[k]) else { continue };
+        let element = covers.element_near(point.into(), 2.0 * simulation.built().noding.tolerance);
+        if let Some(element) = element {
+            held[covers.element_block[element].number() as usize] = true;
+        }
+    }
+    held
 }

@@ -21,6 +21,25 @@ impl Reduction {
 
     /// Why the factor is in doubt: it is above the bound of limit analysis. The text is among the warnings, too.
     pub fn doubt(&self) -> Option<String> {
+        self.locked().or_else(|| self.held())
+    }
+
+    /// The factor of rock that yields is above its upper bound.
+    fn locked(&self) -> Option<String> {
+        let bracket = self.bracket.as_ref()?;
+        let moving: f64 = bracket.moving().map(|motion| motion.mass).sum();
+        let (stable, limit) = (self.low.filter(|_| moving > self.simulation.mass_of_few())?, bracket.upper.value());
+        (stable > ABOVE * limit).then(|| {
+            format!(
+                "F = {stable:.4} was stable, {:.1} % above the upper bound of limit analysis ({limit:.4}): the mesh is \
+                 too coarse for rock that yields; set a smaller `mesh.size`",
+                100.0 * (stable / limit - 1.0)
+            )
+        })
+    }
+
+    /// The factor of rigid blocks is above their bound.
+    fn held(&self) -> Option<String> {
         let bound = self.bound.as_ref().ok().filter(|bound| self.moves_slope(bound))?;
         let (stable, limit) = (self.low?, bound.level_tops.factor.value());
         (stable > ABOVE * limit).then(|| {

@@ -14,6 +14,7 @@ use std::sync::atomic::AtomicBool;
 use enmm::geometry::Point;
 use enmm::model::StepError;
 
+use super::limit_analysis::continuum::{self, Bracket};
 use super::limit_analysis::{self, Bound};
 use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Simulation};
@@ -141,6 +142,9 @@ pub enum End {
     Failed(StepError),
 }
 
+/// Most triangles of the meshes of limit analysis beside a search: a second or two.
+const TRIANGLES: usize = 1000;
+
 /// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Reduction {
@@ -158,6 +162,8 @@ pub struct Reduction {
     pub free_area: f64,
     /// Limit analysis of the same model, or why there is none.
     pub bound: Result<Bound, String>,
+    /// That of a model whose rock yields, in place of the bound.
+    pub bracket: Option<Bracket>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
@@ -262,16 +268,37 @@ pub fn factor_of_safety(
     }
     trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let end = end.unwrap_or_else(|| search.end());
-    let bound = match end {
-        End::Interrupted => Err("interrupted".to_owned()),
-        _ => limit_analysis::bound(case).map_err(|error| error.to_string()),
-    };
+    let (bound, bracket) = second_opinion(case, &end);
     let [low, high] = search.bracket();
     let free_area = base.free_area();
     let simulation = unstable.map_or(base.simulation, |(_, simulation)| simulation);
-    let mut reduction =
-        Reduction { trials, low, high, end, rest: rest.effort, free_area, bound, warnings: rest.warnings, simulation };
+    let mut reduction = Reduction {
+        trials,
+        low,
+        high,
+        end,
+        rest: rest.effort,
+        free_area,
+        bound,
+        bracket,
+        warnings: rest.warnings,
+        simulation,
+    };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);
     Ok(reduction)
+}
+
+/// Limit analysis beside a search: of rigid blocks, or of rock that yields.
+fn second_opinion(case: &Case, end: &End) -> (Result<Bound, String>, Option<Bracket>) {
+    if *end == End::Interrupted {
+        return (Err("interrupted".to_owned()), None);
+    }
+    if !case.yields() {
+        return (limit_analysis::bound(case).map_err(|error| error.to_string()), None);
+    }
+    match continuum::bracket(case, TRIANGLES) {
+        Ok(bracket) => (Err("rock yields, and blocks are not rigid".to_owned()), Some(bracket)),
+        Err(error) => (Err(error.to_string()), None),
+    }
 }

@@ -1,0 +1,182 @@
+//! Triangles with their strength and weight, edges with their law and load: what both programs are made of. Lengths
+//! and stresses are in units of the model.
+
+use enmm::geometry::{Point, Vector};
+
+use super::conic::{Conic, Strong, Sum};
+
+/// Unknown 0: the cohesion that is missing for equilibrium.
+pub const MISSING: usize = 0;
+/// Most cohesion, in the unit of stress, that strength may exceed its need by; beyond, it is not looked for.
+const SPARE: f64 = 1.0;
+
+/// Mohr–Coulomb strength of rock or of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strength {
+    /// tan φ.
+    pub friction: f64,
+    /// Cohesion.
+    pub cohesion: f64,
+    /// Tensile strength; none for that of the apex.
+    pub tension: Option<f64>,
+}
+
+/// What lies along an edge of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Edge {
+    /// The same rock or another without a joint: triangle, and the edge there.
+    Rock(usize, usize),
+    /// A joint with the triangle and the edge behind it, and fluid pressure at both ends.
+    Joint(usize, usize, Strength, [f64; 2]),
+    /// Air, water or a fixity: tractions at both ends, and axes that are held.
+    Outside([Vector; 2], [bool; 2]),
+}
+
+/// A triangle, counter-clockwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// Corners.
+    pub corners: [Point; 3],
+    /// Strength; none for rock that never yields.
+    pub strength: Option<Strength>,
+    /// Weight and inertia over the area.
+    pub body: Vector,
+    /// Whether it is held altogether.
+    pub is_held: bool,
+    /// What lies along the edge from each corner to the next.
+    pub edges: [Edge; 3],
+}
+
+/// A bolt's free length, which pulls its ends towards each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bar {
+    /// Triangles of both ends, with the shares of their corners in the position.
+    pub ends: [(usize, [f64; 3]); 2],
+    /// Unit vector from the first end to the second.
+    pub direction: Vector,
+    /// Force at which it yields; infinite for never.
+    pub most: f64,
+}
+
+/// Triangles and bolts.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rock {
+    /// Triangles.
+    pub patches: Vec<Patch>,
+    /// Bolts.
+    pub bars: Vec<Bar>,
+}
+
+impl Patch {
+    /// Shares of the corners in a position.
+    pub fn shares(&self, p: Point) -> [f64; 3] {
+        [0, 1, 2].map(|i| 1.0 + self.gradient(i).dot(&(p - self.corners[i])))
+    }
+
+    /// Area.
+    pub fn area(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        0.5 * (b - a).perp(&(c - a))
+    }
+
+    /// Gradient of the linear function that is 1 at corner `i` and 0 at the others.
+    pub fn gradient(&self, i: usize) -> Vector {
+        let along = self.corners[(i + 2) % 3] - self.corners[(i + 1) % 3];
+        Vector::new(-along.y, along.x) / (2.0 * self.area())
+    }
+
+    /// Length of edge `k` and its outward normal.
+    pub fn edge(&self, k: usize) -> (f64, Vector) {
+        let along = self.corners[(k + 1) % 3] - self.corners[k];
+        let length = along.norm();
+        (length, Vector::new(along.y, -along.x) / length)
+    }
+}
+
+/// The first unknown of the stress xx, yy, xy at a corner of a triangle.
+pub fn stress(triangle: usize, corner: usize) -> usize {
+    1 + 9 * triangle + 3 * corner
+}
+
+/// A program with the stresses and their limits, and the force of each bolt.
+pub fn begin(rock: &Rock, strength: f64) -> (Conic, Vec<Sum>) {
+    let mut program = Conic::new(stress(rock.patches.len(), 0));
+    yields(&mut program, &rock.patches, strength);
+    let pulls = rock.bars.iter().map(|bar| pull(&mut program, bar)).collect();
+    (program, pulls)
+}
+
+/// The force of a bolt, from nothing to its yield force, which strength reduction leaves as it is.
+fn pull(program: &mut Conic, bar: &Bar) -> Sum {
+    let force = Sum { terms: vec![(program.unknown(), 1.0)], constant: 0.0 };
+    program.is_positive(force.clone().into());
+    if bar.most.is_finite() {
+        program.is_positive(Sum::constant(bar.most).plus(&force, -1.0).into());
+    }
+    force
+}
+
+/// Traction along x and along y of the stress at a corner on a plane with this normal.
+pub fn traction(triangle: usize, corner: usize, normal: Vector) -> [Sum; 2] {
+    let s = stress(triangle, corner);
+    let sum = |terms: [(usize, f64); 2]| Sum { terms: terms.to_vec(), constant: 0.0 };
+    [sum([(s, normal.x), (s + 2, normal.y)]), sum([(s + 2, normal.x), (s + 1, normal.y)])]
+}
+
+/// Parts of a vector along a normal and along its tangent, the normal turned by +90°.
+pub fn turned([x, y]: [Sum; 2], normal: Vector) -> [Sum; 2] {
+    let along = |v: Vector| Sum::default().plus(&x, v.x).plus(&y, v.y);
+    [along(normal), along(Vector::new(-normal.y, normal.x))]
+}
+
+/// Limits of all stresses (Eqs. 88, 89), and of the search for the missing cohesion.
+fn yields(program: &mut Conic, patches: &[Patch], strength: f64) {
+    program.is_positive(Sum { terms: vec![(MISSING, 1.0)], constant: SPARE }.into());
+    for (t, patch) in patches.iter().enumerate().filter(|(_, patch)| !patch.is_held) {
+        for corner in 0..3 {
+            if let Some(rock) = patch.strength {
+                yields_at(program, stress(t, corner), rock, strength);
+            }
+        }
+    }
+}
+
+fn yields_at(program: &mut Conic, s: usize, rock: Strength, x: f64) {
+    let friction = rock.friction * x;
+    let secant = (1.0 + friction * friction).sqrt();
+    let change = rock.friction * friction / secant;
+    let sum = |terms: Vec<(usize, f64)>, constant: f64| Sum { terms, constant };
+    let shear = |by: f64| [sum(vec![(s, by), (s + 1, -by)], 0.0), sum(vec![(s + 2, 2.0 * by)], 0.0)];
+    let [across, along] = shear(secant);
+    let [across_change, along_change] = shear(change);
+    let room = sum(vec![(MISSING, 2.0), (s, -friction), (s + 1, -friction)], 2.0 * rock.cohesion * x);
+    let room_change = sum(vec![(s, -rock.friction), (s + 1, -rock.friction)], 2.0 * rock.cohesion);
+    program.is_cone([
+        Strong { now: room, change: room_change },
+        Strong { now: across, change: across_change },
+        Strong { now: along, change: along_change },
+    ]);
+    if let Some(tension) = rock.tension.filter(|tension| tension * rock.friction * x < rock.cohesion) {
+        let room = sum(vec![(MISSING, 2.0), (s, -1.0), (s + 1, -1.0)], 2.0 * tension * x);
+        let room_change = Sum::constant(2.0 * tension);
+        let [across, along] = shear(1.0);
+        program.is_cone([Strong { now: room, change: room_change }, across.into(), along.into()]);
+    }
+}
+
+/// Limits of a joint's traction (Eq. 90), given along its normal, tension positive, and along its tangent.
+pub fn slips(program: &mut Conic, [normal, shear]: [Sum; 2], joint: Strength, x: f64) {
+    let tension = joint.tension.unwrap_or_default();
+    let missing = Sum { terms: vec![(MISSING, 1.0)], constant: 0.0 };
+    let pull = missing.clone().plus(&normal, -1.0).plus(&Sum::constant(tension * x), 1.0);
+    program.is_positive(Strong { now: pull, change: Sum::constant(tension) });
+    // Where the tensile strength reaches beyond the apex of the cone, the cone grows to hold it (Eq. 78).
+    let apex = tension * joint.friction * x;
+    let (cohesion, change) =
+        if apex > joint.cohesion { (apex * x, 2.0 * apex) } else { (joint.cohesion * x, joint.cohesion) };
+    for sign in [1.0, -1.0] {
+        let room = missing.clone().plus(&normal, -joint.friction * x).plus(&shear, sign);
+        let change = Sum::constant(change).plus(&normal, -joint.friction);
+        program.is_positive(Strong { now: room.plus(&Sum::constant(cohesion), 1.0), change });
+    }
+}
