@@ -3,7 +3,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Deformation, Elasticity};
+use super::{Deformation, Elasticity, Strained};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
 pub type PlasticStrain = [f64; 4];
@@ -71,34 +71,55 @@ impl MohrCoulomb {
         }
     }
 
+    /// Mean of the stresses xx and yy (Pa) at a volume change, without in-situ stress.
+    pub fn mean_stress(&self, dilatation: f64, plastic: &PlasticStrain) -> f64 {
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let [xx, yy, ..] = self.relief(plastic);
+        (lambda + mu) * dilatation - 0.5 * (xx + yy)
+    }
+
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
     fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
 
-    /// Contribution of plastic strain to the forces (N/m) on the three covers of an element of cut area `area` (m²).
+    /// Contribution of plastic strain and of averages to the forces (N/m) on the three covers of an element of cut area
+    /// `area` (m²); `mean` is the averaged mean stress (Pa), if there is one (Eq. 89).
     ///
     /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
     /// rotate no element (Eq. 58).
-    pub fn forces(&self, at: &Deformation, g: &[Vector; 3], area: f64, plastic: &PlasticStrain) -> [Vector; 3] {
+    pub fn forces(
+        &self,
+        at: &Deformation,
+        (g, area): (&[Vector; 3], f64),
+        plastic: &PlasticStrain,
+        mean: Option<f64>,
+    ) -> [Vector; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
+        let more = mean.map_or(0.0, |mean| mean - self.mean_stress(at.dilatation(), plastic));
+        let (xx, yy) = (xx - more, yy - more);
         let skew = at.skew([xx, yy, xy]);
         let p = at.turn_rows([xx, xy + skew, xy - skew, yy]).map(|v| area * v);
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
     }
 
-    /// Contribution of plastic strain to the stress xx, yy, xy (Pa) in global axes.
-    pub fn stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 3] {
+    /// Contribution of plastic strain and of the averaged volume change to the stress xx, yy, xy (Pa) in global axes.
+    pub fn stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 3] {
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let more = (lambda + mu) * at.more();
         let [xx, yy, xy, _] = self.relief(plastic);
-        at.turn([-xx, -yy, -xy])
+        at.deformation.turn([more - xx, more - yy, -xy])
     }
 
-    /// Contribution of plastic strain to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. 58).
-    pub fn energy(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+    /// Contribution of plastic strain and of the averaged volume change to the energy (J/m²) under a pre-stress xx, yy,
+    /// xy, zz (Pa) (Eqs. 58, 88).
+    pub fn energy(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let more = 0.5 * (lambda + mu) * at.more() * (at.dilatation + at.deformation.dilatation());
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
         let own = [0.5 * plastic[0] - xx, 0.5 * plastic[1] - yy, 0.5 * plastic[2] - xy, 0.5 * plastic[3]];
-        double_dot(&relief, &own) - double_dot(pre, plastic)
+        more + double_dot(&relief, &own) - double_dot(pre, plastic)
     }
 }
 
@@ -137,18 +158,19 @@ pub struct YieldSurface {
 }
 
 impl YieldSurface {
-    /// Increment of plastic strain at a deformation (Eq. 57); `None` where the rock is elastic.
+    /// Increment of plastic strain at a deformation with its averaged volume change (Eq. 57); `None` where the rock is
+    /// elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
-    pub fn growth(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
+    pub fn growth(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
         let own = self.own_stress(at, plastic);
-        let [xx, yy, xy] = at.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
+        let [xx, yy, xy] = at.deformation.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
         self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])
     }
 
     /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
     /// stress before and after, as the leapfrog's work is (Eq. 58).
-    pub fn taken(&self, from: &Deformation, to: &Deformation, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
+    pub fn taken(&self, from: &Strained, to: &Strained, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
         let [plastic, growth] = change;
         let before = self.own_stress(from, plastic);
         let after = self.own_stress(to, &[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
@@ -156,7 +178,7 @@ impl YieldSurface {
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
-    fn own_stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 4] {
+    fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
         let [xx, yy, xy] = at.strain();
         let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
         relief(&self.elasticity, self.plane_stress, &elastic)

@@ -2,7 +2,7 @@
 
 use crate::cover::ElementId;
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, equivalent_strain};
+use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, Strained, equivalent_strain};
 
 use super::{Model, State};
 
@@ -11,6 +11,14 @@ impl Model {
     pub fn deformation(&self, element: ElementId, displacement: &[Vector]) -> Deformation {
         let u = self.covers.element_covers[element].map(|i| displacement[i]);
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
+    }
+
+    /// Deformation of an element that can yield, with the volume change that its rock feels (Eq. 87).
+    fn strained(&self, element: ElementId, displacement: &[Vector]) -> Strained {
+        let deformation = self.deformation(element, displacement);
+        let own = |e| [self.deformation(e, displacement).dilatation()];
+        let averaged = self.averaging.around(element, own);
+        Strained { deformation, dilatation: averaged.map_or(deformation.dilatation(), |[dilatation]| dilatation) }
     }
 
     /// Elastic constants of an element.
@@ -34,16 +42,16 @@ impl Model {
         [xx, yy, xy, self.pre_stress_out.get(element.index()).copied().unwrap_or_default()]
     }
 
-    /// Strength and plastic strain of an element at the displacements of a state, as the next step will find them
-    /// unless an input changes; none when the element never yields.
-    fn plastic_now(&self, state: &State, element: ElementId) -> Option<(&MohrCoulomb, PlasticStrain)> {
+    /// Strength, strain and plastic strain of an element at the displacements of a state, as the next step will find
+    /// them unless an input changes; none when the element never yields.
+    fn plastic_now(&self, state: &State, element: ElementId) -> Option<(&MohrCoulomb, Strained, PlasticStrain)> {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surface = strength.surface(state.drive.strength_factor_now(time));
-        let at = self.deformation(element, &state.displacement);
+        let at = self.strained(element, &state.displacement);
         let growth = surface.growth(&at, &self.pre_stress_and_out(element), before).unwrap_or_default();
-        Some((strength, [0, 1, 2, 3].map(|k| before[k] + growth[k])))
+        Some((strength, at, [0, 1, 2, 3].map(|k| before[k] + growth[k])))
     }
 
     /// Stress xx, yy, xy (Pa, tension positive) of an element in global axes.
@@ -51,7 +59,7 @@ impl Model {
         let at = self.deformation(element, &state.displacement);
         let stress = at.stress(self.rock_of(element), &self.pre_stress_of(element));
         match self.plastic_now(state, element) {
-            Some((strength, plastic)) => {
+            Some((strength, at, plastic)) => {
                 let relief = strength.stress(&at, &plastic);
                 [0, 1, 2].map(|k| stress[k] + relief[k])
             }
@@ -61,7 +69,7 @@ impl Model {
 
     /// Plastic strain √(⅔ εp:εp) of an element at the displacements of a state; zero when it never yields.
     pub fn plastic_strain(&self, state: &State, element: ElementId) -> f64 {
-        equivalent_strain(&self.plastic_now(state, element).map_or([0.0; 4], |(_, plastic)| plastic))
+        equivalent_strain(&self.plastic_now(state, element).map_or([0.0; 4], |(.., plastic)| plastic))
     }
 
     /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.
@@ -69,7 +77,10 @@ impl Model {
         let at = self.deformation(element, &state.displacement);
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
         match self.strength_of(element).zip(state.plastic.get(element.index())) {
-            Some((strength, plastic)) => energy + strength.energy(&at, &self.pre_stress_and_out(element), plastic),
+            Some((strength, plastic)) => {
+                let at = self.strained(element, &state.displacement);
+                energy + strength.energy(&at, &self.pre_stress_and_out(element), plastic)
+            }
             None => energy,
         }
     }

@@ -90,6 +90,14 @@ pub struct YieldBuffers {
     pub surfaces: Vec<Option<YieldSurface>>,
     /// Energy (J/m) taken by yielding of each run of elements in this step.
     pub energy: Vec<f64>,
+    /// Volume change of each element, and how much of it the last step brought.
+    pub dilatation: Vec<[f64; 2]>,
+    /// Mean of these over each group of elements.
+    pub averaged: Vec<[f64; 2]>,
+    /// Mean stress in the plane (Pa) of each element after yielding, without in-situ stress.
+    pub mean_stress: Vec<[f64; 1]>,
+    /// Mean of these over each group of elements; empty when no rock yields.
+    pub averaged_stress: Vec<[f64; 1]>,
 }
 
 /// Search for near pairs, and selection of contacts among them.

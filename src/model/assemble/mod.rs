@@ -18,7 +18,8 @@ use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resista
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
-    Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
+    Averaging, Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable,
+    critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, State, Water};
@@ -139,13 +140,16 @@ fn model(
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
+    let strengths: Vec<_> = case.rocks.values().map(rock::strength).collect();
+    let yields = |e: ElementId| strengths[element_rock[e] as usize].is_some();
     let model = Model {
+        averaging: Averaging::new(&covers, &element_rock, yields),
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         integrator: None,
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
-        strengths: case.rocks.values().map(rock::strength).collect(),
+        strengths,
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
         laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),

@@ -1,0 +1,146 @@
+//! Volume changes of rock that yields, averaged over physical covers, so that triangles do not lock where it flows
+//! (Eqs. 87–89). A *group* is the elements of one rock about one cover: averages stay on one side of joints, faces and
+//! boundaries between rocks.
+
+use crate::cover::{CoverId, Covers, ElementId};
+
+use super::Deformation;
+
+/// Share of a whole star below which a cover is light: its neighbours' stress would push it out of the face.
+const LIGHT_STAR: f64 = 0.3;
+
+/// Deformation of an element with the volume change that its rock feels: the averaged one, or its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Strained {
+    /// Deformation.
+    pub deformation: Deformation,
+    /// The volume change that the rock feels.
+    pub dilatation: f64,
+}
+
+impl Strained {
+    /// How much more than that of the element the volume change is that the rock feels.
+    pub fn more(&self) -> f64 {
+        self.dilatation - self.deformation.dilatation()
+    }
+
+    /// Strain xx, yy, xy that the rock feels, in the axes that rotate with the element (Eq. 88).
+    pub fn strain(&self) -> [f64; 3] {
+        let ([xx, yy, xy], more) = (self.deformation.strain(), 0.5 * self.more());
+        [xx + more, yy + more, xy]
+    }
+}
+
+/// An element of a group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Member {
+    element: ElementId,
+    /// Its share in the mean of the group: A/(3V).
+    share: f64,
+}
+
+/// Which elements average their volume changes, and with what shares. Empty where no rock yields.
+#[doc(alias = "mixed discretisation")]
+#[doc(alias = "B-bar")]
+#[doc(alias = "volumetric locking")]
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Averaging {
+    members: Vec<Member>,
+    /// First member of each group, and their number at the end.
+    group_start: Vec<u32>,
+    /// The groups of each element; none where it keeps its own volume change.
+    groups: Vec<Option<[GroupId; 3]>>,
+}
+
+crate::geometry::id! {
+    /// A group of elements that average their volume change.
+    GroupId: optional
+}
+
+impl Averaging {
+    /// The groups of all elements that can yield; elements with a light cover are in none.
+    pub fn new(covers: &Covers, element_rock: &[u16], yields: impl Fn(ElementId) -> bool) -> Self {
+        if !covers.elements().any(&yields) {
+            return Self::default();
+        }
+        let light = light_covers(covers);
+        let averages = |e: &ElementId| yields(*e) && !covers.element_covers[*e].iter().any(|&cover| light[cover]);
+        let corners = |e: ElementId| (0..3).map(move |corner| (e, corner));
+        let mut places: Vec<(ElementId, usize)> = covers.elements().filter(averages).flat_map(corners).collect();
+        let group_of = |&(e, corner): &(ElementId, usize)| (covers.element_covers[e][corner], element_rock[e]);
+        places.sort_by_key(|place| (group_of(place), place.0));
+        let mut averaging = Self { groups: vec![None; covers.element_count()], ..Self::default() };
+        for group in places.chunk_by(|a, b| group_of(a) == group_of(b)) {
+            averaging.push(covers, group);
+        }
+        averaging.group_start.push(averaging.members.len() as u32);
+        averaging
+    }
+
+    fn push(&mut self, covers: &Covers, places: &[(ElementId, usize)]) {
+        let id = GroupId::new(self.group_start.len());
+        self.group_start.push(self.members.len() as u32);
+        let area: f64 = places.iter().map(|place| covers.element_area[place.0]).sum();
+        for &(element, corner) in places {
+            self.members.push(Member { element, share: covers.element_area[element] / area });
+            self.groups[element].get_or_insert([id; 3])[corner] = id;
+        }
+    }
+
+    /// Number of groups.
+    pub fn len(&self) -> usize {
+        self.group_start.len().saturating_sub(1)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Memory (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.members) + size_of_val(&*self.group_start) + size_of_val(&*self.groups)
+    }
+
+    /// Mean over a group of values that its elements have.
+    #[inline]
+    pub fn of_group<const N: usize>(&self, group: usize, value: impl Fn(ElementId) -> [f64; N]) -> [f64; N] {
+        let members = self.group_start[group] as usize..self.group_start[group + 1] as usize;
+        let mut mean = [0.0; N];
+        for member in &self.members[members] {
+            mean.iter_mut().zip(value(member.element)).for_each(|(mean, value)| *mean += member.share * value);
+        }
+        mean
+    }
+
+    /// Mean of what the three groups of an element have; none where it keeps its own value.
+    #[inline]
+    pub fn of_element<const N: usize>(&self, element: ElementId, means: &[[f64; N]]) -> Option<[f64; N]> {
+        let groups = self.groups[element]?.map(|group| means[group]);
+        Some(of_three(groups))
+    }
+
+    /// The same from the values of the elements about it: the same bits.
+    pub fn around<const N: usize>(
+        &self,
+        element: ElementId,
+        value: impl Fn(ElementId) -> [f64; N],
+    ) -> Option<[f64; N]> {
+        let groups = self.groups[element]?.map(|group| self.of_group(group.index(), &value));
+        Some(of_three(groups))
+    }
+}
+
+fn of_three<const N: usize>([a, b, c]: [[f64; N]; 3]) -> [f64; N] {
+    std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0)
+}
+
+/// Whether each cover has lost so much of its star to a cut that it is light.
+fn light_covers(covers: &Covers) -> Vec<bool> {
+    let whole = 3f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
+    let mut volume = vec![0.0; covers.cover_count()];
+    for e in covers.elements() {
+        covers.element_covers[e].iter().for_each(|&cover: &CoverId| volume[cover] += covers.element_area[e] / 3.0);
+    }
+    volume.iter().map(|volume| *volume < LIGHT_STAR * whole).collect()
+}
