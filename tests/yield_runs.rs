@@ -31,22 +31,28 @@ fn crash(strength: &str, threads: usize) -> Simulation {
 
 const WEAK: &str = "friction_deg = 30\ncohesion = 5e5\ndilation_deg = 5\ntension = 1e5";
 
-/// Rock that could yield and does not moves as rock that cannot, and an elastic model holds no plastic strain.
+/// Elastic models hold no plastic strain and no averages. Rock that could yield and does not feels averaged volume
+/// changes: it moves as rock that cannot, up to what the mesh leaves open.
 #[test]
-fn rock_that_does_not_yield_is_elastic_to_the_bit() {
+fn rock_that_does_not_yield_moves_as_elastic_rock() {
     let (elastic, strong) = (crash("", 1), crash("cohesion = 1e12", 1));
     assert!(elastic.state().plastic.is_empty());
+    assert_eq!(elastic.model().averaging.bytes(), 0);
     assert_eq!(strong.yielded_elements(), 0);
-    assert!(elastic.state().displacement == strong.state().displacement);
-    assert!(elastic.state().velocity == strong.state().velocity);
+    let way = |s: &Simulation| s.state().displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let apart = elastic.state().displacement.iter().zip(&strong.state().displacement).map(|(a, b)| (a - b).norm());
+    let apart = apart.fold(0.0, f64::max);
+    assert!(apart < 0.01 * way(&elastic), "{apart} of {}", way(&elastic));
 }
 
-/// One thread or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger closes.
+/// One thread, two or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger closes.
 #[test]
 fn crushing_takes_energy_and_keeps_bits() {
     let one = crash(WEAK, 1);
     assert!(one.yielded_elements() > 20, "{}", one.yielded_elements());
-    assert!(one.state() == crash(WEAK, 3).state(), "threads change bits");
+    for threads in [2, 3] {
+        assert!(one.state() == crash(WEAK, threads).state(), "{threads} threads change bits");
+    }
     let mut first = one.clone();
     let report = advance(&mut first, 300);
     let saved = serde_json_round_trip(one.state());

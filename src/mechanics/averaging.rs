@@ -1,5 +1,5 @@
 //! Volume changes of rock that yields, averaged over physical covers, so that triangles do not lock where it flows
-//! (Eqs. 87–89). A *group* is the elements of one rock about one cover: averages stay on one side of joints, faces and
+//! (Eqs. 58a–58c). A *patch* is the elements of one rock about one cover: averages stay on one side of joints, faces and
 //! boundaries between rocks.
 
 use crate::cover::{CoverId, Covers, ElementId};
@@ -24,18 +24,18 @@ impl Strained {
         self.dilatation - self.deformation.dilatation()
     }
 
-    /// Strain xx, yy, xy that the rock feels, in the axes that rotate with the element (Eq. 88).
+    /// Strain xx, yy, xy that the rock feels, in the axes that rotate with the element (Eq. 58b).
     pub fn strain(&self) -> [f64; 3] {
         let ([xx, yy, xy], more) = (self.deformation.strain(), 0.5 * self.more());
         [xx + more, yy + more, xy]
     }
 }
 
-/// An element of a group.
+/// An element of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Member {
     element: ElementId,
-    /// Its share in the mean of the group: A/(3V).
+    /// Its share in the mean of the patch: A/(3V).
     share: f64,
 }
 
@@ -46,19 +46,19 @@ struct Member {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Averaging {
     members: Vec<Member>,
-    /// First member of each group, and their number at the end.
-    group_start: Vec<u32>,
-    /// The groups of each element; none where it keeps its own volume change.
-    groups: Vec<Option<[GroupId; 3]>>,
+    /// First member of each patch, and their number at the end.
+    patch_start: Vec<u32>,
+    /// The patches of each element; none where it keeps its own volume change.
+    patches: Vec<Option<[PatchId; 3]>>,
 }
 
 crate::geometry::id! {
-    /// A group of elements that average their volume change.
-    GroupId: optional
+    /// A patch of elements that average their volume change.
+    PatchId: optional
 }
 
 impl Averaging {
-    /// The groups of all elements that can yield; elements with a light cover are in none.
+    /// The patches of all elements that can yield; elements with a light cover are in none.
     pub fn new(covers: &Covers, element_rock: &[u16], yields: impl Fn(ElementId) -> bool) -> Self {
         if !covers.elements().any(&yields) {
             return Self::default();
@@ -67,29 +67,29 @@ impl Averaging {
         let averages = |e: &ElementId| yields(*e) && !covers.element_covers[*e].iter().any(|&cover| light[cover]);
         let corners = |e: ElementId| (0..3).map(move |corner| (e, corner));
         let mut places: Vec<(ElementId, usize)> = covers.elements().filter(averages).flat_map(corners).collect();
-        let group_of = |&(e, corner): &(ElementId, usize)| (covers.element_covers[e][corner], element_rock[e]);
-        places.sort_by_key(|place| (group_of(place), place.0));
-        let mut averaging = Self { groups: vec![None; covers.element_count()], ..Self::default() };
-        for group in places.chunk_by(|a, b| group_of(a) == group_of(b)) {
-            averaging.push(covers, group);
+        let patch_of = |&(e, corner): &(ElementId, usize)| (covers.element_covers[e][corner], element_rock[e]);
+        places.sort_by_key(|place| (patch_of(place), place.0));
+        let mut averaging = Self { patches: vec![None; covers.element_count()], ..Self::default() };
+        for patch in places.chunk_by(|a, b| patch_of(a) == patch_of(b)) {
+            averaging.push(covers, patch);
         }
-        averaging.group_start.push(averaging.members.len() as u32);
+        averaging.patch_start.push(averaging.members.len() as u32);
         averaging
     }
 
     fn push(&mut self, covers: &Covers, places: &[(ElementId, usize)]) {
-        let id = GroupId::new(self.group_start.len());
-        self.group_start.push(self.members.len() as u32);
+        let id = PatchId::new(self.patch_start.len());
+        self.patch_start.push(self.members.len() as u32);
         let area: f64 = places.iter().map(|place| covers.element_area[place.0]).sum();
         for &(element, corner) in places {
             self.members.push(Member { element, share: covers.element_area[element] / area });
-            self.groups[element].get_or_insert([id; 3])[corner] = id;
+            self.patches[element].get_or_insert([id; 3])[corner] = id;
         }
     }
 
-    /// Number of groups.
+    /// Number of patches.
     pub fn len(&self) -> usize {
-        self.group_start.len().saturating_sub(1)
+        self.patch_start.len().saturating_sub(1)
     }
 
     /// Whether there is none.
@@ -99,13 +99,13 @@ impl Averaging {
 
     /// Memory (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.members) + size_of_val(&*self.group_start) + size_of_val(&*self.groups)
+        size_of_val(&*self.members) + size_of_val(&*self.patch_start) + size_of_val(&*self.patches)
     }
 
-    /// Mean over a group of values that its elements have.
+    /// Mean over a patch of values that its elements have.
     #[inline]
-    pub fn of_group<const N: usize>(&self, group: usize, value: impl Fn(ElementId) -> [f64; N]) -> [f64; N] {
-        let members = self.group_start[group] as usize..self.group_start[group + 1] as usize;
+    pub fn of_patch<const N: usize>(&self, patch: usize, value: impl Fn(ElementId) -> [f64; N]) -> [f64; N] {
+        let members = self.patch_start[patch] as usize..self.patch_start[patch + 1] as usize;
         let mut mean = [0.0; N];
         for member in &self.members[members] {
             mean.iter_mut().zip(value(member.element)).for_each(|(mean, value)| *mean += member.share * value);
@@ -113,11 +113,11 @@ impl Averaging {
         mean
     }
 
-    /// Mean of what the three groups of an element have; none where it keeps its own value.
+    /// Mean of what the three patches of an element have; none where it keeps its own value.
     #[inline]
     pub fn of_element<const N: usize>(&self, element: ElementId, means: &[[f64; N]]) -> Option<[f64; N]> {
-        let groups = self.groups[element]?.map(|group| means[group]);
-        Some(of_three(groups))
+        let patches = self.patches[element]?.map(|patch| means[patch]);
+        Some(of_three(patches))
     }
 
     /// The same from the values of the elements about it: the same bits.
@@ -126,8 +126,8 @@ impl Averaging {
         element: ElementId,
         value: impl Fn(ElementId) -> [f64; N],
     ) -> Option<[f64; N]> {
-        let groups = self.groups[element]?.map(|group| self.of_group(group.index(), &value));
-        Some(of_three(groups))
+        let patches = self.patches[element]?.map(|patch| self.of_patch(patch.index(), &value));
+        Some(of_three(patches))
     }
 }
 

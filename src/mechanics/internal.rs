@@ -120,7 +120,7 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
-    /// Volume change tr(RᵀF − I) (Eq. 87).
+    /// Volume change tr(RᵀF − I) (Eq. 58a).
     pub fn dilatation(&self) -> f64 {
         self.trace - 2.0
     }

@@ -84,7 +84,7 @@ impl MohrCoulomb {
     }
 
     /// Contribution of plastic strain and of averages to the forces (N/m) on the three covers of an element of cut area
-    /// `area` (m²); `mean` is the averaged mean stress (Pa), if there is one (Eq. 89).
+    /// `area` (m²); `mean` is the averaged mean stress (Pa), if there is one (Eq. 58c).
     ///
     /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
     /// rotate no element (Eq. 58).
@@ -112,7 +112,7 @@ impl MohrCoulomb {
     }
 
     /// Contribution of plastic strain and of the averaged volume change to the energy (J/m²) under a pre-stress xx, yy,
-    /// xy, zz (Pa) (Eqs. 58, 88).
+    /// xy, zz (Pa) (Eqs. 58, 58b).
     pub fn energy(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
         let Elasticity { lambda, mu, .. } = self.elasticity;
         let more = 0.5 * (lambda + mu) * at.more() * (at.dilatation + at.deformation.dilatation());

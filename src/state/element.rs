@@ -13,7 +13,7 @@ impl Model {
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
     }
 
-    /// Deformation of an element that can yield, with the volume change that its rock feels (Eq. 87).
+    /// Deformation of an element that can yield, with the volume change that its rock feels (Eq. 58a).
     fn strained(&self, element: ElementId, displacement: &[Vector]) -> Strained {
         let deformation = self.deformation(element, displacement);
         let own = |e| [self.deformation(e, displacement).dilatation()];

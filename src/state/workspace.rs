@@ -92,11 +92,11 @@ pub struct YieldBuffers {
     pub energy: Vec<f64>,
     /// Volume change of each element, and how much of it the last step brought.
     pub dilatation: Vec<[f64; 2]>,
-    /// Mean of these over each group of elements.
+    /// Mean of these over each patch of elements.
     pub averaged: Vec<[f64; 2]>,
     /// Mean stress in the plane (Pa) of each element after yielding, without in-situ stress.
     pub mean_stress: Vec<[f64; 1]>,
-    /// Mean of these over each group of elements; empty when no rock yields.
+    /// Mean of these over each patch of elements; empty when no rock yields.
     pub averaged_stress: Vec<[f64; 1]>,
 }
 

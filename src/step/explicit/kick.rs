@@ -35,7 +35,7 @@ pub(super) struct Kick<'a> {
     pub kick: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
-    /// Mean stress (Pa) of each group of elements that average it.
+    /// Mean stress (Pa) of each patch of elements that average it.
     pub averaged_stress: &'a [[f64; 1]],
 }
 

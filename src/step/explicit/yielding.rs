@@ -45,7 +45,7 @@ fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, value:
     }
 }
 
-/// Volume changes of all elements that can yield, and their means over groups (Eq. 87).
+/// Volume changes of all elements that can yield, and their means over patches (Eq. 58a).
 fn average_dilatation(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
     let YieldBuffers { surfaces, dilatation, averaged, .. } = buffers;
     let State { displacement, velocity, dt_last, .. } = state;
@@ -57,7 +57,7 @@ fn average_dilatation(model: &Model, state: &State, serial: bool, buffers: &mut 
         let at = model.deformation(e, displacement);
         [at.dilatation(), at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e))]
     });
-    list(serial, model.averaging.len(), averaged, |k| model.averaging.of_group(k, |e| dilatation[e]));
+    list(serial, model.averaging.len(), averaged, |k| model.averaging.of_patch(k, |e| dilatation[e]));
 }
 
 /// Brings the plastic strain of all elements to the current displacements; returns the energy (J/m) that it takes.
@@ -77,15 +77,15 @@ fn flow(model: &Model, state: &mut State, serial: bool, mass_matrix: &MassMatrix
     taken.iter().sum()
 }
 
-/// Mean stresses after yielding, and their means over groups (Eq. 89).
+/// Mean stresses after yielding, and their means over patches (Eq. 58c).
 fn average_stress(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
-    let YieldBuffers { dilatation, averaged, mean_stress, averaged_stress, .. } = buffers;
+    let YieldBuffers { averaged, mean_stress, averaged_stress, .. } = buffers;
     list(serial, state.plastic.len(), mean_stress, |k| {
         let e = ElementId::new(k);
         let felt = model.averaging.of_element(e, averaged).zip(model.strength_of(e));
         [felt.map_or(0.0, |([volume, _], strength)| strength.mean_stress(volume, &state.plastic[e]))]
     });
-    list(serial, model.averaging.len(), averaged_stress, |k| model.averaging.of_group(k, |e| mean_stress[e]));
+    list(serial, model.averaging.len(), averaged_stress, |k| model.averaging.of_patch(k, |e| mean_stress[e]));
 }
 
 /// How far (m) the covers of an element moved in the last step.
