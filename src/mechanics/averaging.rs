@@ -4,31 +4,22 @@
 
 use crate::cover::{CoverId, Covers, ElementId};
 
+use rayon::prelude::*;
+
 use super::Deformation;
 
 /// Share of a whole star below which a cover is light: its neighbours' stress would push it out of the face.
 const LIGHT_STAR: f64 = 0.3;
 
-/// Deformation of an element with the volume change that its rock feels: the averaged one, or its own.
+/// Deformation of an element with what its rock feels of the patches about it, or its own where it is in none.
 #[derive(Debug, Clone, Copy)]
 pub struct Strained {
     /// Deformation.
     pub deformation: Deformation,
-    /// The volume change that the rock feels.
-    pub dilatation: f64,
-}
-
-impl Strained {
-    /// How much more than that of the element the volume change is that the rock feels.
-    pub fn more(&self) -> f64 {
-        self.dilatation - self.deformation.dilatation()
-    }
-
-    /// Strain xx, yy, xy that the rock feels, in the axes that rotate with the element (Eq. 58b).
-    pub fn strain(&self) -> [f64; 3] {
-        let ([xx, yy, xy], more) = (self.deformation.strain(), 0.5 * self.more());
-        [xx + more, yy + more, xy]
-    }
+    /// Elastic volume change in the plane (Eq. 58a).
+    pub volume: f64,
+    /// Mean stress in the plane (Pa), without in-situ stress (Eq. 58b).
+    pub mean: f64,
 }
 
 /// An element of a patch.
@@ -55,6 +46,58 @@ pub struct Averaging {
 crate::geometry::id! {
     /// A patch of elements that average their volume change.
     PatchId: optional
+}
+
+/// Elastic volume changes and mean stresses (Pa) in the plane, and how much of each the last step brought.
+#[derive(Debug, Clone, Default)]
+pub struct Averages {
+    /// Volume change of each element.
+    pub volume: Vec<[f64; 2]>,
+    /// Mean stress of each element under the averaged volume change.
+    pub mean: Vec<[f64; 2]>,
+    /// Mean of the volume changes over each patch.
+    pub patch_volume: Vec<[f64; 2]>,
+    /// Mean of the mean stresses over each patch.
+    pub patch_mean: Vec<[f64; 2]>,
+}
+
+/// Elements and patches that a thread takes together.
+const RUN: usize = 1024;
+
+/// Makes a list of what `value` gives for each of `count` indices.
+pub fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, value: impl Fn(usize) -> T + Sync) {
+    list.resize_with(count, T::default);
+    let fill = |(run, values): (usize, &mut [T])| {
+        values.iter_mut().enumerate().for_each(|(k, place)| *place = value(run * RUN + k));
+    };
+    if serial {
+        list.chunks_mut(RUN).enumerate().for_each(fill);
+    } else {
+        list.par_chunks_mut(RUN).enumerate().for_each(fill);
+    }
+}
+
+impl Averages {
+    /// Averages volume changes, and the mean stresses that `mean_stress` finds under them.
+    pub fn average(
+        &mut self,
+        averaging: &Averaging,
+        serial: bool,
+        mean_stress: impl Fn(ElementId, [f64; 2]) -> [f64; 2] + Sync,
+    ) {
+        let Self { volume, mean, patch_volume, patch_mean } = self;
+        list(serial, averaging.len(), patch_volume, |k| averaging.of_patch(k, |e| volume[e]));
+        let averaged = |e| averaging.of_element(e, patch_volume).unwrap_or(volume[e]);
+        list(serial, volume.len(), mean, |k| mean_stress(ElementId::new(k), averaged(ElementId::new(k))));
+        list(serial, averaging.len(), patch_mean, |k| averaging.of_patch(k, |e| mean[e]));
+    }
+
+    /// Volume change and mean stress that the rock of an element feels, whose own volume change is given.
+    #[inline]
+    pub fn felt(&self, averaging: &Averaging, element: ElementId, volume: [f64; 2]) -> [[f64; 2]; 2] {
+        let [felt, mean] = [&self.patch_volume, &self.patch_mean].map(|means| averaging.of_element(element, means));
+        [felt.unwrap_or(volume), mean.unwrap_or_else(|| self.mean[element])]
+    }
 }
 
 impl Averaging {

@@ -16,7 +16,7 @@ pub mod pressure;
 mod record;
 mod turn;
 
-pub use averaging::{Averaging, Strained};
+pub use averaging::{Averages, Averaging, Strained, list};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use elasticity::{Elasticity, critical_dt};
@@ -27,6 +27,6 @@ pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
     turning,
 };
-pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
+pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain, own_volume};
 pub use record::Record;
 pub use turn::Turn;

@@ -71,11 +71,16 @@ impl MohrCoulomb {
         }
     }
 
-    /// Mean of the stresses xx and yy (Pa) at a volume change, without in-situ stress.
-    pub fn mean_stress(&self, dilatation: f64, plastic: &PlasticStrain) -> f64 {
+    /// Mean of the stresses xx and yy (Pa) at an elastic volume change in the plane, without in-situ stress.
+    pub fn mean_stress(&self, volume: f64, plastic: &PlasticStrain) -> f64 {
         let Elasticity { lambda, mu, .. } = self.elasticity;
-        let [xx, yy, ..] = self.relief(plastic);
-        (lambda + mu) * dilatation - 0.5 * (xx + yy)
+        let out = if self.plane_stress { 0.0 } else { lambda * plastic[3] };
+        (lambda + mu) * volume - out
+    }
+
+    /// How much (Pa) the mean stress of its patches differs from an element's own.
+    fn more(&self, at: &Deformation, plastic: &PlasticStrain, mean: f64) -> f64 {
+        mean - self.mean_stress(own_volume(at, plastic), plastic)
     }
 
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
@@ -96,31 +101,36 @@ impl MohrCoulomb {
         mean: Option<f64>,
     ) -> [Vector; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
-        let more = mean.map_or(0.0, |mean| mean - self.mean_stress(at.dilatation(), plastic));
+        let more = mean.map_or(0.0, |mean| self.more(at, plastic, mean));
         let (xx, yy) = (xx - more, yy - more);
         let skew = at.skew([xx, yy, xy]);
         let p = at.turn_rows([xx, xy + skew, xy - skew, yy]).map(|v| area * v);
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
     }
 
-    /// Contribution of plastic strain and of the averaged volume change to the stress xx, yy, xy (Pa) in global axes.
-    pub fn stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 3] {
-        let Elasticity { lambda, mu, .. } = self.elasticity;
-        let more = (lambda + mu) * at.more();
-        let [xx, yy, xy, _] = self.relief(plastic);
+    /// Contribution of averages, plastic strain and its growth to the stress xx, yy, xy (Pa) in global axes.
+    pub fn stress(&self, at: &Strained, plastic: &PlasticStrain, growth: &PlasticStrain) -> [f64; 3] {
+        let more = self.more(&at.deformation, plastic, at.mean);
+        let [xx, yy, xy, _] = self.relief(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
         at.deformation.turn([more - xx, more - yy, -xy])
     }
 
     /// Contribution of plastic strain and of the averaged volume change to the energy (J/m²) under a pre-stress xx, yy,
     /// xy, zz (Pa) (Eqs. 58, 58b).
-    pub fn energy(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
-        let Elasticity { lambda, mu, .. } = self.elasticity;
-        let more = 0.5 * (lambda + mu) * at.more() * (at.dilatation + at.deformation.dilatation());
+    pub fn energy(&self, at: &Deformation, volume: f64, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+        let own = own_volume(at, plastic);
+        let means = self.mean_stress(own, plastic) + self.mean_stress(volume, plastic);
+        let more = 0.5 * (volume - own) * means;
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
         let own = [0.5 * plastic[0] - xx, 0.5 * plastic[1] - yy, 0.5 * plastic[2] - xy, 0.5 * plastic[3]];
         more + double_dot(&relief, &own) - double_dot(pre, plastic)
     }
+}
+
+/// Elastic volume change of an element in the plane.
+pub fn own_volume(at: &Deformation, plastic: &PlasticStrain) -> f64 {
+    at.dilatation() - (plastic[0] + plastic[1])
 }
 
 /// C·ε of a plane strain field with strain out of the plane; in plane stress that one costs nothing.
@@ -158,7 +168,7 @@ pub struct YieldSurface {
 }
 
 impl YieldSurface {
-    /// Increment of plastic strain at a deformation with its averaged volume change (Eq. 57); `None` where the rock is
+    /// Increment of plastic strain at a deformation with averages of its patches (Eq. 57); `None` where the rock is
     /// elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
@@ -173,15 +183,17 @@ impl YieldSurface {
     pub fn taken(&self, from: &Strained, to: &Strained, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
         let [plastic, growth] = change;
         let before = self.own_stress(from, plastic);
-        let after = self.own_stress(to, &[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
-        double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + after[k]) + pre[k]), growth)
+        let (now, relief) = (self.own_stress(to, plastic), relief(&self.elasticity, self.plane_stress, growth));
+        double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + now[k] - relief[k]) + pre[k]), growth)
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
     fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
-        let [xx, yy, xy] = at.strain();
-        let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
-        relief(&self.elasticity, self.plane_stress, &elastic)
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let [xx, yy, xy] = at.deformation.strain();
+        let half = mu * ((xx - plastic[0]) - (yy - plastic[1]));
+        let out = if self.plane_stress { 0.0 } else { lambda * at.volume - (lambda + 2.0 * mu) * plastic[3] };
+        [at.mean + half, at.mean - half, 2.0 * mu * (xy - plastic[2]), out]
     }
 
     /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.

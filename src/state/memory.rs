@@ -170,10 +170,8 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
     sum(&[inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
 }
 
-fn yielding(
-    YieldBuffers { surfaces: _, energy, dilatation, averaged, mean_stress, averaged_stress }: &YieldBuffers,
-) -> usize {
-    sum(&[energy, dilatation, averaged, mean_stress, averaged_stress])
+fn yielding(YieldBuffers { surfaces: _, energy, averages }: &YieldBuffers) -> usize {
+    sum(&[energy, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean])
 }
 
 fn inputs(inputs: &Inputs) -> usize {

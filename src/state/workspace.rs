@@ -7,7 +7,7 @@ use crate::contact::{
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
-use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
+use crate::mechanics::{Averages, BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
 
 use super::{Buffers, Model, State};
 
@@ -88,16 +88,10 @@ pub struct MotionBuffers {
 pub struct YieldBuffers {
     /// Yield surface of each rock in this step; none for one that never yields.
     pub surfaces: Vec<Option<YieldSurface>>,
-    /// Energy (J/m) taken by yielding of each run of elements in this step.
-    pub energy: Vec<f64>,
-    /// Volume change of each element, and how much of it the last step brought.
-    pub dilatation: Vec<[f64; 2]>,
-    /// Mean of these over each patch of elements.
-    pub averaged: Vec<[f64; 2]>,
-    /// Mean stress in the plane (Pa) of each element after yielding, without in-situ stress.
-    pub mean_stress: Vec<[f64; 1]>,
-    /// Mean of these over each patch of elements; empty when no rock yields.
-    pub averaged_stress: Vec<[f64; 1]>,
+    /// Energy (J/m) taken by yielding of each run of elements in this step, and whether any flows.
+    pub energy: Vec<(f64, bool)>,
+    /// Averages over patches of elements; empty when no rock yields.
+    pub averages: Averages,
 }
 
 /// Search for near pairs, and selection of contacts among them.

@@ -36,7 +36,7 @@ pub(super) struct Kick<'a> {
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
     /// Mean stress (Pa) of each patch of elements that average it.
-    pub averaged_stress: &'a [[f64; 1]],
+    pub patch_mean: &'a [[f64; 2]],
 }
 
 impl Kick<'_> {
@@ -140,7 +140,7 @@ impl Kick<'_> {
             let g = &model.covers.gradients[batch.set as usize];
             for (e, slots) in chunks.elements(batch) {
                 let plastic = &self.state.plastic[e];
-                let mean = model.averaging.of_element(e, self.averaged_stress).map(|[mean]| mean);
+                let mean = model.averaging.of_element(e, self.patch_mean).map(|[mean, _]| mean);
                 if mean.is_none() && *plastic == [0.0; 4] {
                     continue;
                 }

@@ -30,7 +30,7 @@ pub(super) fn predict(
         kick: step.kick,
         grain: chunk_runs::grain(step.serial),
         load_force,
-        averaged_stress: &yielding.averaged_stress,
+        patch_mean: &yielding.averages.patch_mean,
     };
     kick.run(ChunkSlices { velocity: predicted, motion: blocks, start, sums, ..ChunkSlices::default() });
     *speed_max = sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();

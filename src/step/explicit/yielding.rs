@@ -4,7 +4,9 @@ use rayon::prelude::*;
 
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
-use crate::mechanics::{self, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface};
+use crate::mechanics::{
+    self, Averages, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface, list, own_volume,
+};
 use crate::state::{Model, State, YieldBuffers};
 
 use super::{Substep, report};
@@ -27,66 +29,68 @@ pub(super) fn yield_rock(
     let factor = state.drive.strength_factor(state.drive.share(step.time));
     buffers.surfaces.clear();
     buffers.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
-    average_dilatation(model, state, step.serial, buffers);
-    state.ledger.yielding += flow(model, state, step.serial, mass_matrix, buffers);
-    average_stress(model, state, step.serial, buffers);
-}
-
-/// Makes a list of what `value` gives for each of `count` indices.
-fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, value: impl Fn(usize) -> T + Sync) {
-    list.resize_with(count, T::default);
-    let fill = |(run, values): (usize, &mut [T])| {
-        values.iter_mut().enumerate().for_each(|(k, place)| *place = value(run * RUN + k));
-    };
-    if serial {
-        list.chunks_mut(RUN).enumerate().for_each(fill);
-    } else {
-        list.par_chunks_mut(RUN).enumerate().for_each(fill);
+    volumes(model, state, step.serial, buffers);
+    average(model, &state.plastic, step.serial, buffers);
+    let (energy, flows) = flow(model, state, step.serial, mass_matrix, buffers);
+    state.ledger.yielding += energy;
+    if flows {
+        average(model, &state.plastic, step.serial, buffers);
     }
 }
 
-/// Volume changes of all elements that can yield, and their means over patches (Eq. 58a).
-fn average_dilatation(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
-    let YieldBuffers { surfaces, dilatation, averaged, .. } = buffers;
-    let State { displacement, velocity, dt_last, .. } = state;
-    list(serial, state.plastic.len(), dilatation, |k| {
+/// Elastic volume changes of all elements that can yield, and what the last step brought of them.
+fn volumes(model: &Model, state: &State, serial: bool, YieldBuffers { surfaces, averages, .. }: &mut YieldBuffers) {
+    let State { displacement, velocity, dt_last, plastic, .. } = state;
+    list(serial, plastic.len(), &mut averages.volume, |k| {
         let e = ElementId::new(k);
         if surfaces[model.element_rock[e] as usize].is_none() {
             return [0.0; 2];
         }
         let at = model.deformation(e, displacement);
-        [at.dilatation(), at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e))]
+        let brought = at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e));
+        [own_volume(&at, &plastic[e]), brought]
     });
-    list(serial, model.averaging.len(), averaged, |k| model.averaging.of_patch(k, |e| dilatation[e]));
 }
 
-/// Brings the plastic strain of all elements to the current displacements; returns the energy (J/m) that it takes.
-fn flow(model: &Model, state: &mut State, serial: bool, mass_matrix: &MassMatrix, buffers: &mut YieldBuffers) -> f64 {
-    let YieldBuffers { surfaces, energy: taken, dilatation, averaged, .. } = buffers;
+/// Averages volume changes and mean stresses over patches (Eqs. 58a, 58b).
+fn average(model: &Model, plastic: &[PlasticStrain], serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+    averages.average(&model.averaging, serial, |e, [volume, brought]| match model.strength_of(e) {
+        Some(strength) => [strength.mean_stress(volume, &plastic[e]), strength.mean_stress(brought, &[0.0; 4])],
+        None => [0.0; 2],
+    });
+}
+
+/// Brings the plastic strain of all elements to the current displacements; returns the energy (J/m) that it takes, and
+/// whether any flows.
+fn flow(
+    model: &Model,
+    state: &mut State,
+    serial: bool,
+    mass_matrix: &MassMatrix,
+    buffers: &mut YieldBuffers,
+) -> (f64, bool) {
+    let YieldBuffers { surfaces, energy: taken, averages } = buffers;
     taken.clear();
-    taken.resize(state.plastic.len().div_ceil(RUN), 0.0);
+    taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
+    // The volume changes of a run are its own; averages of patches are those from before.
+    let mut volume = std::mem::take(&mut averages.volume);
     let dt_last = *dt_last;
-    let pass = Pass { model, surfaces, dilatation, averaged, mass_matrix, displacement, velocity, dt_last, removed };
-    let run = |(k, (energy, plastic)): (usize, (&mut f64, &mut [PlasticStrain]))| *energy = pass.run(k * RUN, plastic);
+    let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };
+    let run = |(k, ((taken, plastic), volume)): (usize, Run)| *taken = pass.run(k * RUN, plastic, volume);
     if serial {
-        taken.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate().for_each(run);
+        let runs = taken.iter_mut().zip(plastic.chunks_mut(RUN)).zip(volume.chunks_mut(RUN));
+        runs.enumerate().for_each(run);
     } else {
-        taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate().for_each(run);
+        let runs = taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).zip(volume.par_chunks_mut(RUN));
+        runs.enumerate().for_each(run);
     }
-    taken.iter().sum()
+    averages.volume = volume;
+    (taken.iter().map(|taken| taken.0).sum(), taken.iter().any(|taken| taken.1))
 }
 
-/// Mean stresses after yielding, and their means over patches (Eq. 58c).
-fn average_stress(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
-    let YieldBuffers { averaged, mean_stress, averaged_stress, .. } = buffers;
-    list(serial, state.plastic.len(), mean_stress, |k| {
-        let e = ElementId::new(k);
-        let felt = model.averaging.of_element(e, averaged).zip(model.strength_of(e));
-        [felt.map_or(0.0, |([volume, _], strength)| strength.mean_stress(volume, &state.plastic[e]))]
-    });
-    list(serial, model.averaging.len(), averaged_stress, |k| model.averaging.of_patch(k, |e| mean_stress[e]));
-}
+/// The energy that a run of elements takes and whether it flows, with its plastic strains and volume changes.
+type Run<'a> = ((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]);
 
 /// How far (m) the covers of an element moved in the last step.
 fn moved(model: &Model, element: ElementId, velocity: &[Vector], dt_last: f64) -> [Vector; 3] {
@@ -101,8 +105,7 @@ fn gradients(model: &Model, element: ElementId) -> &[Vector; 3] {
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
-    dilatation: &'a [[f64; 2]],
-    averaged: &'a [[f64; 2]],
+    averages: &'a Averages,
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
@@ -111,28 +114,30 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// Updates the elements from `first` on; returns the energy (J/m) that it takes.
-    fn run(&self, first: usize, plastic: &mut [PlasticStrain]) -> f64 {
+    /// Updates the elements from `first` on; returns the energy (J/m) that it takes, and whether any flows.
+    fn run(&self, first: usize, plastic: &mut [PlasticStrain], volume: &mut [[f64; 2]]) -> (f64, bool) {
         let covers = &self.model.covers;
-        let (mut energy, mut turn) = (0.0, None);
-        for (element, plastic) in ElementId::range(first..first + plastic.len()).zip(plastic) {
+        let (mut energy, mut flows, mut turn) = (0.0, false, None);
+        let elements = ElementId::range(first..first + plastic.len());
+        for (element, (plastic, own)) in elements.zip(plastic.iter_mut().zip(volume)) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element]] {
                 continue;
             }
-            let felt = self.model.averaging.of_element(element, self.averaged);
-            let [dilatation, more] = felt.unwrap_or(self.dilatation[element]);
-            let at = Strained { deformation: self.model.deformation(element, self.displacement), dilatation };
+            let [volume, mean] = self.averages.felt(&self.model.averaging, element, *own);
+            let deformation = self.model.deformation(element, self.displacement);
+            let at = Strained { deformation, volume: volume[0], mean: mean[0] };
             let pre = self.model.pre_stress_and_out(element);
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
                 let deformation = self.before(element, &at.deformation, &mut turn);
-                let from = Strained { deformation, dilatation: dilatation - more };
-                let taken = surface.taken(&from, &at, &pre, [plastic, &growth]);
+                let from = Strained { deformation, volume: volume[0] - volume[1], mean: mean[0] - mean[1] };
+                energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
                 (0..4).for_each(|k| plastic[k] += growth[k]);
-                energy += taken * covers.element_area[element];
+                own[0] -= growth[0] + growth[1];
+                flows = true;
             }
         }
-        energy
+        (energy, flows)
     }
 
     /// Deformation of an element one step ago, in the frame of its block; `turn` is that of the last block asked for.
