@@ -146,23 +146,32 @@ fn overstressed_rock_is_told_at_the_start() {
     assert_eq!(simulation(&case(-4e6, "")).built().warnings, warnings);
 }
 
-/// Triangles lock where rock flows (problem C13): a slope that yields on less than 20 elements over its height is
-/// reported, with the mesh size that would do. Rock that cannot yield, and rock without weight, has no such factor.
+/// Coarse meshes hold slopes that yield for too strong (theory §15): the warning goes with mesh, stiffness and dilation,
+/// says by how much, and names the mesh that would do. Rock that cannot yield, and rock without weight, has no such
+/// factor.
 #[test]
 fn coarse_meshes_of_rock_that_yields_are_told() {
-    let warnings = |size: f64, strength: &str, gravity: f64| {
+    let warnings = |size: f64, young: f64, strength: &str, gravity: f64| {
         let text = format!(
             "title = \"slope\"\n[domain]\noutline = [[0, 0], [32, 0], [12, 10], [0, 10]]\n[mesh]\nsize = {size:e}\n\
-             [gravity]\ny = {gravity:e}\n[rock.soil]\ndensity = 2000\nyoung = 1e8\npoisson = 0.3\n{strength}\n[[fix]]\n\
-             edge = [[0, 0], [32, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n"
+             [gravity]\ny = {gravity:e}\n[rock.soil]\ndensity = 2000\nyoung = {young:e}\npoisson = 0.3\n{strength}\n\
+             [[fix]]\nedge = [[0, 0], [32, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n"
         );
         simulation(&text).built().warnings.clone()
     };
-    let told = warnings(1.0, "cohesion = 1e4", -9.81);
+    let (clay, sand) = ("cohesion = 1e4", "cohesion = 1e4\nfriction_deg = 20");
+    let told = warnings(2.0, 1e8, clay, -9.81);
     assert_eq!(told.len(), 1, "{told:?}");
-    assert!(["mesh of 1.000000 m", "1/20", "(10.000000 m)", "0.500000 m or less"].iter().all(|s| told[0].contains(s)));
-    for silent in [("cohesion = 1e4", 0.5, -9.81), ("", 1.0, -9.81), ("cohesion = 1e4", 1.0, 0.0)] {
-        let (strength, size, gravity) = silent;
-        assert_eq!(warnings(size, strength, gravity), [""; 0], "{silent:?}");
+    let parts = ["mesh of 2.000000 m", "5.0 elements", "(10.000000 m)", "about 4 %", "1.406594 m or less"];
+    assert!(parts.iter().all(|part| told[0].contains(part)), "{told:?}");
+    assert_eq!(warnings(1.0, 1e9, sand, -9.81).len(), 1, "stiff rock that dilates");
+    for (size, young, strength, gravity) in [
+        (1.0, 1e8, clay, -9.81),
+        (1.0, 1e9, clay, -9.81),
+        (0.5, 1e9, sand, -9.81),
+        (2.0, 1e8, "", -9.81),
+        (2.0, 1e8, clay, 0.0),
+    ] {
+        assert_eq!(warnings(size, young, strength, gravity), [""; 0], "{size} {young} {strength} {gravity}");
     }
 }

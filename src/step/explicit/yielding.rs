@@ -15,7 +15,8 @@ use super::{Substep, report};
 const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of this time, and books
-/// what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
+/// what that takes (Eqs. 57, 58). Done twice at the same displacements
+/// it only comes nearer to the surface where neighbours flow unlike each other (Eq. 58c).
 pub(super) fn yield_rock(
     model: &Model,
     state: &mut State,
@@ -73,7 +74,7 @@ fn flow(
     taken.clear();
     taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    // The volume changes of a run are its own; averages of patches are those from before.
+    // Each run changes the volumes of its own elements; those of patches stay as they were.
     let mut volume = std::mem::take(&mut averages.volume);
     let dt_last = *dt_last;
     let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };

@@ -24,7 +24,7 @@ const FALLS_MAX: f64 = 12.0;
 const STILL: f64 = 0.01;
 /// How many times its settlement rock that yields moves before it fails: a slope in soil reaches its limit after 1.5 to
 /// 1.8 times, whatever its stiffness.
-const FLOW: f64 = 3.0;
+const FLOW: f64 = 5.0;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
 
