@@ -39,7 +39,8 @@ fn inner(simulation: &Simulation) -> Vec<CoverId> {
     CoverId::all(covers.cover_count()).filter(|&i| mass[i] > whole * (1.0 - 1e-9)).collect()
 }
 
-/// The patch test, elastic and flowing: 1e-12 of what the same stress does to the covers at a face.
+/// The patch test, elastic and flowing: 1e-12 of what the same stress does to the covers at a face. The metric of a free
+/// block moves all covers alike, so one of them counts as at rest.
 #[test]
 fn uniform_strain_moves_no_inner_cover() {
     for (strength, strain) in [("cohesion = 1e12", [1e-3, -2e-3, 5e-4]), ("cohesion = 1e6", [1e-3, -6e-3, 2e-3])] {
@@ -47,10 +48,11 @@ fn uniform_strain_moves_no_inner_cover() {
         let state = kicked(&mut simulation, strain);
         let yielded = simulation.yielded_elements();
         assert_eq!(yielded, if strength.contains("e12") { 0 } else { simulation.model().covers.element_count() });
-        let most = state.velocity.iter().map(Vector::norm).fold(0.0, f64::max);
         let covers = inner(&simulation);
+        let rest = state.velocity[covers[0]];
+        let most = state.velocity.iter().map(|v| (v - rest).norm()).fold(0.0, f64::max);
         assert!(covers.len() > 50 && most > 0.0, "{} covers, {most}", covers.len());
-        let inside = covers.iter().map(|&i| state.velocity[i].norm()).fold(0.0, f64::max);
+        let inside = covers.iter().map(|&i| (state.velocity[i] - rest).norm()).fold(0.0, f64::max);
         assert!(inside < 1e-12 * most, "{strength}: {inside:e} of {most:e}");
     }
 }
@@ -137,7 +139,13 @@ fn a_footing_on_clay_bears_what_prandtl_found() {
         let mut simulation = ground(stiffness, rows);
         let footing = Footing::on(&simulation);
         let end = 16.0 / stiffness;
+        println!("{} covers, speed {}, dt {}", footing.covers.len(), footing.speed, simulation.model().dt);
         let mut pressure = |from: f64, to: f64| footing.press(&mut simulation, (to - from) * end);
+        if std::env::var("SHOW").is_ok() {
+            for k in 0..40 {
+                println!("{} {}", f64::from(k + 1) * 0.1, pressure(0.0, 0.1));
+            }
+        }
         pressure(0.0, 0.45);
         let half = pressure(0.45, 0.55);
         pressure(0.55, 0.95);

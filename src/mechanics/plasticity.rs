@@ -187,6 +187,16 @@ impl YieldSurface {
         double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + now[k] - relief[k]) + pre[k]), growth)
     }
 
+    /// What [`Self::taken`] lacks (J/m²) of the energy that a growth takes: it reckons with the stress that the element
+    /// alone takes off, and volume change and mean stress have gone `from` those before `to` those after with the
+    /// growth of all.
+    pub fn taken_by_others(&self, growth: &PlasticStrain, [from, to]: [[f64; 2]; 2]) -> f64 {
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let (volume, out) = (growth[0] + growth[1], if self.plane_stress { 0.0 } else { growth[3] });
+        let mean = to[1] - from[1] + (lambda + mu) * volume + lambda * out;
+        0.5 * (mean * volume + lambda * (to[0] - from[0] + volume) * out)
+    }
+
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
     fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
         let Elasticity { lambda, mu, .. } = self.elasticity;

@@ -36,7 +36,23 @@ pub(super) fn yield_rock(
     state.ledger.yielding += energy;
     if flows {
         average(model, &state.plastic, step.serial, buffers);
+        state.ledger.yielding += taken_by_others(model, step.serial, buffers);
     }
+}
+
+/// Energy (J/m) that all growth takes beyond that of each element alone.
+fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f64 {
+    let YieldBuffers { surfaces, energy, growth, averages } = buffers;
+    let of_element = |k: usize| {
+        let (e, (growth, from)) = (ElementId::new(k), growth[k]?);
+        let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
+        let to = averages.felt(&model.averaging, e, averages.volume[e]).map(|felt| felt[0]);
+        Some(surface.taken_by_others(&growth, [from, to]) * model.covers.element_area[e])
+    };
+    let count = growth.len();
+    let of_run = |run: usize| (run * RUN..count.min((run + 1) * RUN)).filter_map(of_element).sum::<f64>();
+    list(serial, count.div_ceil(RUN), energy, |run| (of_run(run), true));
+    energy.iter().map(|taken| taken.0).sum()
 }
 
 /// Elastic volume changes of all elements that can yield, and what the last step brought of them.
@@ -70,28 +86,34 @@ fn flow(
     mass_matrix: &MassMatrix,
     buffers: &mut YieldBuffers,
 ) -> (f64, bool) {
-    let YieldBuffers { surfaces, energy: taken, averages } = buffers;
+    let YieldBuffers { surfaces, energy: taken, growth, averages } = buffers;
     taken.clear();
     taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
+    growth.clear();
+    growth.resize(state.plastic.len(), None);
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
     // Each run changes the volumes of its own elements; those of patches stay as they were.
     let mut volume = std::mem::take(&mut averages.volume);
     let dt_last = *dt_last;
     let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };
-    let run = |(k, ((taken, plastic), volume)): (usize, Run)| *taken = pass.run(k * RUN, plastic, volume);
+    let run = |(k, (((taken, plastic), volume), growth)): (usize, Run)| {
+        *taken = pass.run(k * RUN, plastic, volume, growth);
+    };
     if serial {
         let runs = taken.iter_mut().zip(plastic.chunks_mut(RUN)).zip(volume.chunks_mut(RUN));
-        runs.enumerate().for_each(run);
+        runs.zip(growth.chunks_mut(RUN)).enumerate().for_each(run);
     } else {
         let runs = taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).zip(volume.par_chunks_mut(RUN));
-        runs.enumerate().for_each(run);
+        runs.zip(growth.par_chunks_mut(RUN)).enumerate().for_each(run);
     }
     averages.volume = volume;
     (taken.iter().map(|taken| taken.0).sum(), taken.iter().any(|taken| taken.1))
 }
 
-/// The energy that a run of elements takes and whether it flows, with its plastic strains and volume changes.
-type Run<'a> = ((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]);
+/// The energy that a run of elements takes and whether it flows, with its plastic strains, volume changes and growth.
+type Run<'a> = (((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]), &'a mut [Growth]);
+/// Growth of the plastic strain of an element, and volume change and mean stress that it felt before.
+type Growth = Option<(PlasticStrain, [f64; 2])>;
 
 /// How far (m) the covers of an element moved in the last step.
 fn moved(model: &Model, element: ElementId, velocity: &[Vector], dt_last: f64) -> [Vector; 3] {
@@ -116,11 +138,17 @@ struct Pass<'a> {
 
 impl Pass<'_> {
     /// Updates the elements from `first` on; returns the energy (J/m) that it takes, and whether any flows.
-    fn run(&self, first: usize, plastic: &mut [PlasticStrain], volume: &mut [[f64; 2]]) -> (f64, bool) {
+    fn run(
+        &self,
+        first: usize,
+        plastic: &mut [PlasticStrain],
+        volume: &mut [[f64; 2]],
+        grown: &mut [Growth],
+    ) -> (f64, bool) {
         let covers = &self.model.covers;
         let (mut energy, mut flows, mut turn) = (0.0, false, None);
         let elements = ElementId::range(first..first + plastic.len());
-        for (element, (plastic, own)) in elements.zip(plastic.iter_mut().zip(volume)) {
+        for (element, ((plastic, own), grown)) in elements.zip(plastic.iter_mut().zip(volume).zip(grown)) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element]] {
                 continue;
@@ -135,6 +163,7 @@ impl Pass<'_> {
                 energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
                 (0..4).for_each(|k| plastic[k] += growth[k]);
                 own[0] -= growth[0] + growth[1];
+                *grown = Some((growth, [volume[0], mean[0]]));
                 flows = true;
             }
         }
