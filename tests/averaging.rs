@@ -101,7 +101,7 @@ impl Footing {
         let covers = CoverId::all(model.covers.cover_count()).filter(|&i| under(&model.covers.star_position[i]));
         Self {
             covers: covers.map(|i| (i, model.mass_matrix.mass[i])).collect(),
-            speed: 2e-4 * (model.rocks[0].mu / model.rocks[0].density).sqrt(),
+            speed: 0.05 / (model.rocks[0].mu * model.rocks[0].density).sqrt(),
             // The last cover under it bears half a triangle beyond.
             half: 1.0 + 0.5 * model.covers.mesh.size,
         }
@@ -129,23 +129,19 @@ impl Footing {
     }
 }
 
-/// L. Prandtl (1920): a strip on clay bears (2 + π)c, however far it has gone down and however stiff the clay. 1 % for
+/// L. Prandtl (1920): a strip on clay bears (2 + π)c, however far it has gone down and however stiff the clay, as long as
+/// the corner of the footing does not turn the triangles beside it (by 2 % of h at the end of this way). 1 % for
 /// the plateau over a doubling of the settlement, 2 % for the mesh; triangles that lock bear 14 % too much, and more and
 /// more.
 #[test]
 fn a_footing_on_clay_bears_what_prandtl_found() {
     let exact = 2.0 + std::f64::consts::PI;
-    for &(stiffness, rows) in by_extent([&[(200.0, 10.0)][..], &[(200.0, 20.0)], &[(200.0, 20.0), (2000.0, 20.0)]]) {
+    for &(stiffness, rows) in by_extent([&[(2e4, 10.0)][..], &[(2e4, 20.0)], &[(2e3, 20.0), (2e4, 20.0), (2e5, 20.0)]])
+    {
         let mut simulation = ground(stiffness, rows);
         let footing = Footing::on(&simulation);
-        let end = 16.0 / stiffness;
-        println!("{} covers, speed {}, dt {}", footing.covers.len(), footing.speed, simulation.model().dt);
+        let end = 80.0 / stiffness;
         let mut pressure = |from: f64, to: f64| footing.press(&mut simulation, (to - from) * end);
-        if std::env::var("SHOW").is_ok() {
-            for k in 0..40 {
-                println!("{} {}", f64::from(k + 1) * 0.1, pressure(0.0, 0.1));
-            }
-        }
         pressure(0.0, 0.45);
         let half = pressure(0.45, 0.55);
         pressure(0.55, 0.95);
