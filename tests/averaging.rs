@@ -39,8 +39,8 @@ fn inner(simulation: &Simulation) -> Vec<CoverId> {
     CoverId::all(covers.cover_count()).filter(|&i| mass[i] > whole * (1.0 - 1e-9)).collect()
 }
 
-/// The patch test, elastic and flowing: 1e-12 of what the same stress does to the covers at a face. The metric of a free
-/// block moves all covers alike, so one of them counts as at rest.
+/// The patch test, elastic and flowing: 1e-12 of what the same stress does to the covers at a face. The metric of a
+/// free block moves all covers alike, so one of them counts as at rest.
 #[test]
 fn uniform_strain_moves_no_inner_cover() {
     for (strength, strain) in [("cohesion = 1e12", [1e-3, -2e-3, 5e-4]), ("cohesion = 1e6", [1e-3, -6e-3, 2e-3])] {
@@ -86,8 +86,8 @@ fn ground(stiffness: f64, rows: f64) -> Simulation {
     ))
 }
 
-/// The covers under the footing with their masses (kg/m): they are given its motion anew in every step, and the kick that
-/// each step gives them shows the force on it.
+/// The covers under the footing with their masses (kg/m): they are given its motion anew in every step, and the kick
+/// that each step gives them shows the force on it.
 struct Footing {
     covers: Vec<(CoverId, f64)>,
     speed: f64,
@@ -129,10 +129,10 @@ impl Footing {
     }
 }
 
-/// L. Prandtl (1920): a strip on clay bears (2 + π)c, however far it has gone down and however stiff the clay, as long as
-/// the corner of the footing does not turn the triangles beside it (by 2 % of h at the end of this way). 1 % for
-/// the plateau over a doubling of the settlement, 2 % for the mesh; triangles that lock bear 14 % too much, and more and
-/// more.
+/// L. Prandtl (1920): a strip on clay bears (2 + π)c, however far it has gone down and however stiff the clay, as
+/// long as the corner of the footing does not turn the triangles beside it (by 2 % of h at the end of this way). 1 %
+/// for the plateau over a doubling of the settlement, 2 % for the mesh; triangles that lock bear 14 % too much, and
+/// more and more.
 #[test]
 fn a_footing_on_clay_bears_what_prandtl_found() {
     let exact = 2.0 + std::f64::consts::PI;

@@ -45,7 +45,8 @@ fn rock_that_does_not_yield_moves_as_elastic_rock() {
     assert!(apart < 0.03 * way(&elastic), "{apart} of {}", way(&elastic));
 }
 
-/// One thread, two or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger closes.
+/// One thread, two or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger
+/// closes.
 #[test]
 fn crushing_takes_energy_and_keeps_bits() {
     let one = crash(WEAK, 1);
@@ -146,9 +147,9 @@ fn overstressed_rock_is_told_at_the_start() {
     assert_eq!(simulation(&case(-4e6, "")).built().warnings, warnings);
 }
 
-/// Coarse meshes hold slopes that yield for too strong (theory §15): the warning goes with mesh, stiffness and dilation,
-/// says by how much, and names the mesh that would do. Rock that cannot yield, and rock without weight, has no such
-/// factor.
+/// Coarse meshes hold slopes that yield for too strong (theory §15): the warning goes with mesh, stiffness and
+/// dilation, says by how much, and names the mesh that would do. Rock that cannot yield, and rock without weight, has
+/// no such factor.
 #[test]
 fn coarse_meshes_of_rock_that_yields_are_told() {
     let warnings = |size: f64, young: f64, strength: &str, gravity: f64| {

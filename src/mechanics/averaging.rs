@@ -1,6 +1,6 @@
 //! Volume changes of rock that yields, averaged over physical covers, so that triangles do not lock where it flows
-//! (Eqs. 58a–58c). A *patch* is the elements of one rock about one cover: averages stay on one side of joints, faces and
-//! boundaries between rocks.
+//! (Eqs. 58a–58c). A *patch* is the elements of one rock about one cover: averages stay on one side of joints, faces
+//! and boundaries between rocks.
 
 use rayon::prelude::*;
 
@@ -8,8 +8,8 @@ use crate::cover::{CoverId, Covers, ElementId};
 
 use super::Deformation;
 
-/// Share of a whole star below which a cover is light: its neighbours' stress would push it out of the face. From 0.15 to
-/// 0.3 the factor of a slope in soil changes by 0.4 %.
+/// Share of a whole star below which a cover is light: its neighbours' stress would push it out of the face. From 0.15
+/// to 0.3 the factor of a slope in soil changes by 0.4 %.
 const LIGHT_STAR: f64 = 0.2;
 
 /// Deformation of an element with what its rock feels of the patches about it, or its own where it is in none.

@@ -10,8 +10,8 @@ use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 const HEIGHT: f64 = 10.0;
 const GAMMA: f64 = 20e3;
 
-/// Factor of the slope on a mesh of so many elements over the height at an angle (degrees), with Young's modulus over γH
-/// and a dilation angle (degrees), looked for from 1.3 on.
+/// Factor of the slope on a mesh of so many elements over the height at an angle (degrees), with Young's modulus over
+/// γH and a dilation angle (degrees), looked for from 1.3 on.
 fn factor([rows, angle]: [f64; 2], stiffness: f64, dilation: f64) -> f64 {
     let text = format!(
         "title = \"slope\"\n[domain]\noutline = [[0, 0], [32, 0], [12, 10], [0, 10]]\n[mesh]\nsize = {:e}\n\
@@ -30,8 +30,8 @@ fn factor([rows, angle]: [f64; 2], stiffness: f64, dilation: f64) -> f64 {
     reduction.factor().expect("a factor")
 }
 
-/// Elements of a tenth of the height: each factor within 3.5 %, their mean over mesh angles within 2 % and a half of the
-/// bracket; rock that is ten times stiffer within 2 % of the softer one.
+/// Elements of a tenth of the height: each factor within 3.5 %, their mean over mesh angles within 2 % and a half of
+/// the bracket; rock that is ten times stiffer within 2 % of the softer one.
 #[test]
 fn the_factor_of_a_slope_in_soil_is_that_of_griffiths_and_lane() {
     let angles = by_extent([&[0.0, 37.0][..], &[0.0, 7.0, 20.0, 37.0, 52.0], &[0.0, 7.0, 20.0, 37.0, 52.0]]);

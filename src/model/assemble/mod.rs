@@ -18,8 +18,7 @@ use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resista
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
-    Averaging, Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable,
-    critical_dt,
+    Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, State, Water};
@@ -76,7 +75,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (mut model, bolt_warnings) = model(case, &joints, covers, &outlines, tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines), tolerance, tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     tell(BuildStage::Start);
@@ -125,8 +124,7 @@ const STIFFNESS_LENGTH: f64 = 1.0;
 fn model(
     case: &Case,
     joints: &Joints,
-    covers: Covers,
-    outlines: &Outlines,
+    (covers, outlines): (Covers, &Outlines),
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
@@ -140,16 +138,14 @@ fn model(
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
-    let strengths: Vec<_> = case.rocks.values().map(rock::strength).collect();
-    let yields = |e: ElementId| strengths[element_rock[e] as usize].is_some();
     let model = Model {
-        averaging: Averaging::new(&covers, &element_rock, yields),
+        averaging: rock::averaging(case, &covers, &element_rock),
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         integrator: None,
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
-        strengths,
+        strengths: case.rocks.values().map(rock::strength).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
         laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),

@@ -2,7 +2,7 @@
 
 use crate::cover::{Covers, ElementId};
 use crate::geometry::polygon;
-use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
+use crate::mechanics::{Averaging, Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
 use crate::state::Model;
 
@@ -32,6 +32,12 @@ pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
         dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
         tension: rock.tension,
     })
+}
+
+/// Patches of the elements that can yield.
+pub(super) fn averaging(case: &Case, covers: &Covers, element_rock: &[u16]) -> Averaging {
+    let yields: Vec<bool> = case.rocks.values().map(Rock::yields).collect();
+    Averaging::new(covers, element_rock, |e| yields[element_rock[e] as usize])
 }
 
 /// No plastic strain in any element; empty when no rock yields.
@@ -84,8 +90,8 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     ))
 }
 
-/// By how much (%) a slope in rock that yields is too strong on a mesh of a tenth of its height: where the rock keeps its
-/// volume, and where it dilates (theory, section 15). It goes with the square of the mesh size.
+/// By how much (%) a slope in rock that yields is too strong on a mesh of a tenth of its height: where the rock keeps
+/// its volume, and where it dilates (theory, section 15). It goes with the square of the mesh size.
 const TOO_STRONG: [f64; 2] = [1.0, 2.8];
 /// How much (%) each tenfold stiffness adds to that, above [`SOFT`].
 const STIFFER: f64 = 1.3;
@@ -111,8 +117,8 @@ pub(super) fn coarse(case: &Case) -> Option<String> {
     let percent = most * (10.0 * size / height).powi(2);
     (percent > UNSEEN[0]).then(|| {
         format!(
-            "rock yields on a mesh of {size:.6} m, {:.1} elements over the height of the model ({height:.6} m): factors \
-             of safety of slopes in soil came out about {percent:.0} % too high on such a mesh in rock of this \
+            "rock yields on a mesh of {size:.6} m, {:.1} elements over the height of the model ({height:.6} m): \
+             factors of safety of slopes in soil came out about {percent:.0} % too high on such a mesh in rock of this \
              stiffness: set `mesh.size` to {:.6} m or less for {} %",
             height / size,
             0.1 * height * (UNSEEN[1] / most).sqrt(),

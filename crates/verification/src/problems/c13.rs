@@ -9,9 +9,9 @@ pub const PROBLEM: Problem = Problem {
     id: "C13",
     title: "Slope in soil, and how little its factor depends on mesh and stiffness",
     source: "D. V. Griffiths and P. A. Lane, Géotechnique 49 (1999), example 1: 1.38 to 1.40 for a slope of 2:1 above \
-             a firm base; here beside Bishop's simplified method, least over circles above the base. Catches strength of \
-             rock that is not divided by the factor, and triangles that lock where rock flows: they would hold 4 % more \
-             on the coarse mesh, and 10 % more on the fine one in rock that is ten times as stiff",
+             a firm base; here beside Bishop's simplified method, least over circles above the base. Catches strength \
+             of rock that is not divided by the factor, and triangles that lock where rock flows: they would hold 4 % \
+             more on the coarse mesh, and 10 % more on the fine one in rock that is ten times as stiff",
     parameters: &[
         Parameter { name: "height", unit: "m", default: 10.0, range: [1.0, 100.0], doc: "height H of the slope" },
         Parameter { name: "slope", unit: "", default: 2.0, range: [1.0, 4.0], doc: "cot of the face" },
@@ -125,8 +125,8 @@ fn reduce(setup: &mut Setup, elements: f64, stiffer: f64, [low, high]: [Option<f
 }
 
 /// Why factors may differ, and by how much.
-const REASON: &str = "1 % for Bishop's method beside exact ones, half of a bracket of 1 %, and 2 % for the mesh: coarse \
-                      triangles hold a little more than rock, and bands of the width of the mesh a little less";
+const REASON: &str = "1 % for Bishop's method beside exact ones, half of a bracket of 1 %, and 2 % for the mesh: \
+                      coarse triangles hold a little more than rock, and bands of its width a little less";
 const TOLERANCE: Tolerance = Tolerance::Relative(0.01 + 0.5 * BRACKET + 0.02);
 /// Elements over the height from which on rock that does not dilate fails in bands of the mesh: no factor to compare.
 const BANDS: f64 = 40.0;
