@@ -17,8 +17,6 @@ const LIGHT_STAR: f64 = 0.2;
 pub struct Strained {
     /// Deformation.
     pub deformation: Deformation,
-    /// Elastic volume change in the plane (Eq. 58a).
-    pub volume: f64,
     /// Mean stress in the plane (Pa), without in-situ stress (Eq. 58b).
     pub mean: f64,
 }

@@ -27,6 +27,6 @@ pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
     turning,
 };
-pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain, own_volume};
+pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
 pub use record::Record;
 pub use turn::Turn;

@@ -71,16 +71,19 @@ impl MohrCoulomb {
         }
     }
 
-    /// Mean of the stresses xx and yy (Pa) at an elastic volume change in the plane, without in-situ stress.
-    pub fn mean_stress(&self, volume: f64, plastic: &PlasticStrain) -> f64 {
-        let Elasticity { lambda, mu, .. } = self.elasticity;
-        let out = if self.plane_stress { 0.0 } else { lambda * plastic[3] };
-        (lambda + mu) * volume - out
+    /// Mean of the stresses xx and yy (Pa) at an elastic volume change, without in-situ stress.
+    pub fn mean_stress(&self, volume: f64) -> f64 {
+        (self.elasticity.lambda + self.elasticity.mu) * volume
+    }
+
+    /// Elastic volume change of an element by which its mean stress in the plane goes (Eq. 58a).
+    pub fn own_volume(&self, at: &Deformation, plastic: &PlasticStrain) -> f64 {
+        at.dilatation() - volume(&self.elasticity, self.plane_stress, plastic)
     }
 
     /// How much (Pa) the mean stress of its patches differs from an element's own.
     fn more(&self, at: &Deformation, plastic: &PlasticStrain, mean: f64) -> f64 {
-        mean - self.mean_stress(own_volume(at, plastic), plastic)
+        mean - self.mean_stress(self.own_volume(at, plastic))
     }
 
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
@@ -118,8 +121,8 @@ impl MohrCoulomb {
     /// Contribution of plastic strain and of the averaged volume change to the energy (J/m²) under a pre-stress xx, yy,
     /// xy, zz (Pa) (Eqs. 58, 58b).
     pub fn energy(&self, at: &Deformation, volume: f64, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
-        let own = own_volume(at, plastic);
-        let means = self.mean_stress(own, plastic) + self.mean_stress(volume, plastic);
+        let own = self.own_volume(at, plastic);
+        let means = self.mean_stress(own) + self.mean_stress(volume);
         let more = 0.5 * (volume - own) * means;
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
@@ -128,9 +131,10 @@ impl MohrCoulomb {
     }
 }
 
-/// Elastic volume change of an element in the plane.
-pub fn own_volume(at: &Deformation, plastic: &PlasticStrain) -> f64 {
-    at.dilatation() - (plastic[0] + plastic[1])
+/// xx + yy + 2ν·zz of a strain: what of it acts on the mean stress in the plane.
+fn volume(rock: &Elasticity, plane_stress: bool, strain: &PlasticStrain) -> f64 {
+    let out = if plane_stress { 0.0 } else { rock.lambda / (rock.lambda + rock.mu) * strain[3] };
+    strain[0] + strain[1] + out
 }
 
 /// C·ε of a plane strain field with strain out of the plane; in plane stress that one costs nothing.
@@ -188,13 +192,15 @@ impl YieldSurface {
     }
 
     /// What [`Self::taken`] lacks (J/m²) of the energy that a growth takes: it reckons with the stress that the element
-    /// alone takes off, and volume change and mean stress have gone `from` those before `to` those after with the
-    /// growth of all.
-    pub fn taken_by_others(&self, growth: &PlasticStrain, [from, to]: [[f64; 2]; 2]) -> f64 {
-        let Elasticity { lambda, mu, .. } = self.elasticity;
-        let (volume, out) = (growth[0] + growth[1], if self.plane_stress { 0.0 } else { growth[3] });
-        let mean = to[1] - from[1] + (lambda + mu) * volume + lambda * out;
-        0.5 * (mean * volume + lambda * (to[0] - from[0] + volume) * out)
+    /// alone takes off, and the mean stress has gone `from` that before `to` that after with the growth of all.
+    pub fn taken_by_others(&self, growth: &PlasticStrain, from: f64, to: f64) -> f64 {
+        let volume = self.volume(growth);
+        0.5 * (to - from + (self.elasticity.lambda + self.elasticity.mu) * volume) * volume
+    }
+
+    /// Elastic volume change that a growth of plastic strain takes (Eq. 58a).
+    pub fn volume(&self, growth: &PlasticStrain) -> f64 {
+        volume(&self.elasticity, self.plane_stress, growth)
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
@@ -202,7 +208,8 @@ impl YieldSurface {
         let Elasticity { lambda, mu, .. } = self.elasticity;
         let [xx, yy, xy] = at.deformation.strain();
         let half = mu * ((xx - plastic[0]) - (yy - plastic[1]));
-        let out = if self.plane_stress { 0.0 } else { lambda * at.volume - (lambda + 2.0 * mu) * plastic[3] };
+        let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+        let out = if self.plane_stress { 0.0 } else { lambda / (lambda + mu) * at.mean - young * plastic[3] };
         [at.mean + half, at.mean - half, 2.0 * mu * (xy - plastic[2]), out]
     }
 

@@ -2,9 +2,7 @@
 
 use crate::cover::ElementId;
 use crate::geometry::Vector;
-use crate::mechanics::{
-    Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, Strained, equivalent_strain, own_volume,
-};
+use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, Strained, equivalent_strain};
 
 use super::{Model, State};
 
@@ -15,21 +13,21 @@ impl Model {
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
     }
 
-    /// Elastic volume change in the plane of an element of rock that can yield, averaged (Eq. 58a).
-    fn volume(&self, state: &State, element: ElementId) -> f64 {
+    /// Elastic volume change of an element of rock that can yield, averaged (Eq. 58a).
+    fn volume(&self, state: &State, strength: &MohrCoulomb, element: ElementId) -> f64 {
         let own = |e: ElementId| {
             let at = self.deformation(e, &state.displacement);
-            [own_volume(&at, &state.plastic[e])]
+            [strength.own_volume(&at, &state.plastic[e])]
         };
         self.averaging.around(element, own).unwrap_or_else(|| own(element))[0]
     }
 
     /// Deformation of an element of rock that can yield, with the averages of its patches.
     fn strained(&self, state: &State, strength: &MohrCoulomb, element: ElementId) -> Strained {
-        let own = |e: ElementId| [strength.mean_stress(self.volume(state, e), &state.plastic[e])];
+        let own = |e: ElementId| [strength.mean_stress(self.volume(state, strength, e))];
         let [mean] = self.averaging.around(element, own).unwrap_or_else(|| own(element));
         let deformation = self.deformation(element, &state.displacement);
-        Strained { deformation, volume: self.volume(state, element), mean }
+        Strained { deformation, mean }
     }
 
     /// Elastic constants of an element.
@@ -90,7 +88,7 @@ impl Model {
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
         match self.strength_of(element).zip(state.plastic.get(element.index())) {
             Some((strength, plastic)) => {
-                let volume = self.volume(state, element);
+                let volume = self.volume(state, strength, element);
                 energy + strength.energy(&at, volume, &self.pre_stress_and_out(element), plastic)
             }
             None => energy,

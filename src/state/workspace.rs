@@ -90,8 +90,8 @@ pub struct YieldBuffers {
     pub surfaces: Vec<Option<YieldSurface>>,
     /// Energy (J/m) taken by yielding of each run of elements in this step, and whether any flows.
     pub energy: Vec<(f64, bool)>,
-    /// Growth of the plastic strain of each element in this step, and the averages that it felt before.
-    pub growth: Vec<Option<(PlasticStrain, [f64; 2])>>,
+    /// Growth of the plastic strain of each element in this step, and the mean stress that it felt before.
+    pub growth: Vec<Option<(PlasticStrain, f64)>>,
     /// Averages over patches of elements; empty when no rock yields.
     pub averages: Averages,
 }

@@ -4,9 +4,7 @@ use rayon::prelude::*;
 
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
-use crate::mechanics::{
-    self, Averages, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface, list, own_volume,
-};
+use crate::mechanics::{self, Averages, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface, list};
 use crate::state::{Model, State, YieldBuffers};
 
 use super::{Substep, report};
@@ -31,11 +29,11 @@ pub(super) fn yield_rock(
     buffers.surfaces.clear();
     buffers.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
     volumes(model, state, step.serial, buffers);
-    average(model, &state.plastic, step.serial, buffers);
+    average(model, step.serial, buffers);
     let (energy, flows) = flow(model, state, step.serial, mass_matrix, buffers);
     state.ledger.yielding += energy;
     if flows {
-        average(model, &state.plastic, step.serial, buffers);
+        average(model, step.serial, buffers);
         state.ledger.yielding += taken_by_others(model, step.serial, buffers);
     }
 }
@@ -46,8 +44,8 @@ fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f
     let of_element = |k: usize| {
         let (e, (growth, from)) = (ElementId::new(k), growth[k]?);
         let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
-        let to = averages.felt(&model.averaging, e, averages.volume[e]).map(|felt| felt[0]);
-        Some(surface.taken_by_others(&growth, [from, to]) * model.covers.element_area[e])
+        let [_, [to, _]] = averages.felt(&model.averaging, e, averages.volume[e]);
+        Some(surface.taken_by_others(&growth, from, to) * model.covers.element_area[e])
     };
     let count = growth.len();
     let of_run = |run: usize| (run * RUN..count.min((run + 1) * RUN)).filter_map(of_element).sum::<f64>();
@@ -56,23 +54,21 @@ fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f
 }
 
 /// Elastic volume changes of all elements that can yield, and what the last step brought of them.
-fn volumes(model: &Model, state: &State, serial: bool, YieldBuffers { surfaces, averages, .. }: &mut YieldBuffers) {
+fn volumes(model: &Model, state: &State, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
     let State { displacement, velocity, dt_last, plastic, .. } = state;
     list(serial, plastic.len(), &mut averages.volume, |k| {
         let e = ElementId::new(k);
-        if surfaces[model.element_rock[e] as usize].is_none() {
-            return [0.0; 2];
-        }
+        let Some(strength) = model.strength_of(e) else { return [0.0; 2] };
         let at = model.deformation(e, displacement);
         let brought = at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e));
-        [own_volume(&at, &plastic[e]), brought]
+        [strength.own_volume(&at, &plastic[e]), brought]
     });
 }
 
 /// Averages volume changes and mean stresses over patches (Eqs. 58a, 58b).
-fn average(model: &Model, plastic: &[PlasticStrain], serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+fn average(model: &Model, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
     averages.average(&model.averaging, serial, |e, [volume, brought]| match model.strength_of(e) {
-        Some(strength) => [strength.mean_stress(volume, &plastic[e]), strength.mean_stress(brought, &[0.0; 4])],
+        Some(strength) => [volume, brought].map(|volume| strength.mean_stress(volume)),
         None => [0.0; 2],
     });
 }
@@ -112,8 +108,8 @@ fn flow(
 
 /// The energy that a run of elements takes and whether it flows, with its plastic strains, volume changes and growth.
 type Run<'a> = (((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]), &'a mut [Growth]);
-/// Growth of the plastic strain of an element, and volume change and mean stress that it felt before.
-type Growth = Option<(PlasticStrain, [f64; 2])>;
+/// Growth of the plastic strain of an element, and the mean stress that it felt before.
+type Growth = Option<(PlasticStrain, f64)>;
 
 /// How far (m) the covers of an element moved in the last step.
 fn moved(model: &Model, element: ElementId, velocity: &[Vector], dt_last: f64) -> [Vector; 3] {
@@ -153,17 +149,17 @@ impl Pass<'_> {
             if self.removed[covers.element_block[element]] {
                 continue;
             }
-            let [volume, mean] = self.averages.felt(&self.model.averaging, element, *own);
+            let [_, mean] = self.averages.felt(&self.model.averaging, element, *own);
             let deformation = self.model.deformation(element, self.displacement);
-            let at = Strained { deformation, volume: volume[0], mean: mean[0] };
+            let at = Strained { deformation, mean: mean[0] };
             let pre = self.model.pre_stress_and_out(element);
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
                 let deformation = self.before(element, &at.deformation, &mut turn);
-                let from = Strained { deformation, volume: volume[0] - volume[1], mean: mean[0] - mean[1] };
+                let from = Strained { deformation, mean: mean[0] - mean[1] };
                 energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
                 (0..4).for_each(|k| plastic[k] += growth[k]);
-                own[0] -= growth[0] + growth[1];
-                *grown = Some((growth, [volume[0], mean[0]]));
+                own[0] -= surface.volume(&growth);
+                *grown = Some((growth, mean[0]));
                 flows = true;
             }
         }
