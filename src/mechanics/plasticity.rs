@@ -460,13 +460,14 @@ mod tests {
         let gradients = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
         let (strength, plastic) = (rock(30.0, 0.0, None, false), [0.01, -0.02, 0.005, 0.003]);
         let u = [Vector::new(0.1, -0.2), Vector::new(-0.05, 0.3), Vector::new(0.2, 0.15)];
-        let forces = strength.forces(&Deformation::new(u, &gradients), &gradients, 1.0, &plastic);
+        let forces = strength.forces(&Deformation::new(u, &gradients), (&gradients, 1.0), &plastic, None);
         for k in 0..3 {
             for axis in 0..2 {
                 let energy = |d: f64| {
                     let mut moved = u;
                     moved[k][axis] += d;
-                    strength.energy(&Deformation::new(moved, &gradients), &[1e6, 2e6, 3e5, 0.0], &plastic)
+                    let at = Deformation::new(moved, &gradients);
+                    strength.energy(&at, strength.own_volume(&at, &plastic), &[1e6, 2e6, 3e5, 0.0], &plastic)
                 };
                 let model = (energy(1e-6) - energy(-1e-6)) / 2e-6;
                 assert!((model + forces[k][axis]).abs() < 1.0, "{model} {}", forces[k][axis]);
