@@ -1,6 +1,7 @@
 //! Tests of the engine through its public rooms, a file for each property that is claimed.
 
 mod allocation_free;
+mod averaging;
 mod barton_bandis;
 mod base_motion;
 mod bolt_law;

@@ -31,22 +31,29 @@ fn crash(strength: &str, threads: usize) -> Simulation {
 
 const WEAK: &str = "friction_deg = 30\ncohesion = 5e5\ndilation_deg = 5\ntension = 1e5";
 
-/// Rock that could yield and does not moves as rock that cannot, and an elastic model holds no plastic strain.
+/// Elastic models hold no plastic strain and no averages. Rock that could yield and does not feels averaged volume
+/// changes: it moves as rock that cannot, up to what the mesh leaves open.
 #[test]
-fn rock_that_does_not_yield_is_elastic_to_the_bit() {
+fn rock_that_does_not_yield_moves_as_elastic_rock() {
     let (elastic, strong) = (crash("", 1), crash("cohesion = 1e12", 1));
     assert!(elastic.state().plastic.is_empty());
+    assert_eq!(elastic.model().averaging.bytes(), 0);
     assert_eq!(strong.yielded_elements(), 0);
-    assert!(elastic.state().displacement == strong.state().displacement);
-    assert!(elastic.state().velocity == strong.state().velocity);
+    let way = |s: &Simulation| s.state().displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let apart = elastic.state().displacement.iter().zip(&strong.state().displacement).map(|(a, b)| (a - b).norm());
+    let apart = apart.fold(0.0, f64::max);
+    assert!(apart < 0.03 * way(&elastic), "{apart} of {}", way(&elastic));
 }
 
-/// One thread or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger closes.
+/// One thread, two or three, and through a saved state: the same bits. Energy is taken by yielding, and the ledger
+/// closes.
 #[test]
 fn crushing_takes_energy_and_keeps_bits() {
     let one = crash(WEAK, 1);
     assert!(one.yielded_elements() > 20, "{}", one.yielded_elements());
-    assert!(one.state() == crash(WEAK, 3).state(), "threads change bits");
+    for threads in [2, 3] {
+        assert!(one.state() == crash(WEAK, threads).state(), "{threads} threads change bits");
+    }
     let mut first = one.clone();
     let report = advance(&mut first, 300);
     let saved = serde_json_round_trip(one.state());
@@ -140,23 +147,32 @@ fn overstressed_rock_is_told_at_the_start() {
     assert_eq!(simulation(&case(-4e6, "")).built().warnings, warnings);
 }
 
-/// Triangles lock where rock flows (problem C13): a slope that yields on less than 20 elements over its height is
-/// reported, with the mesh size that would do. Rock that cannot yield, and rock without weight, has no such factor.
+/// Coarse meshes hold slopes that yield for too strong (theory §15): the warning goes with mesh, stiffness and
+/// dilation, says by how much, and names the mesh that would do. Rock that cannot yield, and rock without weight, has
+/// no such factor.
 #[test]
 fn coarse_meshes_of_rock_that_yields_are_told() {
-    let warnings = |size: f64, strength: &str, gravity: f64| {
+    let warnings = |size: f64, young: f64, strength: &str, gravity: f64| {
         let text = format!(
             "title = \"slope\"\n[domain]\noutline = [[0, 0], [32, 0], [12, 10], [0, 10]]\n[mesh]\nsize = {size:e}\n\
-             [gravity]\ny = {gravity:e}\n[rock.soil]\ndensity = 2000\nyoung = 1e8\npoisson = 0.3\n{strength}\n[[fix]]\n\
-             edge = [[0, 0], [32, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n"
+             [gravity]\ny = {gravity:e}\n[rock.soil]\ndensity = 2000\nyoung = {young:e}\npoisson = 0.3\n{strength}\n\
+             [[fix]]\nedge = [[0, 0], [32, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n"
         );
         simulation(&text).built().warnings.clone()
     };
-    let told = warnings(1.0, "cohesion = 1e4", -9.81);
+    let (clay, sand) = ("cohesion = 1e4", "cohesion = 1e4\nfriction_deg = 20");
+    let told = warnings(2.0, 1e8, clay, -9.81);
     assert_eq!(told.len(), 1, "{told:?}");
-    assert!(["mesh of 1.000000 m", "1/20", "(10.000000 m)", "0.500000 m or less"].iter().all(|s| told[0].contains(s)));
-    for silent in [("cohesion = 1e4", 0.5, -9.81), ("", 1.0, -9.81), ("cohesion = 1e4", 1.0, 0.0)] {
-        let (strength, size, gravity) = silent;
-        assert_eq!(warnings(size, strength, gravity), [""; 0], "{silent:?}");
+    let parts = ["mesh of 2.000000 m", "5.0 elements", "(10.000000 m)", "about 4 %", "1.406617 m or less"];
+    assert!(parts.iter().all(|part| told[0].contains(part)), "{told:?}");
+    assert_eq!(warnings(1.0, 1e9, sand, -9.81).len(), 1, "stiff rock that dilates");
+    for (size, young, strength, gravity) in [
+        (1.0, 1e8, clay, -9.81),
+        (1.0, 1e9, clay, -9.81),
+        (0.5, 1e9, sand, -9.81),
+        (2.0, 1e8, "", -9.81),
+        (2.0, 1e8, clay, 0.0),
+    ] {
+        assert_eq!(warnings(size, young, strength, gravity), [""; 0], "{size} {young} {strength} {gravity}");
     }
 }

@@ -120,6 +120,18 @@ impl Deformation {
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
+    /// Volume change tr(RᵀF − I) (Eq. 58a).
+    pub fn dilatation(&self) -> f64 {
+        self.trace - 2.0
+    }
+
+    /// Change of the volume change, to first order, while the three covers moved by `moved` (m): R:ΔF. A turn of the
+    /// whole block has no part in it.
+    pub fn dilatation_by(&self, moved: [Vector; 3], g: &[Vector; 3]) -> f64 {
+        let [d11, d12, d21, d22] = gradient(0.0, moved, g);
+        self.cos * (d11 + d22) + self.sin * (d21 - d12)
+    }
+
     /// Strain RᵀF − I as xx, yy, xy in the axes that rotate with the element (Eq. 54).
     pub fn strain(&self) -> [f64; 3] {
         let d = self.stretch();

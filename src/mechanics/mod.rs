@@ -1,6 +1,7 @@
 //! Mechanics of the rock: masses, strain, stress, constitutive laws, loads, damping and energies, as pure functions
 //! over slices. The room `step` calls them; they know nothing of contact or files.
 
+mod averaging;
 pub mod block_lanes;
 pub mod chunk;
 mod column;
@@ -15,6 +16,7 @@ pub mod pressure;
 mod record;
 mod turn;
 
+pub use averaging::{Averages, Averaging, Strained, list};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use elasticity::{Elasticity, critical_dt};

@@ -3,7 +3,7 @@
 
 use crate::geometry::Vector;
 
-use super::{Deformation, Elasticity};
+use super::{Deformation, Elasticity, Strained};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
 pub type PlasticStrain = [f64; 4];
@@ -71,35 +71,70 @@ impl MohrCoulomb {
         }
     }
 
+    /// Mean of the stresses xx and yy (Pa) at an elastic volume change, without in-situ stress.
+    pub fn mean_stress(&self, volume: f64) -> f64 {
+        (self.elasticity.lambda + self.elasticity.mu) * volume
+    }
+
+    /// Elastic volume change of an element by which its mean stress in the plane goes (Eq. 58a).
+    pub fn own_volume(&self, at: &Deformation, plastic: &PlasticStrain) -> f64 {
+        at.dilatation() - volume(&self.elasticity, self.plane_stress, plastic)
+    }
+
+    /// How much (Pa) the mean stress of its patches differs from an element's own.
+    fn more(&self, at: &Deformation, plastic: &PlasticStrain, mean: f64) -> f64 {
+        mean - self.mean_stress(self.own_volume(at, plastic))
+    }
+
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
     fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
 
-    /// Contribution of plastic strain to the forces (N/m) on the three covers of an element of cut area `area` (m²).
+    /// Contribution of plastic strain and of averages to the forces (N/m) on the three covers of an element of cut area
+    /// `area` (m²); `mean` is the averaged mean stress (Pa), if there is one (Eq. 58c).
     ///
     /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
     /// rotate no element (Eq. 58).
-    pub fn forces(&self, at: &Deformation, g: &[Vector; 3], area: f64, plastic: &PlasticStrain) -> [Vector; 3] {
+    pub fn forces(
+        &self,
+        at: &Deformation,
+        (g, area): (&[Vector; 3], f64),
+        plastic: &PlasticStrain,
+        mean: Option<f64>,
+    ) -> [Vector; 3] {
         let [xx, yy, xy, _] = self.relief(plastic);
+        let more = mean.map_or(0.0, |mean| self.more(at, plastic, mean));
+        let (xx, yy) = (xx - more, yy - more);
         let skew = at.skew([xx, yy, xy]);
         let p = at.turn_rows([xx, xy + skew, xy - skew, yy]).map(|v| area * v);
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
     }
 
-    /// Contribution of plastic strain to the stress xx, yy, xy (Pa) in global axes.
-    pub fn stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 3] {
-        let [xx, yy, xy, _] = self.relief(plastic);
-        at.turn([-xx, -yy, -xy])
+    /// Contribution of averages, plastic strain and its growth to the stress xx, yy, xy (Pa) in global axes.
+    pub fn stress(&self, at: &Strained, plastic: &PlasticStrain, growth: &PlasticStrain) -> [f64; 3] {
+        let more = self.more(&at.deformation, plastic, at.mean);
+        let [xx, yy, xy, _] = self.relief(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
+        at.deformation.turn([more - xx, more - yy, -xy])
     }
 
-    /// Contribution of plastic strain to the energy (J/m²) under a pre-stress xx, yy, xy, zz (Pa) (Eq. 58).
-    pub fn energy(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+    /// Contribution of plastic strain and of the averaged volume change to the energy (J/m²) under a pre-stress xx, yy,
+    /// xy, zz (Pa) (Eqs. 58, 58b).
+    pub fn energy(&self, at: &Deformation, volume: f64, pre: &[f64; 4], plastic: &PlasticStrain) -> f64 {
+        let own = self.own_volume(at, plastic);
+        let means = self.mean_stress(own) + self.mean_stress(volume);
+        let more = 0.5 * (volume - own) * means;
         let relief = self.relief(plastic);
         let [xx, yy, xy] = at.strain();
         let own = [0.5 * plastic[0] - xx, 0.5 * plastic[1] - yy, 0.5 * plastic[2] - xy, 0.5 * plastic[3]];
-        double_dot(&relief, &own) - double_dot(pre, plastic)
+        more + double_dot(&relief, &own) - double_dot(pre, plastic)
     }
+}
+
+/// xx + yy + 2ν·zz of a strain: what of it acts on the mean stress in the plane.
+fn volume(rock: &Elasticity, plane_stress: bool, strain: &PlasticStrain) -> f64 {
+    let out = if plane_stress { 0.0 } else { rock.lambda / (rock.lambda + rock.mu) * strain[3] };
+    strain[0] + strain[1] + out
 }
 
 /// C·ε of a plane strain field with strain out of the plane; in plane stress that one costs nothing.
@@ -137,29 +172,45 @@ pub struct YieldSurface {
 }
 
 impl YieldSurface {
-    /// Increment of plastic strain at a deformation (Eq. 57); `None` where the rock is elastic.
+    /// Increment of plastic strain at a deformation with averages of its patches (Eq. 57); `None` where the rock is
+    /// elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
-    pub fn growth(&self, at: &Deformation, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
+    pub fn growth(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
         let own = self.own_stress(at, plastic);
-        let [xx, yy, xy] = at.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
+        let [xx, yy, xy] = at.deformation.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
         self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])
     }
 
     /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
     /// stress before and after, as the leapfrog's work is (Eq. 58).
-    pub fn taken(&self, from: &Deformation, to: &Deformation, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
+    pub fn taken(&self, from: &Strained, to: &Strained, pre: &[f64; 4], change: [&PlasticStrain; 2]) -> f64 {
         let [plastic, growth] = change;
         let before = self.own_stress(from, plastic);
-        let after = self.own_stress(to, &[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
-        double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + after[k]) + pre[k]), growth)
+        let (now, relief) = (self.own_stress(to, plastic), relief(&self.elasticity, self.plane_stress, growth));
+        double_dot(&[0, 1, 2, 3].map(|k| 0.5 * (before[k] + now[k] - relief[k]) + pre[k]), growth)
+    }
+
+    /// What [`Self::taken`] lacks (J/m²) of the energy that a growth takes: it reckons with the stress that the element
+    /// alone takes off, and the mean stress has gone `from` that before `to` that after with the growth of all.
+    pub fn taken_by_others(&self, growth: &PlasticStrain, from: f64, to: f64) -> f64 {
+        let volume = self.volume(growth);
+        0.5 * (to - from + (self.elasticity.lambda + self.elasticity.mu) * volume) * volume
+    }
+
+    /// Elastic volume change that a growth of plastic strain takes (Eq. 58a).
+    pub fn volume(&self, growth: &PlasticStrain) -> f64 {
+        volume(&self.elasticity, self.plane_stress, growth)
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
-    fn own_stress(&self, at: &Deformation, plastic: &PlasticStrain) -> [f64; 4] {
-        let [xx, yy, xy] = at.strain();
-        let elastic = [xx - plastic[0], yy - plastic[1], xy - plastic[2], -plastic[3]];
-        relief(&self.elasticity, self.plane_stress, &elastic)
+    fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
+        let Elasticity { lambda, mu, .. } = self.elasticity;
+        let [xx, yy, xy] = at.deformation.strain();
+        let half = mu * ((xx - plastic[0]) - (yy - plastic[1]));
+        let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+        let out = if self.plane_stress { 0.0 } else { lambda / (lambda + mu) * at.mean - young * plastic[3] };
+        [at.mean + half, at.mean - half, 2.0 * mu * (xy - plastic[2]), out]
     }
 
     /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.
@@ -409,13 +460,14 @@ mod tests {
         let gradients = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
         let (strength, plastic) = (rock(30.0, 0.0, None, false), [0.01, -0.02, 0.005, 0.003]);
         let u = [Vector::new(0.1, -0.2), Vector::new(-0.05, 0.3), Vector::new(0.2, 0.15)];
-        let forces = strength.forces(&Deformation::new(u, &gradients), &gradients, 1.0, &plastic);
+        let forces = strength.forces(&Deformation::new(u, &gradients), (&gradients, 1.0), &plastic, None);
         for k in 0..3 {
             for axis in 0..2 {
                 let energy = |d: f64| {
                     let mut moved = u;
                     moved[k][axis] += d;
-                    strength.energy(&Deformation::new(moved, &gradients), &[1e6, 2e6, 3e5, 0.0], &plastic)
+                    let at = Deformation::new(moved, &gradients);
+                    strength.energy(&at, strength.own_volume(&at, &plastic), &[1e6, 2e6, 3e5, 0.0], &plastic)
                 };
                 let model = (energy(1e-6) - energy(-1e-6)) / 2e-6;
                 assert!((model + forces[k][axis]).abs() < 1.0, "{model} {}", forces[k][axis]);

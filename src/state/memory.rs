@@ -4,7 +4,7 @@ use crate::contact::Boundary;
 use crate::cover::Covers;
 use crate::mechanics::MassMatrix;
 
-use super::workspace::SelectionBuffers;
+use super::workspace::{SelectionBuffers, YieldBuffers};
 use super::{Drive, Events, Inputs, Model, State, Workspace};
 
 /// Name of a part of a heap, and its bytes.
@@ -46,6 +46,7 @@ impl Model {
             ("covers", covers(&self.covers)),
             ("boundary", boundary(&self.boundary)),
             ("masses", mass_matrix(&self.mass_matrix) + shared_masses(&self.mass_matrix)),
+            ("yielding", self.averaging.bytes()),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
             ("supports and ports", sum(&[&self.supports, &self.free_field, &self.bolts]) + held + ports),
         ]
@@ -129,7 +130,7 @@ impl Workspace {
             ("contacts", sum(&[&self.contacts, &self.outcomes])),
             ("open–close iteration", sweep.open_close.bytes()),
             ("supports and bolts", sum(&[&supports.rows, &supports.bolts])),
-            ("yielding", self.yielding.energy.bytes()),
+            ("yielding", yielding(&self.yielding)),
             ("overlaps", self.suspects.bytes()),
             ("implicit", self.of_integrator.as_ref().map_or(0, |buffers| buffers.bytes())),
         ]
@@ -166,6 +167,10 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
     let MassMatrix { inertial, inverse, total, inverse_total, square, polar, .. } = mass_matrix;
     let MassMatrix { polar_lumped, spin, fixed, .. } = mass_matrix;
     sum(&[inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
+}
+
+fn yielding(YieldBuffers { surfaces: _, energy, growth, averages }: &YieldBuffers) -> usize {
+    sum(&[energy, growth, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean])
 }
 
 fn inputs(inputs: &Inputs) -> usize {

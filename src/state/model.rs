@@ -4,7 +4,8 @@ use crate::contact::{BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
-    Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record, StressField,
+    Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record,
+    StressField,
 };
 
 use super::{OtherIntegrator, SelectionBuffers};
@@ -134,6 +135,8 @@ pub struct Model {
     pub pre_stress: Vec<PreStress>,
     /// Strength of each rock; none for one that never yields.
     pub strengths: Vec<Option<MohrCoulomb>>,
+    /// Elements of rock that yields whose volume changes are averaged.
+    pub averaging: Averaging,
     /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.
     pub pre_stress_out: Vec<f64>,
     /// Masses of all blocks as if free.

@@ -7,7 +7,7 @@ use crate::contact::{
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
-use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix, Turn, YieldSurface};
+use crate::mechanics::{Averages, BlockMotion, BlockStart, Damping, MassMatrix, PlasticStrain, Turn, YieldSurface};
 
 use super::{Buffers, Model, State};
 
@@ -88,8 +88,12 @@ pub struct MotionBuffers {
 pub struct YieldBuffers {
     /// Yield surface of each rock in this step; none for one that never yields.
     pub surfaces: Vec<Option<YieldSurface>>,
-    /// Energy (J/m) taken by yielding of each run of elements in this step.
-    pub energy: Vec<f64>,
+    /// Energy (J/m) taken by yielding of each run of elements in this step, and whether any flows.
+    pub energy: Vec<(f64, bool)>,
+    /// Growth of the plastic strain of each element in this step, and the mean stress that it felt before.
+    pub growth: Vec<Option<(PlasticStrain, f64)>>,
+    /// Averages over patches of elements; empty when no rock yields.
+    pub averages: Averages,
 }
 
 /// Search for near pairs, and selection of contacts among them.

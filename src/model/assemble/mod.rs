@@ -75,7 +75,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (mut model, bolt_warnings) = model(case, &joints, covers, &outlines, tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines), tolerance, tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     tell(BuildStage::Start);
@@ -124,8 +124,7 @@ const STIFFNESS_LENGTH: f64 = 1.0;
 fn model(
     case: &Case,
     joints: &Joints,
-    covers: Covers,
-    outlines: &Outlines,
+    (covers, outlines): (Covers, &Outlines),
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
@@ -140,6 +139,7 @@ fn model(
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
     let model = Model {
+        averaging: rock::averaging(case, &covers, &element_rock),
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
         integrator: None,
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),

@@ -2,7 +2,7 @@
 
 use crate::cover::{Covers, ElementId};
 use crate::geometry::polygon;
-use crate::mechanics::{Elasticity, MohrCoulomb, PlasticStrain};
+use crate::mechanics::{Averaging, Elasticity, MohrCoulomb, PlasticStrain};
 use crate::model::case::{Case, Invalid, Plane, Rock};
 use crate::state::Model;
 
@@ -32,6 +32,12 @@ pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
         dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
         tension: rock.tension,
     })
+}
+
+/// Patches of the elements that can yield.
+pub(super) fn averaging(case: &Case, covers: &Covers, element_rock: &[u16]) -> Averaging {
+    let yields: Vec<bool> = case.rocks.values().map(Rock::yields).collect();
+    Averaging::new(covers, element_rock, |e| yields[element_rock[e] as usize])
 }
 
 /// No plastic strain in any element; empty when no rock yields.
@@ -84,21 +90,39 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     ))
 }
 
-/// Elements over the height of a model below which triangles that lock make rock that yields much too strong.
-const FINE: f64 = 20.0;
+/// By how much (%) a slope in rock that yields is too strong on a mesh of a tenth of its height: where the rock keeps
+/// its volume, and where it dilates (theory, section 15). It goes with the square of the mesh size.
+const TOO_STRONG: [f64; 2] = [1.0, 2.8];
+/// How much (%) each tenfold stiffness adds to that, above [`SOFT`].
+const STIFFER: f64 = 1.3;
+/// Young's modulus over the weight γH of the slope for which that holds.
+const SOFT: f64 = 500.0;
+/// Most (%) that goes without a warning, and the aim of the mesh that it proposes.
+const UNSEEN: [f64; 2] = [3.0, 2.0];
+
+/// By how much (%) factors of safety of a rock come out too high with elements of a tenth of a height (m).
+fn too_strong(case: &Case, rock: &Rock, height: f64) -> f64 {
+    let weight = rock.density * libm::hypot(case.gravity.x, case.gravity.y) * height;
+    let dilates = rock.dilation_deg.or(rock.friction_deg).is_some_and(|degrees| degrees > 0.0);
+    TOO_STRONG[usize::from(dilates)] + STIFFER * libm::log10(rock.young / weight / SOFT).max(0.0)
+}
 
 /// Warns that factors of safety of rock that yields come out too high on a coarse mesh (theory, section 15).
 pub(super) fn coarse(case: &Case) -> Option<String> {
     let (low, high) = polygon::bounds(&points(&case.domain.outline));
     let (size, height) = (case.mesh.size, (high - low).y);
     let is_slope = case.gravity.x != 0.0 || case.gravity.y != 0.0;
-    let is_told = is_slope && case.yields() && FINE * size > height;
-    is_told.then(|| {
+    let rocks = case.rocks.values().filter(|rock| is_slope && rock.yields());
+    let most = rocks.map(|rock| too_strong(case, rock, height)).fold(0.0, f64::max);
+    let percent = most * (10.0 * size / height).powi(2);
+    (percent > UNSEEN[0]).then(|| {
         format!(
-            "rock yields on a mesh of {size:.6} m, coarser than 1/{FINE} of the height of the model ({height:.6} m): \
-             factors of safety come out too high (of a slope in soil by 5 % with a mesh of 1/10 of its height and by \
-             2 % with 1/20; by 17 % and 10 % in rock that is ten times as stiff): set `mesh.size` to {:.6} m or less",
-            height / FINE
+            "rock yields on a mesh of {size:.6} m, {:.1} elements over the height of the model ({height:.6} m): \
+             factors of safety of slopes in soil came out about {percent:.0} % too high on such a mesh in rock of this \
+             stiffness: set `mesh.size` to {:.6} m or less for {} %",
+            height / size,
+            0.1 * height * (UNSEEN[1] / most).sqrt(),
+            UNSEEN[1]
         )
     })
 }

@@ -35,6 +35,8 @@ pub(super) struct Kick<'a> {
     pub kick: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
+    /// Mean stress (Pa) of each patch of elements that average it.
+    pub patch_mean: &'a [[f64; 2]],
 }
 
 impl Kick<'_> {
@@ -129,7 +131,7 @@ impl Kick<'_> {
         }
     }
 
-    /// Adds what plastic strain takes from the forces of the elements of a chunk.
+    /// Adds to the forces of the elements of a chunk what plastic strain takes from them and averages change in them.
     #[inline(never)]
     fn relieve(&self, chunk: &Chunk, force: &mut Table) {
         let (model, chunks) = (self.model, &self.model.chunks);
@@ -138,11 +140,12 @@ impl Kick<'_> {
             let g = &model.covers.gradients[batch.set as usize];
             for (e, slots) in chunks.elements(batch) {
                 let plastic = &self.state.plastic[e];
-                if *plastic == [0.0; 4] {
+                let mean = model.averaging.of_element(e, self.patch_mean).map(|[mean, _]| mean);
+                if mean.is_none() && *plastic == [0.0; 4] {
                     continue;
                 }
                 let deformation = model.deformation(e, &self.state.displacement);
-                let relief = strength.forces(&deformation, g, model.covers.element_area[e], plastic);
+                let relief = strength.forces(&deformation, (g, model.covers.element_area[e]), plastic, mean);
                 slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
             }
         }

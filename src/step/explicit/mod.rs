@@ -96,7 +96,7 @@ fn set_out(model: &Model, state: &mut State, step: &Substep, workspace: &mut Wor
     yield_rock(model, state, step, mass_matrix, yielding);
     load(model, state, step, load_force);
     damp(model, state, step, mass_matrix, motion);
-    predict(model, state, step, load_force, mass_matrix, motion, sums);
+    predict(model, state, step, (load_force, yielding), mass_matrix, motion, sums);
     kick_columns(model, state, step, &mut motion.columns);
     seconds.elements += lap(&mut clock);
 }

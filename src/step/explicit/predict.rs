@@ -2,7 +2,7 @@
 
 use crate::geometry::Vector;
 use crate::mechanics::{Damping, MassMatrix};
-use crate::state::{ChunkSums, Model, MotionBuffers, State};
+use crate::state::{ChunkSums, Model, MotionBuffers, State, YieldBuffers};
 
 use super::chunk_runs::{self, ChunkSlices};
 use super::kick::Kick;
@@ -13,7 +13,7 @@ pub(super) fn predict(
     model: &Model,
     state: &State,
     step: &Substep,
-    load_force: &[Vector],
+    (load_force, yielding): (&[Vector], &YieldBuffers),
     mass_matrix: &mut MassMatrix,
     motion: &mut MotionBuffers,
     sums: &mut [ChunkSums],
@@ -30,6 +30,7 @@ pub(super) fn predict(
         kick: step.kick,
         grain: chunk_runs::grain(step.serial),
         load_force,
+        patch_mean: &yielding.averages.patch_mean,
     };
     kick.run(ChunkSlices { velocity: predicted, motion: blocks, start, sums, ..ChunkSlices::default() });
     *speed_max = sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();

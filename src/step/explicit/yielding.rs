@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
-use crate::mechanics::{self, Deformation, MassMatrix, PlasticStrain, YieldSurface};
+use crate::mechanics::{self, Averages, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface, list};
 use crate::state::{Model, State, YieldBuffers};
 
 use super::{Substep, report};
@@ -13,37 +13,118 @@ use super::{Substep, report};
 const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of this time, and books
-/// what that takes (Eqs. 57, 58). Done twice at the same displacements it changes nothing.
+/// what that takes (Eqs. 57, 58). Done twice at the same displacements
+/// it only comes nearer to the surface where neighbours flow unlike each other (Eq. 58c).
 pub(super) fn yield_rock(
     model: &Model,
     state: &mut State,
     step: &Substep,
     mass_matrix: &MassMatrix,
-    YieldBuffers { surfaces, energy: taken }: &mut YieldBuffers,
+    buffers: &mut YieldBuffers,
 ) {
     if state.plastic.is_empty() {
         return;
     }
     let factor = state.drive.strength_factor(state.drive.share(step.time));
-    surfaces.clear();
-    surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
-    taken.clear();
-    taken.resize(state.plastic.len().div_ceil(RUN), 0.0);
-    let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
-    let pass = Pass { model, surfaces, mass_matrix, displacement, velocity, dt_last: *dt_last, removed };
-    let run = |(k, (energy, plastic)): (usize, (&mut f64, &mut [PlasticStrain]))| *energy = pass.run(k * RUN, plastic);
-    if step.serial {
-        taken.iter_mut().zip(plastic.chunks_mut(RUN)).enumerate().for_each(run);
-    } else {
-        taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).enumerate().for_each(run);
+    buffers.surfaces.clear();
+    buffers.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
+    volumes(model, state, step.serial, buffers);
+    average(model, step.serial, buffers);
+    let (energy, flows) = flow(model, state, step.serial, mass_matrix, buffers);
+    state.ledger.yielding += energy;
+    if flows {
+        average(model, step.serial, buffers);
+        state.ledger.yielding += taken_by_others(model, step.serial, buffers);
     }
-    state.ledger.yielding += taken.iter().sum::<f64>();
+}
+
+/// Energy (J/m) that all growth takes beyond that of each element alone.
+fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f64 {
+    let YieldBuffers { surfaces, energy, growth, averages } = buffers;
+    let of_element = |k: usize| {
+        let (e, (growth, from)) = (ElementId::new(k), growth[k]?);
+        let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
+        let [_, [to, _]] = averages.felt(&model.averaging, e, averages.volume[e]);
+        Some(surface.taken_by_others(&growth, from, to) * model.covers.element_area[e])
+    };
+    let count = growth.len();
+    let of_run = |run: usize| (run * RUN..count.min((run + 1) * RUN)).filter_map(of_element).sum::<f64>();
+    list(serial, count.div_ceil(RUN), energy, |run| (of_run(run), true));
+    energy.iter().map(|taken| taken.0).sum()
+}
+
+/// Elastic volume changes of all elements that can yield, and what the last step brought of them.
+fn volumes(model: &Model, state: &State, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+    let State { displacement, velocity, dt_last, plastic, .. } = state;
+    list(serial, plastic.len(), &mut averages.volume, |k| {
+        let e = ElementId::new(k);
+        let Some(strength) = model.strength_of(e) else { return [0.0; 2] };
+        let at = model.deformation(e, displacement);
+        let brought = at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e));
+        [strength.own_volume(&at, &plastic[e]), brought]
+    });
+}
+
+/// Averages volume changes and mean stresses over patches (Eqs. 58a, 58b).
+fn average(model: &Model, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+    averages.average(&model.averaging, serial, |e, [volume, brought]| match model.strength_of(e) {
+        Some(strength) => [volume, brought].map(|volume| strength.mean_stress(volume)),
+        None => [0.0; 2],
+    });
+}
+
+/// Brings the plastic strain of all elements to the current displacements; returns the energy (J/m) that it takes, and
+/// whether any flows.
+fn flow(
+    model: &Model,
+    state: &mut State,
+    serial: bool,
+    mass_matrix: &MassMatrix,
+    buffers: &mut YieldBuffers,
+) -> (f64, bool) {
+    let YieldBuffers { surfaces, energy: taken, growth, averages } = buffers;
+    taken.clear();
+    taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
+    growth.clear();
+    growth.resize(state.plastic.len(), None);
+    let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
+    // Each run changes the volumes of its own elements; those of patches stay as they were.
+    let mut volume = std::mem::take(&mut averages.volume);
+    let dt_last = *dt_last;
+    let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };
+    let run = |(k, (((taken, plastic), volume), growth)): (usize, Run)| {
+        *taken = pass.run(k * RUN, plastic, volume, growth);
+    };
+    if serial {
+        let runs = taken.iter_mut().zip(plastic.chunks_mut(RUN)).zip(volume.chunks_mut(RUN));
+        runs.zip(growth.chunks_mut(RUN)).enumerate().for_each(run);
+    } else {
+        let runs = taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).zip(volume.par_chunks_mut(RUN));
+        runs.zip(growth.par_chunks_mut(RUN)).enumerate().for_each(run);
+    }
+    averages.volume = volume;
+    (taken.iter().map(|taken| taken.0).sum(), taken.iter().any(|taken| taken.1))
+}
+
+/// The energy that a run of elements takes and whether it flows, with its plastic strains, volume changes and growth.
+type Run<'a> = (((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]), &'a mut [Growth]);
+/// Growth of the plastic strain of an element, and the mean stress that it felt before.
+type Growth = Option<(PlasticStrain, f64)>;
+
+/// How far (m) the covers of an element moved in the last step.
+fn moved(model: &Model, element: ElementId, velocity: &[Vector], dt_last: f64) -> [Vector; 3] {
+    model.covers.element_covers[element].map(|i: CoverId| velocity[i] * dt_last)
+}
+
+fn gradients(model: &Model, element: ElementId) -> &[Vector; 3] {
+    &model.covers.gradients[model.covers.element_triangle[element].set as usize]
 }
 
 /// Data that all runs share.
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
+    averages: &'a Averages,
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
     velocity: &'a [Vector],
@@ -52,24 +133,37 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// Updates the elements from `first` on; returns the energy (J/m) that it takes.
-    fn run(&self, first: usize, plastic: &mut [PlasticStrain]) -> f64 {
+    /// Updates the elements from `first` on; returns the energy (J/m) that it takes, and whether any flows.
+    fn run(
+        &self,
+        first: usize,
+        plastic: &mut [PlasticStrain],
+        volume: &mut [[f64; 2]],
+        grown: &mut [Growth],
+    ) -> (f64, bool) {
         let covers = &self.model.covers;
-        let (mut energy, mut turn) = (0.0, None);
-        for (element, plastic) in ElementId::range(first..first + plastic.len()).zip(plastic) {
+        let (mut energy, mut flows, mut turn) = (0.0, false, None);
+        let elements = ElementId::range(first..first + plastic.len());
+        for (element, ((plastic, own), grown)) in elements.zip(plastic.iter_mut().zip(volume).zip(grown)) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element]] {
                 continue;
             }
-            let (at, pre) =
-                (self.model.deformation(element, self.displacement), self.model.pre_stress_and_out(element));
+            let [_, mean] = self.averages.felt(&self.model.averaging, element, *own);
+            let deformation = self.model.deformation(element, self.displacement);
+            let at = Strained { deformation, mean: mean[0] };
+            let pre = self.model.pre_stress_and_out(element);
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
-                let taken = surface.taken(&self.before(element, &at, &mut turn), &at, &pre, [plastic, &growth]);
+                let deformation = self.before(element, &at.deformation, &mut turn);
+                let from = Strained { deformation, mean: mean[0] - mean[1] };
+                energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
                 (0..4).for_each(|k| plastic[k] += growth[k]);
-                energy += taken * covers.element_area[element];
+                own[0] -= surface.volume(&growth);
+                *grown = Some((growth, mean[0]));
+                flows = true;
             }
         }
-        energy
+        (energy, flows)
     }
 
     /// Deformation of an element one step ago, in the frame of its block; `turn` is that of the last block asked for.
@@ -78,8 +172,7 @@ impl Pass<'_> {
         let block = covers.element_block[element];
         let known = turn.filter(|known| known.0 == block);
         let (_, angle) = *turn.insert(known.unwrap_or_else(|| (block, self.turn(block))));
-        let moved = covers.element_covers[element].map(|i: CoverId| self.velocity[i] * self.dt_last);
-        now.before(moved, angle, &covers.gradients[covers.element_triangle[element].set as usize])
+        now.before(moved(self.model, element, self.velocity, self.dt_last), angle, gradients(self.model, element))
     }
 
     /// Angle (rad) by which the last step turned a block.

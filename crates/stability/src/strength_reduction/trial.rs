@@ -22,6 +22,9 @@ const FALLING: f64 = 10.0;
 const FALLS_MAX: f64 = 12.0;
 /// Speed, relative to that of a block which the tolerance lets fail for a window, below which nothing moves.
 const STILL: f64 = 0.01;
+/// How many times its settlement rock that yields moves before it fails: a slope in soil reaches its limit after 1.5 to
+/// 1.8 times, whatever its stiffness.
+const FLOW: f64 = 5.0;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
 
@@ -299,7 +302,8 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let free = (0..model.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
     let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
     let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
-    let elastic = (ELASTIC * height).max(given_way);
+    let flow = if simulation.case().yields() { FLOW } else { 1.0 };
+    let elastic = (ELASTIC * height).max(flow * given_way);
     Scales {
         window,
         ramp: FALLING * window,
