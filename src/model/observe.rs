@@ -142,10 +142,11 @@ impl Simulation {
         let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
+        let felt = model.felt(state, covers.elements_of(block));
         for e in ElementId::range(covers.elements_of(block)) {
-            let of_element = model.stress(state, e);
+            let of_element = model.stress_under(state, e, &felt);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += model.strain_energy(state, e) * covers.element_area[e];
+            strain_energy += model.strain_energy(state, e, &felt) * covers.element_area[e];
         }
         (stress, strain_energy)
     }

@@ -1,10 +1,23 @@
 //! Stress and energy of one element: elastic stress, in-situ stress and plastic strain together.
 
+use std::ops::Range;
+
 use crate::cover::ElementId;
 use crate::geometry::Vector;
 use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, Strained, equivalent_strain};
 
 use super::{Model, State};
+
+/// What rock that yields feels of the patches about it, of whole blocks. Empty where no rock yields.
+#[derive(Debug, Clone)]
+pub struct Felt {
+    /// First element.
+    first: usize,
+    /// Averaged elastic volume change of each (Eq. 58a).
+    volume: Vec<[f64; 1]>,
+    /// Averaged mean stress (Pa) of each, without in-situ stress (Eq. 58b).
+    mean: Vec<[f64; 1]>,
+}
 
 impl Model {
     /// Deformation of an element under displacements of the covers (m).
@@ -13,21 +26,29 @@ impl Model {
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
     }
 
-    /// Elastic volume change of an element of rock that can yield, averaged (Eq. 58a).
-    fn volume(&self, state: &State, strength: &MohrCoulomb, element: ElementId) -> f64 {
-        let own = |e: ElementId| {
-            let at = self.deformation(e, &state.displacement);
-            [strength.own_volume(&at, &state.plastic[e])]
+    /// What the rock of whole blocks, which have the elements of a range, feels of its patches.
+    pub fn felt(&self, state: &State, elements: Range<usize>) -> Felt {
+        let first = elements.start;
+        if state.plastic.is_empty() {
+            return Felt { first, volume: Vec::new(), mean: Vec::new() };
+        }
+        let at = |e: ElementId| e.index() - first;
+        let own = |e: ElementId| match self.strength_of(e) {
+            Some(rock) => [rock.own_volume(&self.deformation(e, &state.displacement), &state.plastic[e])],
+            None => [0.0],
         };
-        self.averaging.around(element, own).unwrap_or_else(|| own(element))[0]
+        let averaged = |own: &[[f64; 1]], e| self.averaging.around(e, |e| own[at(e)]).unwrap_or_else(|| own[at(e)]);
+        let own: Vec<_> = ElementId::range(elements.clone()).map(own).collect();
+        let volume: Vec<_> = ElementId::range(elements.clone()).map(|e| averaged(&own, e)).collect();
+        let stress = |e| [self.strength_of(e).map_or(0.0, |rock| rock.mean_stress(volume[at(e)][0]))];
+        let own: Vec<_> = ElementId::range(elements.clone()).map(stress).collect();
+        let mean = ElementId::range(elements).map(|e| averaged(&own, e)).collect();
+        Felt { first, volume, mean }
     }
 
-    /// Deformation of an element of rock that can yield, with the averages of its patches.
-    fn strained(&self, state: &State, strength: &MohrCoulomb, element: ElementId) -> Strained {
-        let own = |e: ElementId| [strength.mean_stress(self.volume(state, strength, e))];
-        let [mean] = self.averaging.around(element, own).unwrap_or_else(|| own(element));
-        let deformation = self.deformation(element, &state.displacement);
-        Strained { deformation, mean }
+    /// The same for the block of one element.
+    fn felt_about(&self, state: &State, element: ElementId) -> Felt {
+        self.felt(state, self.covers.elements_of(self.covers.element_block[element]))
     }
 
     /// Elastic constants of an element.
@@ -53,21 +74,32 @@ impl Model {
 
     /// Strength, strain, plastic strain and its growth of an element at the displacements of a state, as the next step
     /// will find them unless an input changes; none when the element never yields.
-    fn plastic_now(&self, state: &State, element: ElementId) -> Option<(&MohrCoulomb, Strained, [PlasticStrain; 2])> {
+    fn plastic_now(
+        &self,
+        state: &State,
+        element: ElementId,
+        felt: &Felt,
+    ) -> Option<(&MohrCoulomb, Strained, [PlasticStrain; 2])> {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surface = strength.surface(state.drive.strength_factor_now(time));
-        let at = self.strained(state, strength, element);
+        let deformation = self.deformation(element, &state.displacement);
+        let at = Strained { deformation, mean: felt.mean[element.index() - felt.first][0] };
         let growth = surface.growth(&at, &self.pre_stress_and_out(element), before).unwrap_or_default();
         Some((strength, at, [*before, growth]))
     }
 
     /// Stress xx, yy, xy (Pa, tension positive) of an element in global axes.
     pub fn stress(&self, state: &State, element: ElementId) -> [f64; 3] {
+        self.stress_under(state, element, &self.felt_about(state, element))
+    }
+
+    /// The same where it is known what the block of the element feels.
+    pub fn stress_under(&self, state: &State, element: ElementId, felt: &Felt) -> [f64; 3] {
         let at = self.deformation(element, &state.displacement);
         let stress = at.stress(self.rock_of(element), &self.pre_stress_of(element));
-        match self.plastic_now(state, element) {
+        match self.plastic_now(state, element, felt) {
             Some((strength, at, [plastic, growth])) => {
                 let relief = strength.stress(&at, &plastic, &growth);
                 [0, 1, 2].map(|k| stress[k] + relief[k])
@@ -78,17 +110,22 @@ impl Model {
 
     /// Plastic strain √(⅔ εp:εp) of an element at the displacements of a state; zero when it never yields.
     pub fn plastic_strain(&self, state: &State, element: ElementId) -> f64 {
-        let [plastic, growth] = self.plastic_now(state, element).map_or([[0.0; 4]; 2], |(.., both)| both);
+        self.plastic_strain_under(state, element, &self.felt_about(state, element))
+    }
+
+    /// The same where it is known what the block of the element feels.
+    pub fn plastic_strain_under(&self, state: &State, element: ElementId, felt: &Felt) -> f64 {
+        let [plastic, growth] = self.plastic_now(state, element, felt).map_or([[0.0; 4]; 2], |(.., both)| both);
         equivalent_strain(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]))
     }
 
     /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.
-    pub fn strain_energy(&self, state: &State, element: ElementId) -> f64 {
+    pub fn strain_energy(&self, state: &State, element: ElementId, felt: &Felt) -> f64 {
         let at = self.deformation(element, &state.displacement);
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
         match self.strength_of(element).zip(state.plastic.get(element.index())) {
             Some((strength, plastic)) => {
-                let volume = self.volume(state, strength, element);
+                let [volume] = felt.volume[element.index() - felt.first];
                 energy + strength.energy(&at, volume, &self.pre_stress_and_out(element), plastic)
             }
             None => energy,

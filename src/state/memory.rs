@@ -169,8 +169,8 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
     sum(&[inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
 }
 
-fn yielding(YieldBuffers { surfaces: _, energy, growth, averages }: &YieldBuffers) -> usize {
-    sum(&[energy, growth, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean])
+fn yielding(YieldBuffers { surfaces: _, deformations, energy, growth, averages }: &YieldBuffers) -> usize {
+    sum(&[deformations, energy, growth, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean])
 }
 
 fn inputs(inputs: &Inputs) -> usize {

@@ -7,7 +7,9 @@ use crate::contact::{
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
-use crate::mechanics::{Averages, BlockMotion, BlockStart, Damping, MassMatrix, PlasticStrain, Turn, YieldSurface};
+use crate::mechanics::{
+    Averages, BlockMotion, BlockStart, Damping, Deformation, MassMatrix, PlasticStrain, Turn, YieldSurface,
+};
 
 use super::{Buffers, Model, State};
 
@@ -88,6 +90,8 @@ pub struct MotionBuffers {
 pub struct YieldBuffers {
     /// Yield surface of each rock in this step; none for one that never yields.
     pub surfaces: Vec<Option<YieldSurface>>,
+    /// Deformation of each element that can yield.
+    pub deformations: Vec<Option<Deformation>>,
     /// Energy (J/m) taken by yielding of each run of elements in this step, and whether any flows.
     pub energy: Vec<(f64, bool)>,
     /// Growth of the plastic strain of each element in this step, and the mean stress that it felt before.

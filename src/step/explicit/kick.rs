@@ -8,7 +8,7 @@ use enmm_lanes::{LANES, Lanes, Table, prefetch};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{CoverKick, Reference, RigidVelocity, Span};
-use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, KickStep, MassMatrix, element_lanes};
+use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, Deformation, KickStep, MassMatrix, element_lanes};
 use crate::state::{ChunkSums, Model, State};
 
 use super::blocks::{inertial, inverse, scatter};
@@ -35,6 +35,8 @@ pub(super) struct Kick<'a> {
     pub kick: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
+    /// Deformation of each element that can yield.
+    pub deformations: &'a [Option<Deformation>],
     /// Mean stress (Pa) of each patch of elements that average it.
     pub patch_mean: &'a [[f64; 2]],
 }
@@ -144,8 +146,8 @@ impl Kick<'_> {
                 if mean.is_none() && *plastic == [0.0; 4] {
                     continue;
                 }
-                let deformation = model.deformation(e, &self.state.displacement);
-                let relief = strength.forces(&deformation, (g, model.covers.element_area[e]), plastic, mean);
+                let Some(deformation) = &self.deformations[e.index()] else { continue };
+                let relief = strength.forces(deformation, (g, model.covers.element_area[e]), plastic, mean);
                 slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
             }
         }

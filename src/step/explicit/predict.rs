@@ -30,6 +30,7 @@ pub(super) fn predict(
         kick: step.kick,
         grain: chunk_runs::grain(step.serial),
         load_force,
+        deformations: &yielding.deformations,
         patch_mean: &yielding.averages.patch_mean,
     };
     kick.run(ChunkSlices { velocity: predicted, motion: blocks, start, sums, ..ChunkSlices::default() });

@@ -40,7 +40,7 @@ pub(super) fn yield_rock(
 
 /// Energy (J/m) that all growth takes beyond that of each element alone.
 fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f64 {
-    let YieldBuffers { surfaces, energy, growth, averages } = buffers;
+    let YieldBuffers { surfaces, energy, growth, averages, .. } = buffers;
     let of_element = |k: usize| {
         let (e, (growth, from)) = (ElementId::new(k), growth[k]?);
         let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
@@ -54,14 +54,18 @@ fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f
 }
 
 /// Elastic volume changes of all elements that can yield, and what the last step brought of them.
-fn volumes(model: &Model, state: &State, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+fn volumes(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
+    let YieldBuffers { deformations, averages, .. } = buffers;
     let State { displacement, velocity, dt_last, plastic, .. } = state;
+    list(serial, plastic.len(), deformations, |k| {
+        let e = ElementId::new(k);
+        model.strength_of(e).map(|_| model.deformation(e, displacement))
+    });
     list(serial, plastic.len(), &mut averages.volume, |k| {
         let e = ElementId::new(k);
-        let Some(strength) = model.strength_of(e) else { return [0.0; 2] };
-        let at = model.deformation(e, displacement);
+        let Some((strength, at)) = model.strength_of(e).zip(deformations[k].as_ref()) else { return [0.0; 2] };
         let brought = at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e));
-        [strength.own_volume(&at, &plastic[e]), brought]
+        [strength.own_volume(at, &plastic[e]), brought]
     });
 }
 
@@ -82,7 +86,7 @@ fn flow(
     mass_matrix: &MassMatrix,
     buffers: &mut YieldBuffers,
 ) -> (f64, bool) {
-    let YieldBuffers { surfaces, energy: taken, growth, averages } = buffers;
+    let YieldBuffers { surfaces, deformations, energy: taken, growth, averages } = buffers;
     taken.clear();
     taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
     growth.clear();
@@ -91,7 +95,7 @@ fn flow(
     // Each run changes the volumes of its own elements; those of patches stay as they were.
     let mut volume = std::mem::take(&mut averages.volume);
     let dt_last = *dt_last;
-    let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };
+    let pass = Pass { model, surfaces, deformations, averages, mass_matrix, displacement, velocity, dt_last, removed };
     let run = |(k, (((taken, plastic), volume), growth)): (usize, Run)| {
         *taken = pass.run(k * RUN, plastic, volume, growth);
     };
@@ -124,6 +128,7 @@ fn gradients(model: &Model, element: ElementId) -> &[Vector; 3] {
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
+    deformations: &'a [Option<Deformation>],
     averages: &'a Averages,
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
@@ -150,7 +155,7 @@ impl Pass<'_> {
                 continue;
             }
             let [_, mean] = self.averages.felt(&self.model.averaging, element, *own);
-            let deformation = self.model.deformation(element, self.displacement);
+            let Some(deformation) = self.deformations[element.index()] else { continue };
             let at = Strained { deformation, mean: mean[0] };
             let pre = self.model.pre_stress_and_out(element);
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
