@@ -1,5 +1,5 @@
-//! Impacts without damping keep their energy: a block that drops on a corner has as much of it afterwards (Eq. 86). Rock
-//! that crushes takes what it cannot carry, and gives no more back than its strength (Eq. 87).
+//! Impacts without damping keep their energy: a block that drops on a corner has as much of it afterwards (Eq. 86).
+//! Rock that crushes takes what it cannot carry, and gives no more back than its strength (Eq. 87).
 
 use crate::common::simulation;
 
