@@ -9,6 +9,7 @@ mod model;
 mod program;
 mod refusal;
 mod search;
+mod solver;
 
 use enmm::geometry::{Point, Vector};
 use enmm::model::tables::BlockId;

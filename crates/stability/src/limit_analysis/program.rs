@@ -1,13 +1,14 @@
 //! The linear program of one strength: the least share of its weight by which some block is out of balance (Eq. 79).
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{SolverStatus, SupportedConeT};
 
 use enmm::geometry::{Point, Vector};
 use enmm::model::tables::BlockId;
 
 use super::contact::Contact;
 use super::model::{Bar, Body};
+use super::solver::Accuracy;
 
 /// Rigid blocks and what acts between them.
 #[derive(Debug, Clone)]
@@ -20,13 +21,9 @@ pub struct Program {
     pub bars: Vec<Bar>,
 }
 
-/// Accuracy of the solution, relative to the weight of a block.
-const ACCURACY: f64 = 1e-10;
-/// Accuracy that will do where the solver gets no farther, by its own account and by ours.
-const REDUCED: f64 = 1e-8;
-const GIVEN_UP: f64 = 5e-8;
-/// Regularizations of the solver's matrix that are tried in turn.
-const REGULARIZATIONS: [f64; 3] = [1e-8, 1e-6, 1e-10];
+/// Accuracy of a solution, relative to the weight of a block.
+const ACCURACY: Accuracy =
+    Accuracy { full: 1e-10, reduced: 1e-8, given_up: 5e-8, regularizations: &[1e-8, 1e-6, 1e-10] };
 
 /// Velocity (m/s) of a block's centroid and its angular velocity (rad/s), as large as one likes.
 pub type Motion = (Vector, f64);
@@ -59,25 +56,13 @@ impl Program {
         let rows = Rows::new(self, &contacts, strength);
         let (m, n) = (rows.right.len(), rows.columns);
         let a = CscMatrix::new_from_triplets(m, n, rows.row, rows.column, rows.value);
-        let mut cost = vec![0.0; n];
-        cost[0] = 1.0;
-        let mut status = SolverStatus::Unsolved;
-        for regularization in REGULARIZATIONS {
-            let (none, cones) = (CscMatrix::zeros((n, n)), [SupportedConeT::NonnegativeConeT(m)]);
-            let solver = DefaultSolver::new(&none, &cost, &a, &rows.right, &cones, settings(regularization));
-            let mut solver = solver.map_err(|_| Unsolved { status })?;
-            solver.solve();
-            let solution = &solver.solution;
-            status = solution.status;
-            if is_solved(solution) {
-                let change = |&(row, column, by): &(usize, usize, f64)| {
-                    solution.z[row] * by * if column == CONSTANT { 1.0 } else { solution.x[column] }
-                };
-                let slope = rows.strength.iter().map(change).sum();
-                return Ok(Solution { unbalanced: solution.x[0], slope, motions: self.motions(&solution.z) });
-            }
-        }
-        Err(Unsolved { status })
+        let solution = ACCURACY.least(&a, &rows.right, &[SupportedConeT::NonnegativeConeT(m)]);
+        let solution = solution.map_err(|status| Unsolved { status })?;
+        let change = |&(row, column, by): &(usize, usize, f64)| {
+            solution.z[row] * by * if column == CONSTANT { 1.0 } else { solution.x[column] }
+        };
+        let slope = rows.strength.iter().map(change).sum();
+        Ok(Solution { unbalanced: solution.x[0], slope, motions: self.motions(&solution.z) })
     }
 
     /// Motions of the blocks from the multipliers of their equilibrium.
@@ -102,34 +87,6 @@ impl Program {
             velocity + Vector::new(-arm.y, arm.x) * spin
         };
         at(contact.blocks[1]) - at(contact.blocks[0])
-    }
-}
-
-/// Settings of the solver: one thread and nothing printed, so that the same program has the same solution.
-fn settings(regularization: f64) -> DefaultSettings<f64> {
-    DefaultSettings {
-        verbose: false,
-        max_threads: 1,
-        tol_gap_abs: ACCURACY,
-        tol_gap_rel: ACCURACY,
-        tol_feas: ACCURACY,
-        reduced_tol_gap_abs: REDUCED,
-        reduced_tol_gap_rel: REDUCED,
-        reduced_tol_feas: REDUCED,
-        static_regularization_constant: regularization,
-        ..DefaultSettings::default()
-    }
-}
-
-/// Whether a solution is one: the solver says so, or gave up where it was close enough.
-fn is_solved(solution: &DefaultSolution<f64>) -> bool {
-    let open = solution.r_prim.max(solution.r_dual).max((solution.obj_val - solution.obj_val_dual).abs());
-    match solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => true,
-        SolverStatus::NumericalError | SolverStatus::InsufficientProgress | SolverStatus::MaxIterations => {
-            open <= GIVEN_UP
-        }
-        _ => false,
     }
 }
 

@@ -1,14 +1,12 @@
 //! Conic programs whose rows change with the strength.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{DefaultSolution, SolverStatus, SupportedConeT};
 
-/// Accuracy of the solution, relative to the greatest stress.
-const ACCURACY: f64 = 1e-8;
-/// Accuracy that will do where the solver gets no farther, by its own account and by ours.
-const REDUCED: f64 = 1e-6;
-/// Regularizations of the solver's matrix that are tried in turn.
-const REGULARIZATIONS: [f64; 2] = [1e-8, 1e-7];
+use super::super::solver::Accuracy;
+
+/// Accuracy of a solution, relative to the greatest stress.
+const ACCURACY: Accuracy = Accuracy { full: 1e-8, reduced: 1e-6, given_up: 1e-6, regularizations: &[1e-8, 1e-7] };
 
 /// A sum of unknowns times factors, with a constant.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -123,23 +121,11 @@ impl Conic {
         }
         let right: Vec<f64> = rows.iter().map(|sum| sum.now.constant).collect();
         let a = CscMatrix::new_from_triplets(rows.len(), self.columns, row, column, value);
-        let mut cost = vec![0.0; self.columns];
-        cost[0] = 1.0;
         let mut cones = vec![SupportedConeT::ZeroConeT(self.zero.0.len())];
         cones.push(SupportedConeT::NonnegativeConeT(self.positive.0.len()));
         cones.extend(std::iter::repeat_n(SupportedConeT::SecondOrderConeT(3), self.cones.0.len() / 3));
-        let none = CscMatrix::zeros((self.columns, self.columns));
-        let mut status = SolverStatus::Unsolved;
-        for regularization in REGULARIZATIONS {
-            let solver = DefaultSolver::new(&none, &cost, &a, &right, &cones, settings(regularization));
-            let mut solver = solver.map_err(|_| status)?;
-            solver.solve();
-            status = solver.solution.status;
-            if is_solved(&solver.solution) {
-                return Ok(self.solved(&rows, &solver.solution));
-            }
-        }
-        Err(status)
+        let solution = ACCURACY.least(&a, &right, &cones)?;
+        Ok(self.solved(&rows, &solution))
     }
 
     fn solved(&self, rows: &[&Strong], solution: &DefaultSolution<f64>) -> Solved {
@@ -152,33 +138,5 @@ impl Conic {
             slope: rows.iter().zip(&solution.z).map(change).sum(),
             multipliers: solution.z[..self.zero.0.len()].to_vec(),
         }
-    }
-}
-
-/// Settings of the solver: one thread and nothing printed, so that the same program has the same solution.
-fn settings(regularization: f64) -> DefaultSettings<f64> {
-    DefaultSettings {
-        verbose: false,
-        max_threads: 1,
-        tol_gap_abs: ACCURACY,
-        tol_gap_rel: ACCURACY,
-        tol_feas: ACCURACY,
-        reduced_tol_gap_abs: REDUCED,
-        reduced_tol_gap_rel: REDUCED,
-        reduced_tol_feas: REDUCED,
-        static_regularization_constant: regularization,
-        ..DefaultSettings::default()
-    }
-}
-
-/// Whether a solution is one: the solver says so, or gave up where it was close enough.
-fn is_solved(solution: &DefaultSolution<f64>) -> bool {
-    let open = solution.r_prim.max(solution.r_dual).max((solution.obj_val - solution.obj_val_dual).abs());
-    match solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => true,
-        SolverStatus::NumericalError | SolverStatus::InsufficientProgress | SolverStatus::MaxIterations => {
-            open <= REDUCED
-        }
-        _ => false,
     }
 }

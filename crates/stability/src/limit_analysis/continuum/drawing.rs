@@ -15,7 +15,7 @@ use crate::limit_analysis::model::Strengths;
 pub struct Side {
     /// Its ends among the points of the drawing.
     pub ends: [usize; 2],
-    /// What is the same all along it.
+    /// Properties that are the same all along it.
     pub marks: Marks,
 }
 

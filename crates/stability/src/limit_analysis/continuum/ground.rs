@@ -21,7 +21,7 @@ pub struct Strength {
     pub tension: Option<f64>,
 }
 
-/// What lies along an edge of a triangle.
+/// Neighbour of a triangle along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Edge {
     /// The same rock or another without a joint: triangle, and the edge there.
@@ -43,7 +43,7 @@ pub struct Patch {
     pub body: Vector,
     /// Whether it is held altogether.
     pub is_held: bool,
-    /// What lies along the edge from each corner to the next.
+    /// Neighbours along the edges from each corner to the next.
     pub edges: [Edge; 3],
 }
 

@@ -1,4 +1,4 @@
-//! What pushes on the sides of the rock: tractions, pressures and water, in the stage that a model has reached.
+//! Loads on the sides of the rock: tractions, pressures and water, in the stage that a model has reached.
 
 use std::collections::BTreeMap;
 

@@ -23,7 +23,7 @@ pub fn program(rock: &Rock, strength: f64) -> Conic {
     program
 }
 
-/// What the edge of a triangle asks of its stress, once for both of its sides.
+/// Conditions on the stress along the edge of a triangle, once for both of its sides.
 fn edge(program: &mut Conic, patches: &[Patch], t: usize, k: usize, strength: f64) {
     match patches[t].edges[k] {
         Edge::Rock(other, edge) if t < other => passes(program, patches, [t, other], [k, edge]),

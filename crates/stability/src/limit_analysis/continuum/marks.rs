@@ -1,8 +1,8 @@
-//! What lies on both sides of a side of the rock, and what acts on it.
+//! Rock, joint and loads on both sides of a side of the drawing.
 
 use enmm::model::tables::{BlockId, LawId};
 
-/// What is the same all along a side.
+/// Properties that are the same all along a side.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Marks {
     /// Block on its left.

@@ -58,7 +58,7 @@ pub struct Mesh {
     pub triangles: Vec<Triangle>,
 }
 
-/// Points or sides are too close to each other, here, to tell apart.
+/// Points or sides are too close to each other, here, to count as two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Close(pub Point);
 
