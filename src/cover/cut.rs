@@ -35,13 +35,10 @@ pub fn cut(mesh: RegularMesh, arrangement: Arrangement) -> (Covers, Outlines) {
 
 /// See [`Covers::by_triangle`].
 fn by_triangle(covers: &Covers) -> Vec<ElementId> {
-    let mut elements: Vec<ElementId> = covers.elements().collect();
-    let position = |e: ElementId| {
-        let triangle = &covers.element_triangle[e];
-        (triangle.j, triangle.i)
-    };
-    elements.sort_unstable_by_key(|&e| (position(e), e));
-    elements
+    let by_id = covers.elements().zip(&covers.element_triangle);
+    let mut elements: Vec<_> = by_id.map(|(e, triangle)| (triangle.j, triangle.i, e)).collect();
+    elements.sort_unstable();
+    elements.into_iter().map(|(_, _, e)| e).collect()
 }
 
 id! {
@@ -98,8 +95,7 @@ impl RawElements {
         };
         for (raw_id, &f) in RawId::all(face.len()).zip(&face) {
             of_face[f] = Some(raw_id);
-            let loops: Vec<Vec<Point>> = arrangement.face_loops(f).map(|h| arrangement.loop_points(h)).collect();
-            raw.integrate(&loops);
+            raw.integrate(arrangement, f);
         }
         raw.polygons.close();
         raw.face = face;
@@ -107,19 +103,22 @@ impl RawElements {
         raw
     }
 
-    fn integrate(&mut self, loops: &[Vec<Point>]) {
-        let base = loops[0][0];
-        let total = loops
-            .iter()
-            .map(|points| polygon::Moments::of(points, base))
-            .reduce(|a, b| a + b)
-            .expect("a face of rock has an outer loop");
+    fn integrate(&mut self, arrangement: &Arrangement, face: FaceId) {
+        let mut loops = arrangement.face_loops(face);
+        let outer = loops.next().expect("a face of rock has an outer loop");
+        let holes: Vec<Vec<Point>> = loops.map(|h| arrangement.loop_points(h)).collect();
+        self.polygons.close();
+        let points = &mut self.polygons.points;
+        let first = points.len();
+        points.extend(arrangement.cycle(outer).map(|h| arrangement.points[arrangement.origin(h)]));
+        let base = points[first];
+        let total = holes.iter().map(|hole| polygon::Moments::of(hole, base));
+        let total = total.fold(polygon::Moments::of(&points[first..], base), |a, b| a + b);
+        bridge(points, first, &holes);
         let centroid = total.first / total.area;
         self.area.push(total.area);
         self.centroid.push(base + centroid);
         self.polar.push(total.second[0] + total.second[1] - total.area * centroid.norm_squared());
-        self.polygons.close();
-        self.polygons.points.extend(bridge(loops));
     }
 
     fn polygon(&self, k: RawId) -> &[Point] {
@@ -127,20 +126,18 @@ impl RawElements {
     }
 }
 
-/// Joins the holes of a face to its outer loop by bridges between nearest corners.
-fn bridge(loops: &[Vec<Point>]) -> Vec<Point> {
-    let mut outer = loops[0].clone();
-    for hole in &loops[1..] {
-        let pairs = (0..outer.len()).flat_map(|i| (0..hole.len()).map(move |j| (i, j)));
+/// Joins the holes of a face to its outer loop, which begins at `first`, by bridges between nearest corners.
+fn bridge(points: &mut Vec<Point>, first: usize, holes: &[Vec<Point>]) {
+    for hole in holes {
+        let pairs = (first..points.len()).flat_map(|i| (0..hole.len()).map(move |j| (i, j)));
         let nearest = pairs.min_by(|&(i, j), &(k, l)| {
-            (outer[i] - hole[j]).norm_squared().total_cmp(&(outer[k] - hole[l]).norm_squared())
+            (points[i] - hole[j]).norm_squared().total_cmp(&(points[k] - hole[l]).norm_squared())
         });
         let Some((i, j)) = nearest else { continue };
         let mut way: Vec<Point> = hole[j..].iter().chain(&hole[..=j]).copied().collect();
-        way.push(outer[i]);
-        outer.splice(i + 1..i + 1, way);
+        way.push(points[i]);
+        points.splice(i + 1..i + 1, way);
     }
-    outer
 }
 
 /// The lattice triangle in which each face lies, from the mesh edges on its loops or from its neighbours.

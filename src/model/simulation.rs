@@ -392,6 +392,7 @@ impl Simulation {
         change_laws(&self.case, stage, &mut self.built.state.laws, &mut self.built.state.law_switch);
         self.change_fixities(stage);
         self.change_bolts(stage)?;
+        self.change_water(stage);
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
         let (model, state) = (&self.built.model, &mut self.built.state);
@@ -444,6 +445,14 @@ impl Simulation {
         let mut switch: Vec<LawId> = LawId::all(laws.len()).collect();
         (0..=stage as usize).for_each(|stage| change_laws(&self.case, stage, &mut laws, &mut switch));
         (laws, switch)
+    }
+
+    fn change_water(&mut self, stage: usize) {
+        let Some(water) = self.built.model.water.as_ref().filter(|_| self.case.stages[stage].water.is_some()) else {
+            return;
+        };
+        let (level, drive) = (water.surfaces[stage].level, &mut self.built.state.drive);
+        (drive.from.water_level, drive.to.water_level) = (level, level);
     }
 
     fn change_fixities(&mut self, stage: usize) {

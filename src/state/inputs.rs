@@ -35,7 +35,7 @@ impl Inputs {
         let mut inputs = Self {
             gravity: model.gravity,
             base_acceleration: Vector::zeros(),
-            water_level: model.water.as_ref().map_or(0.0, |water| water.level),
+            water_level: model.water.as_ref().map_or(0.0, |water| water.surfaces[0].level),
             strength_factor: 1.0,
             block_force: vec![Vector::zeros(); blocks],
             block_moment: vec![0.0; blocks],

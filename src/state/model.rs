@@ -54,12 +54,30 @@ pub struct Port {
 pub struct Water {
     /// Density (kg/m³).
     pub density: f64,
-    /// Height y of the surface at the start (m): of its highest point, when it slopes.
-    pub level: f64,
-    /// Points of a sloping surface at the start (m), from left to right; empty for a level one.
-    pub table: Vec<Point>,
+    /// Surface at the start of each stage.
+    pub surfaces: Vec<WaterSurface>,
     /// Boundary edges that it reaches.
     pub edges: Vec<EdgeId>,
+}
+
+/// Surface of water before a host moves its level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaterSurface {
+    /// Height y (m): of its highest point, when it slopes.
+    pub level: f64,
+    /// Points of a sloping surface (m), from left to right; empty for a level one.
+    pub table: Vec<Point>,
+}
+
+impl WaterSurface {
+    /// Points of the surface (m) when its level has moved to `level`; a single one of a level surface.
+    pub fn moved_to(&self, level: f64) -> Vec<Point> {
+        if self.table.is_empty() {
+            return vec![Point::new(0.0, level)];
+        }
+        let rise = Vector::new(0.0, level - self.level);
+        self.table.iter().map(|point| point + rise).collect()
+    }
 }
 
 /// Quantity in the rows of a motion of the base.

@@ -75,12 +75,13 @@ impl Faces<'_> {
         let Some(water) = &self.model.water else { return };
         let level = self.state.drive.water_level(share);
         let weight = water.density * self.state.drive.gravity(share).norm() * ramp;
-        let rise = level - water.level;
+        let surface = &water.surfaces[self.state.stage as usize];
+        let rise = level - surface.level;
         for &edge in &water.edges {
-            if water.table.is_empty() {
+            if surface.table.is_empty() {
                 self.push(edge, |a, b| pressure::hydrostatic(a, b, level, weight), force);
             } else {
-                self.push(edge, |a, b| pressure::under_table(a, b, &water.table, rise, weight), force);
+                self.push(edge, |a, b| pressure::under_table(a, b, &surface.table, rise, weight), force);
             }
         }
     }

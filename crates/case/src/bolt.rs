@@ -14,6 +14,27 @@ pub enum Anchorage {
     Grouted,
 }
 
+/// Force of a bolt in the factor of safety and in limit analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Support {
+    /// Its pretension, whatever the rock does.
+    Active,
+    /// Its yield force, whatever the rock does.
+    Passive,
+}
+
+impl Support {
+    /// Name in a case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Active => "active",
+            Self::Passive => "passive",
+        }
+    }
+}
+
 /// A row of equal elastic–plastic bars that carry tension across joints.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -48,6 +69,10 @@ pub struct Bolt {
     /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
     #[serde(default)]
     pub free_length: Option<f64>,
+    /// Force in `enmm fos` and `enmm bound`: that of an active or of a passive support. Default: `fos` lets the bar
+    /// stretch with the rock, and `bound` takes the most that it can carry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub support: Option<Support>,
     /// Whether it is there from the start; else a stage installs it by name.
     #[serde(default = "yes")]
     pub active: bool,
@@ -103,6 +128,10 @@ pub struct BoltPattern {
     /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
     #[serde(default)]
     pub free_length: Option<f64>,
+    /// Force in `enmm fos` and `enmm bound`: that of an active or of a passive support. Default: `fos` lets the bar
+    /// stretch with the rock, and `bound` takes the most that it can carry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub support: Option<Support>,
     /// Whether the bolts are there from the start; else a stage installs them by name.
     #[serde(default = "yes")]
     pub active: bool,

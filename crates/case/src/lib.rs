@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-pub use bolt::{Anchorage, Bolt, BoltPattern};
+pub use bolt::{Anchorage, Bolt, BoltPattern, Support};
 pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use in_situ::InSitu;
@@ -527,11 +527,36 @@ pub struct Water {
     pub faces: Option<Vec<[[f64; 2]; 2]>>,
 }
 
-impl Water {
-    /// Height of the surface at the start (m): `level`, or the highest point of `table`.
-    pub fn start_level(&self) -> f64 {
+/// A surface of the water that a stage brings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct WaterSurface {
+    /// Height y of the surface (m). This or `table`.
+    #[serde(default)]
+    pub level: Option<f64>,
+    /// Surface as points (m) from left to right, level beyond both ends.
+    #[serde(default)]
+    pub table: Option<PointList>,
+}
+
+impl WaterSurface {
+    /// Height of its highest point (m).
+    pub fn highest(&self) -> f64 {
         let highest = || self.table.iter().flatten().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);
         self.level.unwrap_or_else(highest)
+    }
+}
+
+impl Water {
+    /// The surface at the start.
+    pub fn surface(&self) -> WaterSurface {
+        WaterSurface { level: self.level, table: self.table.clone() }
+    }
+
+    /// Height of the surface at the start (m): `level`, or the highest point of `table`.
+    pub fn start_level(&self) -> f64 {
+        self.surface().highest()
     }
 }
 
@@ -628,6 +653,10 @@ pub struct Stage {
     /// Fixities by name that let go.
     #[serde(default)]
     pub free: Vec<String>,
+    /// Surface of the water from the start of this stage on, as after a drawdown; not in the first stage, which has
+    /// that of `[water]`. What hosts have moved the level by ends with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub water: Option<WaterSurface>,
 }
 
 impl Stage {
@@ -652,6 +681,7 @@ impl Stage {
             install: Vec::new(),
             fix: Vec::new(),
             free: Vec::new(),
+            water: None,
         }
     }
 }

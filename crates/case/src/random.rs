@@ -160,6 +160,8 @@ pub enum EnsembleOutput {
     LevelTops,
     /// Bound of limit analysis with associated flow.
     Associated,
+    /// Whether the factor of safety is below the limit: by its bound, and by trials where that leaves it open.
+    Failure,
 }
 
 impl EnsembleOutput {
@@ -169,6 +171,7 @@ impl EnsembleOutput {
             Self::FactorOfSafety => "factor_of_safety",
             Self::LevelTops => "level_tops",
             Self::Associated => "associated",
+            Self::Failure => "failure",
         }
     }
 }
@@ -188,6 +191,10 @@ pub struct Ensemble {
     pub output: EnsembleOutput,
     /// A sample counts as a failure when its output is below this.
     pub limit: f64,
+    /// Width of the 95 % interval of the probability of failure from which on no more samples are worked out; looked
+    /// at after every 50 samples. Without it all samples are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval: Option<f64>,
 }
 
 impl Default for Ensemble {
@@ -198,6 +205,7 @@ impl Default for Ensemble {
             seed: 1,
             output: EnsembleOutput::FactorOfSafety,
             limit: 1.0,
+            interval: None,
         }
     }
 }

@@ -6,7 +6,9 @@ use std::process::ExitCode;
 use clap::Args;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
+use enmm::model::case::Support;
 use enmm_run::fos::{Found, remedy};
+use enmm_run::support::{BoltUse, bolt_uses};
 use enmm_run::{FosError, FosOptions};
 use enmm_stability::left_out_stages;
 use enmm_stability::strength_reduction::{
@@ -15,7 +17,7 @@ use enmm_stability::strength_reduction::{
 
 use crate::case::CaseArguments;
 use crate::progress::Search;
-use crate::run::{INTERRUPT, directory_for, interrupt};
+use crate::run::{INTERRUPT, check_folder, directory_for, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
@@ -36,15 +38,21 @@ pub struct Arguments {
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
     /// Ignore mechanisms of less rock (m²), such as single key blocks: they are reported and removed, and the search
-    /// begins again.
-    #[arg(long, value_name = "AREA", default_value_t = 0.0)]
-    least_area: f64,
+    /// begins again. Default: a hundredth of the free rock; 0 counts all.
+    #[arg(long, value_name = "AREA")]
+    least_area: Option<f64>,
+    /// Look at the slope after this static stage; default: after the last.
+    #[arg(long, value_name = "NAME")]
+    stage: Option<String>,
     /// Mechanisms to find, each without the blocks of those before.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,
     /// Threads; default: all. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Replace results of another case in the directory.
+    #[arg(long)]
+    force: bool,
     /// Draw no pictures and no page: only tables are wanted.
     #[arg(long)]
     no_pictures: bool,
@@ -67,6 +75,7 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         mechanisms: MechanismOptions { least_area: arguments.least_area, count: arguments.mechanisms.into() },
         threads: arguments.threads.map(usize::from),
         pictures: !arguments.no_pictures,
+        stage: arguments.stage.clone(),
         interrupt: Some(&INTERRUPT),
     };
     if let Err(message) = options.check() {
@@ -76,10 +85,13 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         Ok(loaded) => loaded,
         Err(error) => return refuse(arguments, &error, BAD_INPUT),
     };
+    if let Err(error) = check_folder(&options.directory, &loaded, arguments.force) {
+        return refuse(arguments, &error, BAD_INPUT);
+    }
     if let Err(error) = ctrlc::set_handler(interrupt) {
         return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
     }
-    let left_out = left_out_stages(&loaded.case).filter(|_| !arguments.json);
+    let left_out = left_out_stages(&loaded.case).filter(|_| !arguments.json && arguments.stage.is_none());
     if let Some(warning) = &left_out {
         tell_line(&format!("warning: {warning}"));
     }
@@ -149,7 +161,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
     } else {
         let results = format!("{:<20} {}\n", "results", directory.display());
         let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
-        let searches = found.searches.iter().map(|search| result(search, found, told));
+        let searches = found.searches.iter().map(|search| result(search, found, told)).chain(chips(found));
         let page = (!arguments.no_pictures).then_some(page);
         print_line(searches.chain([results]).chain(page).collect::<String>().trim_end());
     }
@@ -191,6 +203,12 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
         }
         (None, Err(refused)) => tell("limit analysis", format!("none: {refused}")),
     }
+    if let Some(bolts) = bolts(reduction) {
+        tell("bolts", bolts);
+    }
+    if reduction.trials.iter().any(|trial| trial.verdict == Verdict::Caught) {
+        tell("caught", "slid farther than elasticity explains and came to rest again: not stable".to_owned());
+    }
     if let Some(trial) = reduction.first_unstable() {
         tell("mechanism", mechanism(trial, reduction, found));
         let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.position.x, b.position.y);
@@ -202,11 +220,44 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
     lines.join("\n") + "\n"
 }
 
+/// The factor of the slope beside those of its chips.
+fn chips(found: &Found) -> Option<String> {
+    let factor = |search: &Reduction| match (search.factor(), search.at_least()) {
+        (Some(factor), _) => format!("{factor:.4}"),
+        (None, Some(least)) => format!("at least {least:.4}"),
+        (None, None) => "none".to_owned(),
+    };
+    let of_chip = |chip: &Reduction| {
+        let area = chip.first_unstable().map_or(0.0, Trial::failing_area);
+        format!("chip of {area:.1} m² {}", factor(chip))
+    };
+    let chips: Vec<String> = found.chips().map(of_chip).collect();
+    (!chips.is_empty()).then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
+}
+
+/// What the bolts carry, and by which convention.
+fn bolts(reduction: &Reduction) -> Option<String> {
+    let uses = bolt_uses(&reduction.simulation);
+    let of = |bolt: &BoltUse| {
+        let share = bolt.utilisation().map_or_else(String::new, |share| format!(", {:.0} % of yield", 100.0 * share));
+        let how = bolt.support.map_or("as the rock stretches it", |support| match support {
+            Support::Active => "active, at its pretension",
+            Support::Passive => "passive, at its yield force",
+        });
+        format!("{} {:.1} kN{share} ({how})", bolt.name, bolt.force / 1e3)
+    };
+    (!uses.is_empty()).then(|| listed(uses.iter().map(of)))
+}
+
 /// How much rock fails.
 fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
     let blocks = if trial.failing.len() == 1 { "block" } else { "blocks" };
     let fate = if trial.verdict == Verdict::Caught { ", caught after sliding" } else { "" };
-    let passed = if found.which.counts(reduction) { "" } else { "; passed over, less than --least-area" };
+    let passed = match found.which.least_area {
+        _ if found.which.counts(reduction) => "",
+        Some(_) => "; passed over, less than --least-area",
+        None => "; passed over as a chip, less than a hundredth of the free rock: --least-area 0 counts it",
+    };
     format!(
         "{} {blocks}{fate}: {:.4} m², {:.4e} kg/m, {:.1} % of the free rock{passed}",
         trial.failing.len(),

@@ -1,11 +1,12 @@
 //! How a run shows on the screen: a bar on a terminal, plain lines elsewhere, nothing when it is to be quiet.
 
-use std::cell::Cell;
 use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use enmm::model::BuildStage;
-use enmm_run::{Observer, RunProgress};
+use enmm::model::case::EnsembleOutput;
+use enmm_run::{EnsembleProgress, Observer, RunProgress};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between plain lines.
@@ -159,39 +160,60 @@ impl Search {
     }
 }
 
-/// Shows how many samples of an ensemble are done: a bar on a terminal, plain lines elsewhere.
+/// Shows how an ensemble goes: a bar on a terminal, plain lines elsewhere.
 pub struct Count {
     bar: Option<ProgressBar>,
     quiet: bool,
-    start: Instant,
-    /// Time of the last line, and samples that were there at the start.
-    told: Cell<(Option<Instant>, Option<usize>)>,
+    told: Mutex<Told>,
+}
+
+/// What has been shown of an ensemble.
+#[derive(Default)]
+struct Told {
+    /// What is worked out now, since when, and how many samples were there then.
+    begun: Option<(EnsembleOutput, Instant, usize)>,
+    /// Time of the last line.
+    line: Option<Instant>,
+    /// The line on the bar, without the last trial.
+    text: String,
 }
 
 impl Count {
     /// Nothing when it is to be quiet.
     pub fn new(quiet: bool) -> Self {
         let bar = terminal_bar(quiet, 0, "{wide_bar} {msg}");
-        Self { bar, quiet, start: Instant::now(), told: Cell::default() }
+        Self { bar, quiet, told: Mutex::default() }
     }
 
-    /// `done` of `n` samples are done.
-    pub fn tell(&self, done: usize, n: usize) {
-        let (last, first) = self.told.get();
-        let begun = first.unwrap_or(done);
-        let due = last.is_none_or(|last| last.elapsed() >= LINES) || done == n || first.is_none();
-        let rate = (done - begun.min(done)) as f64 / self.start.elapsed().as_secs_f64().max(1e-9);
-        let left = if rate > 0.0 { format!(", about {} left", clock((n - done) as f64 / rate)) } else { String::new() };
-        let line = format!("{done} of {n} samples{left}");
-        self.told.set((if due { Some(Instant::now()) } else { last }, Some(begun)));
+    /// Samples are done.
+    pub fn tell(&self, progress: &EnsembleProgress) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let EnsembleProgress { output, done, wanted, .. } = *progress;
+        let is_new = told.begun.is_none_or(|(last, ..)| last != output);
+        if is_new {
+            told.begun = Some((output, Instant::now(), done));
+        }
+        let due = is_new || done == wanted || told.line.is_none_or(|last| last.elapsed() >= LINES);
+        told.text = line(progress, told.begun);
         match &self.bar {
             Some(bar) => {
-                bar.set_length(n as u64);
+                bar.set_length(wanted as u64);
                 bar.set_position(done as u64);
-                bar.set_message(line);
+                bar.set_message(told.text.clone());
             }
-            None if due && !self.quiet => drop(writeln!(std::io::stderr(), "{line}")),
+            None if due && !self.quiet && wanted > 0 => {
+                told.line = Some(Instant::now());
+                drop(writeln!(std::io::stderr(), "{}", told.text));
+            }
             None => {}
+        }
+    }
+
+    /// A trial of a sample has ended.
+    pub fn trial(&self, sample: usize, text: &str) {
+        if let Some(bar) = &self.bar {
+            let told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+            bar.set_message(format!("{}; sample {sample}: {text}", told.text));
         }
     }
 
@@ -201,6 +223,24 @@ impl Count {
             bar.finish_and_clear();
         }
     }
+}
+
+/// How many samples are done, how many of them fail, which took longest, and how long the others will take.
+fn line(progress: &EnsembleProgress, begun: Option<(EnsembleOutput, Instant, usize)>) -> String {
+    let EnsembleProgress { output, done, wanted, answered, below, slowest } = *progress;
+    let (start, first) = begun.map_or((Instant::now(), done), |(_, start, first)| (start, first));
+    let rate = (done - first.min(done)) as f64 / start.elapsed().as_secs_f64().max(1e-9);
+    let mut line = format!("{done} of {wanted} samples ({})", output.name().replace('_', " "));
+    if answered > 0 {
+        line += &format!(", {below} below the limit ({:.3})", below as f64 / answered as f64);
+    }
+    if let Some((sample, seconds)) = slowest.filter(|(_, seconds)| *seconds >= 1.0) {
+        line += &format!(", slowest {sample} ({})", clock(seconds));
+    }
+    if rate > 0.0 && done < wanted {
+        line += &format!(", about {} left", clock((wanted - done) as f64 / rate));
+    }
+    line
 }
 
 /// `1 h 02 min`, `3 min 05 s` or `7 s`.

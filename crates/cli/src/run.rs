@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
+use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// Checkpoint to continue from.
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
+    /// Replace results of another case in the directory.
+    #[arg(long)]
+    force: bool,
     /// Print nothing but errors.
     #[arg(long)]
     quiet: bool,
@@ -49,6 +53,9 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),
     };
+    if let Err(error) = check_folder(&options.directory, &loaded, arguments.force) {
+        return fail(&error, BAD_INPUT);
+    }
     let mut screen = Screen::new(arguments.quiet);
     let outcome = enmm_run::run(&loaded, &options, &mut screen);
     screen.close();
@@ -57,6 +64,14 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         Err(error @ (RunError::Output(_) | RunError::OutputAfter { .. })) => fail(&error, FAILED),
         Err(error) => fail(&error, BAD_INPUT),
     }
+}
+
+/// Refuses a folder with results of another case, unless they may be replaced.
+///
+/// # Errors
+/// What is there, and the remedy.
+pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::io::Result<()> {
+    if force { Ok(()) } else { enmm_run::check_owner(directory, loaded.source.file()) }
 }
 
 /// The first interrupt requests a checkpoint, the second ends the program at once.

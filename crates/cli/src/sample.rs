@@ -1,18 +1,22 @@
 //! `enmm sample`: the probability of failure of a case with random values. Every sample is worked out by a process of
 //! its own, so that one that is lost ends no other.
 
+use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
+use std::thread;
 
 use clap::Args;
+use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::{Interval, Row, beta, medians};
 use enmm_io::LoadedCase;
-use enmm_run::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
+use enmm_run::{Answer, Ask, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
+use enmm_stability::strength_reduction::{Progress, Trial};
 use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;
 use crate::progress::Count;
-use crate::run::{INTERRUPT, directory_of, interrupt};
+use crate::run::{INTERRUPT, check_folder, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Exit status of a panic.
@@ -48,6 +52,9 @@ pub struct Arguments {
     /// Ignore mechanisms of less rock (m²).
     #[arg(long, value_name = "AREA")]
     least_area: Option<f64>,
+    /// Replace results of another case in the directory.
+    #[arg(long)]
+    force: bool,
     /// Work out again the samples that have no answer.
     #[arg(long)]
     retry_failed: bool,
@@ -60,6 +67,9 @@ pub struct Arguments {
     /// A value of that sample.
     #[arg(long, hide = true, value_name = "KEY=VALUE")]
     value: Vec<String>,
+    /// What to work out of it; default: what the case says.
+    #[arg(long, hide = true, value_name = "OUTPUT", value_parser = output)]
+    output_of: Option<EnsembleOutput>,
 }
 
 impl Arguments {
@@ -94,6 +104,9 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
         Err(error) => return refuse(arguments, &format!("cannot find this program again ({error})"), FAILED),
     };
     let directory = arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path));
+    if let Err(error) = check_folder(&directory, &loaded, arguments.force) {
+        return refuse(arguments, &error, BAD_INPUT);
+    }
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let options = EnsembleOptions {
         store: arguments.store.clone().unwrap_or_else(|| directory.join(enmm_run::STORE)),
@@ -104,8 +117,8 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
         interrupt: &INTERRUPT,
     };
     let screen = Count::new(arguments.json);
-    let ask = |k: usize, values: Vec<String>| ask(&mut command(&program, arguments, &loaded, &values), k, &loaded);
-    let found = ensemble(&loaded, &options, ask, &mut |done, n| screen.tell(done, n));
+    let ask = |what: &Ask| ask(&mut command(&program, arguments, &loaded, what), what, &screen);
+    let found = ensemble(&loaded, &options, ask, &mut |progress| screen.tell(progress));
     screen.close();
     match found {
         Ok(found) => report(arguments, &found, &options),
@@ -141,55 +154,87 @@ fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -
     fail(message, status)
 }
 
+/// What a sample is asked for, by its name in a case.
+fn output(name: &str) -> Result<EnsembleOutput, String> {
+    serde_json::from_value(json!(name)).map_err(|error| error.to_string())
+}
+
 /// The call of this program that works out one sample.
-fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, values: &[String]) -> Command {
+fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, what: &Ask) -> Command {
     let mut command = Command::new(program);
     command.arg("sample").arg(&arguments.case.path).arg(format!("--sample-of={}", loaded.hash));
+    command.arg(format!("--output-of={}", what.output.name()));
     command.args(loaded.settings.iter().map(|setting| format!("--set={setting}")));
-    command.args(values.iter().map(|value| format!("--value={value}")));
-    let options = arguments.search().given();
+    command.args(what.settings.iter().map(|value| format!("--value={value}")));
+    let options = what.search.given();
     command.args(options.iter().map(|(name, value)| format!("--{}={value:?}", name.replace('_', "-"))));
-    command.stdin(Stdio::null());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 
-/// Computes one sample in a process; fails when the process was lost.
-fn ask(command: &mut Command, k: usize, loaded: &LoadedCase) -> Result<Answer, String> {
-    let output = command.output().map_err(|error| format!("the process of sample {k} did not start: {error}"))?;
-    if let Ok(found) = serde_json::from_slice(&output.stdout) {
-        return Ok(read(&found, loaded));
+/// Computes one sample in a process, and shows its trials; fails when the process was lost.
+fn ask(command: &mut Command, what: &Ask, screen: &Count) -> Result<Answer, String> {
+    let k = what.sample;
+    let child = command.spawn().map_err(|error| format!("the process of sample {k} did not start: {error}"))?;
+    let (status, found, told) = listen(child, |trial| screen.trial(k, trial)).map_err(|error| error.to_string())?;
+    if let Some(found) = found {
+        return Ok(read(&found, what.output));
     }
-    let told = String::from_utf8_lossy(&output.stderr);
     let told = told.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
-    match output.status.code() {
+    match status.code() {
         Some(PANIC) => {
             let message = format!("the engine failed: {told}");
             Ok(Answer::Done(Row { outputs: Vec::new(), message }))
         }
         // The case cannot be read any more.
         Some(status) if status == i32::from(BAD_INPUT) => Ok(Answer::Changed),
-        _ => Err(format!("the process of sample {k} ended with {}: {told}", output.status)),
+        _ => Err(format!("the process of sample {k} ended with {status}: {told}")),
     }
 }
 
-fn read(found: &Json, loaded: &LoadedCase) -> Answer {
+/// Reads what a process prints until it ends: its trials, its answer, and its messages.
+fn listen(mut child: Child, mut hear: impl FnMut(&str)) -> std::io::Result<(ExitStatus, Option<Json>, String)> {
+    let (output, messages) = (child.stdout.take(), child.stderr.take());
+    let reader = thread::spawn(move || {
+        let mut bytes = Vec::new();
+        messages.map(|mut messages| messages.read_to_end(&mut bytes));
+        String::from_utf8_lossy(&bytes).into_owned()
+    });
+    let mut answer = None;
+    for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()) {
+        match serde_json::from_str::<Json>(&line?) {
+            Ok(found) if found["trial"].is_string() => hear(found["trial"].as_str().unwrap_or_default()),
+            Ok(found) => answer = Some(found),
+            Err(_) => {}
+        }
+    }
+    let status = child.wait()?;
+    Ok((status, answer.filter(|_| status.success()), reader.join().unwrap_or_default()))
+}
+
+fn read(found: &Json, wanted: EnsembleOutput) -> Answer {
     if found["changed"].is_string() {
         return Answer::Changed;
     }
-    let names = columns(loaded.case.ensemble.output);
     let output = |name: &&str| Some(((*name).to_owned(), found["outputs"].get(*name)?.clone()));
     let message = found["message"].as_str().unwrap_or_default().to_owned();
-    Answer::Done(Row { outputs: names.iter().filter_map(output).collect(), message })
+    Answer::Done(Row { outputs: columns(wanted).iter().filter_map(output).collect(), message })
 }
 
-/// Works out one sample in this process and prints its answer.
+/// Works out one sample in this process and prints its trials and its answer, a line each.
 fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode {
     if loaded.hash != hash {
         print_line(&json!({ "changed": loaded.hash }).to_string());
         return ExitCode::SUCCESS;
     }
+    let wanted = arguments.output_of.unwrap_or(loaded.case.ensemble.output);
+    let mut hear = |trial: &Trial, progress: Progress| {
+        let Progress { trials, expected } = progress;
+        let text = format!("trial {trials} of about {expected}, F = {:.4} {}", trial.factor, trial.verdict.name());
+        print_line(&json!({ "trial": text }).to_string());
+    };
     let row = match arguments.case.load_with(&arguments.value) {
-        Ok(sample) => answer(&sample, &arguments.search()),
+        Ok(sample) => answer(&sample, wanted, &arguments.search(), &mut hear),
         Err(error) => Some(Row { outputs: Vec::new(), message: error.to_string() }),
     };
     let Some(row) = row else { return ExitCode::from(INTERRUPTED) };
@@ -234,7 +279,9 @@ fn table(found: &EnsembleResult, options: &EnsembleOptions) -> String {
     let mut lines = Vec::new();
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<23} {text}"));
     let of = &found.ensemble;
-    tell("samples", format!("{} by {}, seed {}", found.rows.len(), of.sampling.name().replace('_', " "), of.seed));
+    let sampling = of.sampling.name().replace('_', " ");
+    let asked = if (found.rows.len() as u64) < of.samples { format!(" of {}", of.samples) } else { String::new() };
+    tell("samples", format!("{}{asked} by {sampling}, seed {}", found.rows.len(), of.seed));
     tell("below the limit", format!("{} below {}", found.failures(), of.limit));
     let (p, Interval { low, high }) = (found.probability_of_failure(), found.interval());
     tell("probability of failure", format!("{p:.4}, 95 % (Wilson): {low:.4} to {high:.4}"));
@@ -242,6 +289,9 @@ fn table(found: &EnsembleResult, options: &EnsembleOptions) -> String {
     let quantiles = found.quantiles().map(|(share, output)| format!("{output:.4} ({:.0} %)", 100.0 * share));
     let name = columns(of.output)[0].replace('_', " ");
     tell(&name, format!("mean {:.4}, quantiles {}", found.mean(), quantiles.join(", ")));
+    if let Some(text) = found.decided() {
+        tell("decided", text);
+    }
     for (key, correlation) in found.sensitivity() {
         let text = correlation.map_or("none".to_owned(), |correlation| format!("{correlation:.3}"));
         tell("rank correlation", format!("{text} of {key}"));

@@ -130,3 +130,92 @@ fn an_interrupt_exits_with_130_and_keeps_the_trials() {
         assert_eq!(json(&place.path("out/fos.json"))["status"], "interrupted");
     }
 }
+
+/// The wedge of the template above its fault: 94.605 m², 40°, c = 40 kPa, φ = 32°, bolts that fall by 10°. With T on
+/// the side of the forces, F = (c·l + (W cos α + T sin(α + δ)) tan φ)/(W sin α − T cos(α + δ)).
+#[test]
+fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
+    let place = Place::with("");
+    assert_eq!(place.enmm(&["new", "slope", "-o", "slope.toml"]).status, Some(0));
+    let (weight, length) = (94.605 * 2.650 * 9.81, (15f64 * 15.0 + 12.586 * 12.586).sqrt());
+    let (dip, fall, friction) = (12.586f64.atan2(15.0), 10f64.to_radians(), 32f64.to_radians().tan());
+    for (support, tension, share) in [("active", 150.0, 0.4), ("passive", 375.0, 1.0)] {
+        let normal = weight * dip.cos() + tension * (dip + fall).sin();
+        let driving = weight * dip.sin() - tension * (dip + fall).cos();
+        let exact = (40.0 * length + normal * friction) / driving;
+        let set = format!("bolt_pattern[0].support={support}");
+        for command in ["fos", "bound"] {
+            let answer = place.enmm(&[command, "slope.toml", "--set", &set, "--json"]);
+            assert_eq!(answer.status, Some(0), "{answer:?}");
+            let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
+            let factor = match command {
+                "fos" => found["factor_of_safety"].as_f64(),
+                _ => found["level_tops"]["factor"].as_f64(),
+            };
+            let factor = factor.expect("a factor");
+            assert!((factor / exact - 1.0).abs() < 0.02, "{support} by {command}: {factor}, {exact}");
+            if command == "fos" {
+                assert_eq!(found["bolts"].as_array().map(Vec::len), Some(3), "{found}");
+                assert_eq!(found["bolts"][0]["support"], support);
+                let of_yield = found["bolts"][0]["force"].as_f64().expect("a force") / 250e3;
+                assert!((of_yield - share).abs() < 0.01, "{of_yield}");
+            }
+        }
+    }
+    let set = ["--set", "bolt_pattern[0].support=active", "--set", "bolt_pattern[0].pretension=0"];
+    let refused = place.enmm(&[&["check", "slope.toml"], &set[..]].concat());
+    assert!(refused.status == Some(2) && refused.stderr.contains("pretension"), "{refused:?}");
+}
+
+/// Seed 5 of the bedding of `road_cut` cuts off a chip of 1.4 m² on the face.
+#[test]
+fn a_chip_is_named_beside_the_slope() {
+    let place = Place::with("");
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
+    let search = ["fos", case, "--set", "joint_set[0].seed=5", "-o", "out", "--no-pictures"];
+    let answer = place.enmm(&search);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let found = json(&place.path("out/fos.json"));
+    let [slope, chip] = [&found["factor_of_safety"], &found["chips"][0]["factor_of_safety"]].map(|f| f.as_f64());
+    let (slope, chip) = (slope.expect("a factor"), chip.expect("a factor of a chip"));
+    assert!((slope / 1.3176 - 1.0).abs() < 0.01 && chip < slope, "{slope}, {chip}");
+    assert!(answer.stdout.contains(&format!("slope {slope:.4}; chip of ")), "{answer:?}");
+    let all = place.enmm(&[&search[..], &["--least-area", "0"]].concat());
+    assert_eq!(all.status, Some(0), "{all:?}");
+    assert_eq!(json(&place.path("out/fos.json"))["factor_of_safety"].as_f64(), Some(chip));
+}
+
+/// Before its bolts are installed, the cut has the factor of its formula without them (`road_cut.toml`).
+#[test]
+fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
+    let place = Place::with("");
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
+    let answer = place.enmm(&["fos", case, "--stage", "gravity", "-o", "out", "--no-pictures"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let found = json(&place.path("out/fos.json"));
+    let factor = found["factor_of_safety"].as_f64().expect("a factor");
+    assert!((factor / 1.0313 - 1.0).abs() < 0.005, "{factor}");
+    assert_eq!(found["bolts"].as_array().map(Vec::len), Some(0), "{found}");
+    let refused = place.enmm(&["fos", case, "--stage", "quake", "-o", "none"]);
+    assert_eq!(refused.status, Some(2), "{refused:?}");
+    assert!(refused.stderr.contains("gravity, bolts"), "{refused:?}");
+}
+
+/// The dry slide of `road_cut` has F = 1.1627, with 3 m of water in its crack 1.0313.
+#[test]
+fn a_stage_that_draws_the_water_down_gives_the_dry_factor() {
+    let place = Place::with("");
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
+    let text = fs::read_to_string(case).expect("an example");
+    let text = text.replace("install = [\"rows\"]", "water = { level = -20.0 }");
+    fs::write(place.path("case.toml"), text).expect("a case");
+    for (command, key) in [("fos", "factor_of_safety"), ("bound", "level_tops")] {
+        let answer = place.enmm(&[command, "case.toml", "--json"]);
+        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
+        let factor = found[key].as_f64().or(found[key]["factor"].as_f64()).expect("a factor");
+        assert!((factor / 1.1627 - 1.0).abs() < 0.005, "{command}: {factor}");
+    }
+    let refused = place.enmm(&["check", "case.toml", "--set", "stage[0].water.level=1"]);
+    assert!(refused.status == Some(2) && refused.stderr.contains("first stage"), "{refused:?}");
+}

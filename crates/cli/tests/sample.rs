@@ -64,6 +64,47 @@ fn the_probability_of_a_block_on_an_incline_is_that_of_its_friction() {
     assert!(fs::read(place.path("case/ensemble.png")).expect("a picture").starts_with(b"\x89PNG"));
 }
 
+/// The exact factor of each sample is tan φ over 0.5; bounds leave few of them open.
+#[test]
+fn samples_that_fail_are_found_by_bounds_and_few_searches() {
+    let place = Place::with(&case(RANDOM));
+    let wanted = ["--set", "ensemble.output=failure", "--jobs", "2"];
+    let answer = sample(&place, &[&["-n", "120", "-o", "bounds"], &wanted[..], &QUICK[..]].concat());
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let (mut failures, mut by_bound) = (0, 0);
+    for line in table(&place, "bounds").lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [friction, estimate]: [f64; 2] = [cells[1], cells[2]].map(|cell| cell.parse().expect("a number"));
+        let exact = friction.to_radians().tan() / 0.5;
+        // A trial judges a block this near its limit as stable, as a search does.
+        assert!((estimate < 1.0) == (exact < 1.0) || (exact - 1.0).abs() < 1e-3, "{line}");
+        failures += usize::from(estimate < 1.0);
+        by_bound += usize::from(cells[3] == "bound");
+    }
+    assert!(by_bound >= 80, "{by_bound} of 120 by their bound");
+    assert!(answer.stdout.contains(&format!("{by_bound} by their bound")), "{answer:?}");
+    assert_eq!(json(&place.path("bounds/ensemble.json"))["failures"], failures);
+    let again = sample(&place, &[&["-n", "120", "-o", "one", "--jobs", "1"], &wanted[..2], &QUICK[..]].concat());
+    assert_eq!(again.status, Some(0), "{again:?}");
+    assert_eq!(table(&place, "one"), table(&place, "bounds"));
+}
+
+#[test]
+fn work_ends_when_the_interval_is_as_narrow_as_asked_for() {
+    let place = Place::with(&case(RANDOM));
+    let wanted = ["-n", "400", "--set", "ensemble.output=level_tops", "--set", "ensemble.interval=0.12"];
+    let answer = sample(&place, &wanted);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let found = json(&place.path("case/ensemble.json"));
+    let [low, high] = [0, 1].map(|end| found["interval"][end].as_f64().expect("a number"));
+    let n = found["samples"].as_u64().expect("a number");
+    assert!(high - low <= 0.12 && n % 50 == 0 && n < 400, "{n} samples, {low} to {high}");
+    assert!(answer.stdout.contains(&format!("{n} of 400")), "{answer:?}");
+    let refused = sample(&place, &[&wanted[..], &["--set", "ensemble.sampling=latin_hypercube"]].concat());
+    assert_eq!(refused.status, Some(2), "{refused:?}");
+    assert!(refused.stderr.contains("ensemble.interval") && refused.stderr.contains("monte_carlo"), "{refused:?}");
+}
+
 #[test]
 fn the_table_does_not_depend_on_jobs_and_a_rerun_works_nothing_out() {
     let place = Place::with(&case(RANDOM));

@@ -38,8 +38,18 @@ impl Row {
         self.outputs.iter().find(|(other, _)| other == name).map(|(_, value)| value)
     }
 
+    /// An output that is a number; none of a sample without an answer.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.output(name).and_then(Json::as_f64).filter(|_| self.is_done())
+    }
+
+    /// An output that is a text; empty where there is none.
+    pub fn text(&self, name: &str) -> &str {
+        self.output(name).and_then(Json::as_str).unwrap_or_default()
+    }
+
     /// Its outputs as an object whose entries keep their order.
-    fn text(&self) -> String {
+    fn object(&self) -> String {
         let entries = self.outputs.iter().map(|(name, value)| format!("{}: {value}", Json::from(name.as_str())));
         format!("{{{}}}", entries.collect::<Vec<_>>().join(", "))
     }
@@ -107,7 +117,7 @@ impl Store {
             )
             .map_err(|error| failure(&self.path, &error))?;
         let given = Json::from(given).to_string();
-        let written = statement.execute(params![key, place, status, given, row.text(), row.message, seconds, version]);
+        let written = statement.execute(params![key, place, status, given, row.object(), row.message, seconds, version]);
         written.map(drop).map_err(|error| failure(&self.path, &error))
     }
 

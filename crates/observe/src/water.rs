@@ -1,6 +1,6 @@
 //! Water at one instant.
 
-use enmm::geometry::{Point, Vector};
+use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm::model::tables::EdgeId;
 
@@ -44,11 +44,7 @@ pub fn water_surface(simulation: &Simulation) -> Vec<Point> {
     let Some(water) = &simulation.model().water else { return Vec::new() };
     let drive = &simulation.state().drive;
     let level = drive.water_level(drive.share(simulation.time()));
-    if water.table.is_empty() {
-        return vec![Point::new(0.0, level)];
-    }
-    let rise = Vector::new(0.0, level - water.level);
-    water.table.iter().map(|point| point + rise).collect()
+    water.surfaces[simulation.state().stage as usize].moved_to(level)
 }
 
 /// Height (m) of a broken line from left to right at `x` (m), level beyond its ends.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use enmm_io::files::{at_path, is_temporary, sweep_temporaries};
 use same_file::Handle;
+use serde_json::Value;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
@@ -144,6 +145,44 @@ fn held(folder: &Path, lock: &mut File) -> io::Error {
     let read = lock.read_to_string(&mut number).is_ok() && number.parse::<u32>().is_ok();
     let process = if read { format!("process {number}") } else { "another process".to_owned() };
     io::Error::new(io::ErrorKind::ResourceBusy, format!("{}: {process} is writing its results here", folder.display()))
+}
+
+/// Files of results that name their case.
+const RECORDS: [&str; 3] = ["ensemble.json", "fos.json", "summary.json"];
+
+/// Refuses a folder that holds results of another case than the one of a file.
+///
+/// # Errors
+/// What is there, and the remedy.
+pub fn check_owner(folder: &Path, case_file: &str) -> io::Result<()> {
+    let owners = RECORDS.iter().filter_map(|name| owner(&folder.join(name)));
+    match owners.into_iter().find(|owner| !is_same_file(owner, case_file)) {
+        None => Ok(()),
+        Some(other) => Err(io::Error::new(
+            io::ErrorKind::AlreadyExists,
+            format!(
+                "{}: holds results of another case, {other}: choose another directory with -o, or replace them with \
+                 --force",
+                folder.display()
+            ),
+        )),
+    }
+}
+
+/// The case file that a record names.
+fn owner(record: &Path) -> Option<String> {
+    let record: Value = serde_json::from_slice(&fs::read(record).ok()?).ok()?;
+    Some(record["case_file"].as_str()?.to_owned())
+}
+
+/// Whether two paths name one file; of one that is not to be found, as one that was given from elsewhere, the name
+/// decides.
+fn is_same_file(a: &str, b: &str) -> bool {
+    let [a, b] = [a, b].map(Path::new);
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a.file_name() == b.file_name(),
+    }
 }
 
 /// Whether a path in a folder of results is the name of a result.

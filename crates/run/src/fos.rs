@@ -14,7 +14,9 @@ use super::folder::Folder;
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
 use super::run::has_run;
+use super::support::{BoltUse, bolt_uses};
 use enmm::engine_version;
+use enmm::model::case::{Case, StageKind, Support};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
@@ -44,6 +46,8 @@ pub struct FosOptions<'a> {
     pub threads: Option<usize>,
     /// Whether to draw pictures and a page.
     pub pictures: bool,
+    /// The static stage after which the slope is looked at; the last one when none is given.
+    pub stage: Option<String>,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -59,6 +63,7 @@ impl FosOptions<'_> {
             mechanisms: MechanismOptions::default(),
             threads: None,
             pictures: true,
+            stage: None,
             interrupt: None,
         }
     }
@@ -77,14 +82,13 @@ impl FosOptions<'_> {
             }
         }
         let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));
-        if low >= high {
-            return Err(format!("--low: is {low}, must be below --high, {high}; swap or leave out one of them"));
+        if low > high {
+            return Err(format!("--low: is {low}, must not be above --high, {high}; swap or leave out one of them"));
         }
         if !(1e-4..=0.5).contains(&self.tolerance) {
             return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", self.tolerance));
         }
-        let area = self.mechanisms.least_area;
-        if !(area >= 0.0 && area.is_finite()) {
+        if let Some(area) = self.mechanisms.least_area.filter(|area| !(*area >= 0.0 && area.is_finite())) {
             return Err(format!(
                 "--least-area: is {area}, must be 0 m² or more; the area of a block that does not count"
             ));
@@ -153,9 +157,10 @@ pub fn search(
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Found, FosError> {
     options.check().map_err(FosError::Options)?;
+    let case = case_after(&loaded.case, options.stage.as_deref()).map_err(FosError::Options)?;
     let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
     let search = ReductionOptions { low, high, tolerance, interrupt, integrators: &enmm_implicit::Both };
-    let mut find = || mechanisms(&loaded.case, which, &search, hear);
+    let mut find = || mechanisms(&case, which, &search, hear);
     let found = match options.threads {
         None => find(),
         Some(threads) => {
@@ -170,6 +175,19 @@ pub fn search(
     })?;
     searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
     Ok(Found { searches, which })
+}
+
+/// The case without the stages after one of its static stages.
+fn case_after(case: &Case, stage: Option<&str>) -> Result<Case, String> {
+    let mut case = case.clone();
+    let Some(name) = stage else { return Ok(case) };
+    let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static);
+    let names: Vec<&str> = statics.map(|stage| stage.name.as_str()).collect();
+    let place = names.iter().position(|other| *other == name).ok_or_else(|| {
+        format!("--stage: there is no static stage {name:?} before the first dynamic one; there are: {}", names.join(", "))
+    })?;
+    case.stages.truncate(place + 1);
+    Ok(case)
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
@@ -215,7 +233,11 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "case_file": loaded.source.file(),
         "case_hash": loaded.hash,
         "tolerance": options.tolerance,
-        "least_area": found.which.least_area,
+        "least_area": found.which.least(found.main()),
+        "chips": found.chips().map(|chip| json!({
+            "factor_of_safety": chip.factor(),
+            "area": chip.first_unstable().map(Trial::failing_area),
+        })).collect::<Vec<_>>(),
         "wall_seconds": wall,
         "mechanisms": mechanisms,
     });
@@ -252,6 +274,7 @@ fn search_record(reduction: &Reduction) -> Value {
             (None, Err(refused)) => json!({ "refused": refused }),
         },
         "remedy": remedy(reduction),
+        "bolts": bolt_uses(&reduction.simulation).iter().map(bolt_record).collect::<Vec<_>>(),
         "notes": reduction.simulation.built().notes,
         "warnings": reduction.warnings,
     });
@@ -270,6 +293,16 @@ fn block_record(block: &FailingBlock) -> Value {
         "displacement": block.displacement,
         "rotation": block.rotation,
         "speed": block.speed,
+    })
+}
+
+fn bolt_record(bolt: &BoltUse) -> Value {
+    json!({
+        "bolt": bolt.name,
+        "support": bolt.support.map_or("stretched", Support::name),
+        "force": bolt.force,
+        "yield_force": bolt.yield_force,
+        "utilisation": bolt.utilisation(),
     })
 }
 

@@ -17,6 +17,11 @@ impl Found {
         &self.searches[self.place_of_main()]
     }
 
+    /// Searches before it whose mechanisms are too small to count.
+    pub fn chips(&self) -> impl Iterator<Item = &Reduction> {
+        self.searches.iter().take(self.place_of_main()).filter(|search| !self.which.counts(search))
+    }
+
     /// Its place among the searches.
     pub fn place_of_main(&self) -> usize {
         let counts = self.searches.iter().position(|search| self.which.counts(search));

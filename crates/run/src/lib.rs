@@ -14,12 +14,15 @@ pub mod history;
 mod mechanism_page;
 mod run;
 pub mod summary;
+pub mod support;
 pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record};
 pub use check::check;
-pub use ensemble::{Answer, EnsembleError, EnsembleOptions, EnsembleResult, SearchOptions, answer, columns, ensemble};
-pub use folder::{Folder, STORE, check_output, is_result, make_place};
+pub use ensemble::{
+    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns, ensemble,
+};
+pub use folder::{Folder, STORE, check_output, check_owner, is_result, make_place};
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::{write_bound_page, write_bracket_page};
 pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};

@@ -4,7 +4,26 @@
 pub mod limit_analysis;
 pub mod strength_reduction;
 
-use enmm::model::case::{Case, StageKind};
+use enmm::model::case::{Case, StageKind, Support};
+
+/// Stiffness of a bar whose force is given, over that of steel: a metre of slip changes the force by a few per cent.
+const SOFT: f64 = 1e-4;
+
+/// The case with each bolt that is an active or a passive support at its pretension or its yield force, whatever the
+/// rock does.
+pub fn with_support_forces(case: &Case) -> Case {
+    let mut case = case.clone();
+    for bolt in &mut case.bolts {
+        let force = match bolt.support {
+            None => continue,
+            Some(Support::Active) => bolt.pretension,
+            Some(Support::Passive) => bolt.yield_force.unwrap_or(bolt.pretension),
+        };
+        (bolt.pretension, bolt.yield_force) = (force, Some(force));
+        bolt.young *= SOFT;
+    }
+    case
+}
 
 /// The stages of a case that neither method looks at, as a warning; none if there are none, or if the case begins with
 /// one of them and is refused.

@@ -199,7 +199,7 @@ fn reduce(case: &Case) -> Reduction {
 /// The same without the mechanisms that are grains, which squeezed joints pop out.
 fn reduce_rock(case: &Case, grain: f64) -> Reduction {
     let options = ReductionOptions { tolerance: TOLERANCE, ..Default::default() };
-    let found = mechanisms(case, MechanismOptions { least_area: grain, count: 1 }, &options, &mut |_, _| {});
+    let found = mechanisms(case, MechanismOptions { least_area: Some(grain), count: 1 }, &options, &mut |_, _| {});
     found.unwrap_or_else(|e| panic!("{}: {e}", case.title)).pop().expect("a search")
 }
 

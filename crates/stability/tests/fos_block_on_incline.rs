@@ -121,7 +121,7 @@ fn one_mechanism_follows_the_other() {
         assert!((trial.failing_mass() / (2500.0 * area) - 1.0).abs() < 1e-9, "{trial:?}");
     }
     assert!((found[0].free_area - 7.5).abs() < 1e-9, "{}", found[0].free_area);
-    let passed = find(MechanismOptions { least_area: 7.0, count: 1 });
+    let passed = find(MechanismOptions { least_area: Some(7.0), count: 1 });
     let ends: Vec<&End> = passed.iter().map(|reduction| &reduction.end).collect();
     assert_eq!(ends, [&End::Found, &End::Found, &End::StableThroughout]);
     assert_eq!(passed[2].at_least(), Some(20.0));

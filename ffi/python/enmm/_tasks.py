@@ -219,7 +219,7 @@ def run(
     words += [] if resume is None else ["--resume", resume]
     words += [] if progress else ["--quiet"]
     with case_file(case) as path:
-        status, _, error = call(["run", path, *words], show=progress)
+        status, _, error = call(["run", path, "--force", *words], show=progress)
     if status == 0:
         return result._read() if result else Result(directory)
     message = message_of(status, error) if error or not progress else "the run failed; see the message above"
@@ -238,6 +238,7 @@ def fos(
     high: float | None = None,
     tolerance: float | None = None,
     least_area: float | None = None,
+    stage: str | None = None,
     mechanisms: int | None = None,
     threads: int | None = None,
     pictures: bool = True,
@@ -245,20 +246,20 @@ def fos(
     """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
 
     `low` and `high` bound the factors that are tried, and the search begins with them. `tolerance` is the width of the
-    final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2) do not
-    count. `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither
+    final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2; a
+    hundredth of the free rock without it) do not count. `stage` is the static stage after which the slope is looked at. `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither
     pictures nor a page are drawn. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are as those of `run`.
 
     Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
     """
     found = Fos(None) if output is None else None
     directory = found.directory if found else Path(output or "")
-    options = {"low": low, "high": high, "tolerance": tolerance, "least-area": least_area}
+    options = {"low": low, "high": high, "tolerance": tolerance, "least-area": least_area, "stage": stage}
     options |= {"mechanisms": mechanisms, "threads": threads}
     words = [word for name, value in options.items() if value is not None for word in (f"--{name}", value)]
     words += [] if pictures else ["--no-pictures"]
     with case_file(case) as path:
-        written = record(["fos", path, "-o", directory, *words])
+        written = record(["fos", path, "--force", "-o", directory, *words])
     if found is None:
         return Fos(directory)
     found.record = written

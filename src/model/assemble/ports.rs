@@ -3,8 +3,8 @@
 use crate::contact::{Boundary, EdgeId};
 use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::LoadedFace;
-use crate::model::case::{Case, Invalid, Load};
-use crate::state::{Port, PortKind, Water};
+use crate::model::case::{self, Case, Invalid, Load};
+use crate::state::{Port, PortKind, Water, WaterSurface};
 
 use super::locator::Locator;
 
@@ -122,6 +122,17 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         *wet |= water.joints && faces.boundary.trace[edge].is_some();
     }
     let edges = faces.boundary.edges().filter(|&k| wet[k]).collect();
-    let table = super::points(water.table.as_deref().unwrap_or_default());
-    Ok(Some(Water { density: water.density, level: water.start_level(), table, edges }))
+    Ok(Some(Water { density: water.density, surfaces: surfaces(case, water), edges }))
+}
+
+/// The surface of the water at the start of each stage: what none brings is as before.
+fn surfaces(case: &Case, water: &case::Water) -> Vec<WaterSurface> {
+    let mut now = water.surface();
+    let of_stage = |stage: &case::Stage| {
+        if let Some(next) = &stage.water {
+            now.clone_from(next);
+        }
+        WaterSurface { level: now.highest(), table: super::points(now.table.as_deref().unwrap_or_default()) }
+    };
+    case.stages.iter().map(of_stage).collect()
 }

@@ -93,6 +93,7 @@ fn bar(pattern: &BoltPattern) -> Bolt {
         rupture_strain: pattern.rupture_strain,
         pretension: pattern.pretension,
         free_length: pattern.free_length,
+        support: pattern.support,
         active: pattern.active,
     }
 }

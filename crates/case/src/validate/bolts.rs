@@ -2,7 +2,7 @@
 
 use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional, segment, unique};
 use crate::key::Key;
-use crate::{Anchorage, Bolt, Case};
+use crate::{Anchorage, Bolt, Case, Support};
 
 /// Checks the bolts of a case.
 ///
@@ -36,6 +36,16 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
             bolt.pretension
         );
         return fail(&key.field("pretension"), message);
+    }
+    let [needed, value] = match bolt.support {
+        Some(Support::Active) if bolt.pretension == 0.0 => ["pretension", "pretension = 100e3"],
+        Some(Support::Passive) if bolt.yield_force.is_none() => ["yield_force", "yield_force = 250e3"],
+        _ => ["", ""],
+    };
+    if let (Some(support), false) = (bolt.support, needed.is_empty()) {
+        let message =
+            format!("is {:?}, so the bolt carries its `{needed}`, which is missing; add it, such as `{value}`", support.name());
+        return fail(&key.field("support"), message);
     }
     if bolt.name.is_none() && !bolt.active {
         let message = "is false, and without a name no stage can install the bolt; add `name` or remove `active`";

@@ -3,29 +3,37 @@
 use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, points, segment, unique};
 use crate::key::{Key, list};
 use crate::limits::VALUE_MAX;
-use crate::{Port, Water};
+use crate::{Port, Water, WaterSurface};
 
 /// Checks the water of a case.
 ///
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_water(key: &Key, water: &Water) -> Check {
-    optional(key, "level", water.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
     number(key, "density", water.density, Range::above(0.0).to(1e5), "kg/m³", "1000 is the default")?;
-    match (&water.level, &water.table) {
-        (Some(_), None) => {}
-        (None, Some(table)) => validate_table(&key.field("table"), table)?,
+    validate_surface(key, &water.surface())?;
+    let Some(faces) = &water.faces else { return Ok(()) };
+    faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))
+}
+
+/// Checks a surface of water.
+///
+/// # Errors
+/// The first value that cannot be used.
+pub fn validate_surface(key: &Key, surface: &WaterSurface) -> Check {
+    optional(key, "level", surface.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
+    match (&surface.level, &surface.table) {
+        (Some(_), None) => Ok(()),
+        (None, Some(table)) => validate_table(&key.field("table"), table),
         (given, _) => {
             let count = if given.is_some() { 2 } else { 0 };
             let message = format!(
                 "has {count} of `level` and `table`, must have exactly 1; give `level` for a level surface, or `table` \
                  for a sloping one"
             );
-            return fail(key, message);
+            fail(key, message)
         }
     }
-    let Some(faces) = &water.faces else { return Ok(()) };
-    faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))
 }
 
 /// Checks the points of a sloping surface.

@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, whole};
 use crate::key::{Key, list};
-use crate::random::{Ensemble, RandomDistribution, RandomVariable};
+use crate::random::{Ensemble, RandomDistribution, RandomVariable, Sampling};
 use crate::{Case, RandomOf};
 
 /// Greatest magnitude of a parameter, beyond that of any value of a case.
@@ -116,5 +116,13 @@ fn correlations(key: &Key, case: &Case) -> Check {
 
 fn ensemble(key: &Key, ensemble: &Ensemble) -> Check {
     whole(key, "samples", ensemble.samples, (1, 10_000_000), "100 to 1000 are usual")?;
-    number(key, "limit", ensemble.limit, PARAMETER, "", "1 is the limit of a factor of safety")
+    number(key, "limit", ensemble.limit, PARAMETER, "", "1 is the limit of a factor of safety")?;
+    let Some(interval) = ensemble.interval else { return Ok(()) };
+    number(key, "interval", interval, Range::above(0.0).below(1.0), "", "0.05 is usual")?;
+    if ensemble.sampling != Sampling::MonteCarlo {
+        let message = "needs sampling = \"monte_carlo\": the first samples of a Latin hypercube are no sample of the \
+                       whole; set that, or leave out `interval`";
+        return fail(&key.field("interval"), message.to_owned());
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
-use super::joints;
+use super::{joints, ports};
 use crate::key::Key;
 use crate::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
@@ -23,6 +23,7 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
         stage.excavate_region.as_ref().map_or(Ok(()), |ring| region(&key.field("excavate_region"), ring))?;
         validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
+        validate_water(&key.field("water"), i, stage, case)?;
     }
     unique(key, "stage", case.stages.iter().map(|stage| Some(stage.name.as_str())))
 }
@@ -51,6 +52,17 @@ fn validate_motion(key: &Key, stage: &Stage) -> Check {
     optional(key, "convergence", stage.convergence, share, "", "1e-3 to 1e-5 is usual")?;
     optional(key, "ramp", stage.ramp, Range::from(0.0).to(stage.duration), "s", "it ends within the stage's duration")?;
     optional(key, "damping", stage.damping, Range::from(0.0).to(1.0), "", "0 to 0.1 is usual")
+}
+
+fn validate_water(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
+    let Some(surface) = &stage.water else { return Ok(()) };
+    if place == 0 {
+        return fail(key, "is in the first stage, which has the surface of [water]; give it there, or in a later stage");
+    }
+    if case.water.is_none() {
+        return fail(key, "needs [water], which says what the water reaches; add it with the surface at the start");
+    }
+    ports::validate_surface(key, surface)
 }
 
 fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {

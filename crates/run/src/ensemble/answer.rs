@@ -4,7 +4,7 @@ use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::Row;
 use enmm_io::LoadedCase;
 use enmm_stability::limit_analysis::{Collapse, Factor};
-use enmm_stability::strength_reduction::End;
+use enmm_stability::strength_reduction::{End, Progress, Trial};
 use serde_json::{Value, json};
 
 use super::SearchOptions;
@@ -18,14 +18,23 @@ pub fn columns(output: EnsembleOutput) -> &'static [&'static str] {
         }
         EnsembleOutput::LevelTops => &["level_tops", "status"],
         EnsembleOutput::Associated => &["associated", "status"],
+        EnsembleOutput::Failure => &["factor_estimate", "decided_by", "level_tops", "doubt"],
     }
 }
 
-/// Works out one sample on this thread: `sample` is the case with its values. None when the search was interrupted.
-pub fn answer(sample: &LoadedCase, options: &SearchOptions) -> Option<Row> {
-    let output = sample.case.ensemble.output;
+/// Works out one output of a sample on this thread: `sample` is the case with its values, and `hear` is called with
+/// each trial. None when the search was interrupted.
+///
+/// Whether a sample fails is no output of one: it follows from several (see [`super::screen`]).
+pub fn answer(
+    sample: &LoadedCase,
+    output: EnsembleOutput,
+    options: &SearchOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Option<Row> {
     let found = match output {
-        EnsembleOutput::FactorOfSafety => factor(sample, options)?,
+        EnsembleOutput::FactorOfSafety => factor(sample, options, hear)?,
+        EnsembleOutput::Failure => Err("whether a sample fails is found by its bound and its trials".to_owned()),
         EnsembleOutput::LevelTops => bound(sample, |bound| &bound.level_tops),
         EnsembleOutput::Associated => bound(sample, |bound| &bound.associated),
     };
@@ -48,8 +57,12 @@ fn bound(sample: &LoadedCase, of: fn(&enmm_stability::limit_analysis::Bound) -> 
     Ok(vec![json!(limit), json!(end)])
 }
 
-fn factor(sample: &LoadedCase, options: &SearchOptions) -> Option<Values> {
-    match search(sample, &options.fos(), &mut |_, _| {}) {
+fn factor(
+    sample: &LoadedCase,
+    options: &SearchOptions,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Option<Values> {
+    match search(sample, &options.fos(), hear) {
         Ok(found) => Some(values(&found)),
         Err(FosError::Interrupted) => None,
         Err(error) => Some(Err(error.to_string())),

@@ -3,24 +3,34 @@
 //! Each answer goes to the store as soon as it is there; the results are written when all are.
 
 mod answer;
+mod answers;
 mod record;
+mod screen;
 
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use enmm::engine_version;
-use enmm_ensemble::{Identity, Row, Samples, Store, StoreError, draw, sample_key, work};
+use enmm::model::case::{Ensemble, EnsembleOutput};
+use enmm_ensemble::{Row, StoreError, draw, wilson};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
 use crate::folder::{Folder, STORE, check_output, is_result};
 use crate::fos::FosOptions;
 
+use answers::Answers;
+
 pub use answer::{answer, columns};
+pub use answers::{Ask, EnsembleProgress};
 pub use record::EnsembleResult;
+
+/// Samples after each of which the width of the interval is looked at.
+const BATCH: usize = 50;
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
 
 /// Options of the search for each factor of safety; those that are none are the defaults of [`super::FosOptions`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -43,7 +53,7 @@ impl SearchOptions {
             low: self.low,
             high: self.high,
             tolerance: self.tolerance.unwrap_or(whole.tolerance),
-            mechanisms: MechanismOptions { least_area: self.least_area.unwrap_or(0.0), count: 1 },
+            mechanisms: MechanismOptions { least_area: self.least_area, count: 1 },
             threads: Some(1),
             ..whole
         }
@@ -135,27 +145,56 @@ pub enum Answer {
 
 /// Works out the samples of a case that are not in the store yet, and writes the results of all.
 ///
-/// `ask` computes one sample: it gets its number and its values as settings of the case, and fails when the worker was
-/// lost. `hear` is called with the number of samples done, and of all.
+/// `ask` computes one output of a sample, and fails when the worker was lost. `hear` is called as samples are done.
 ///
 /// # Errors
 /// See [`EnsembleError`]; what is done stays in the store.
 pub fn ensemble(
     loaded: &LoadedCase,
     options: &EnsembleOptions,
-    ask: impl Fn(usize, Vec<String>) -> Result<Answer, String> + Sync,
-    hear: &mut dyn FnMut(usize, usize),
+    ask: impl Fn(&Ask) -> Result<Answer, String> + Sync,
+    hear: &mut dyn FnMut(&EnsembleProgress),
 ) -> Result<EnsembleResult, EnsembleError> {
     let clock = Instant::now();
     let inputs = loaded.source.inputs();
     let held = Folder::open(&options.directory, inputs);
     let _held = held.and_then(|held| check_store(options, inputs).map(|()| held)).map_err(EnsembleError::Directory)?;
     let located = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
-    let samples = draw(&loaded.case).map_err(located)?;
-    let rows = rows(loaded, options, &samples, ask, hear)?;
+    let mut samples = draw(&loaded.case).map_err(located)?;
+    let mut answers = Answers::open(loaded, options, &samples, &ask, hear)?;
+    let rows = rows(&loaded.case.ensemble, options, &mut answers)?;
+    drop(answers);
+    samples.rows.truncate(rows.len());
     let result = EnsembleResult::of(loaded, samples, rows)?;
     result.write(loaded, options, clock.elapsed().as_secs_f64()).map_err(EnsembleError::Output)?;
     Ok(result)
+}
+
+/// The rows of all samples, or of as many as the interval asks for.
+fn rows(of: &Ensemble, options: &EnsembleOptions, answers: &mut Answers) -> Result<Vec<Row>, EnsembleError> {
+    let n = answers.count();
+    let batch = if of.interval.is_some() { BATCH } else { n.max(1) };
+    let mut rows: Vec<Row> = Vec::with_capacity(n);
+    let mut margin = None;
+    while rows.len() < n {
+        let next = rows.len()..n.min(rows.len() + batch);
+        rows.extend(match of.output {
+            EnsembleOutput::Failure => screen::rows(next, of.limit, &options.search, answers, &mut margin)?,
+            output => answers.find(&next.collect::<Vec<_>>(), output, &options.search)?,
+        });
+        if of.interval.is_some_and(|width| is_narrow(&rows, of, width)) {
+            break;
+        }
+    }
+    Ok(rows)
+}
+
+/// Whether the interval of the probability of failure is no wider than `width`.
+fn is_narrow(rows: &[Row], of: &Ensemble, width: f64) -> bool {
+    let outputs = rows.iter().filter_map(|row| row.number(columns(of.output)[0]));
+    let (failing, all) = outputs.fold((0, 0), |(failing, all), output| (failing + usize::from(output < of.limit), all + 1));
+    let interval = wilson(failing, all, CONFIDENCE);
+    all > 0 && interval.high - interval.low <= width
 }
 
 /// Looks at the places of the store and of the files that SQLite keeps beside it while it is open.
@@ -172,52 +211,4 @@ fn check_store(options: &EnsembleOptions, inputs: &[PathBuf]) -> io::Result<()> 
         name.push(end);
         check_output(&folder.join(name), inputs)
     })
-}
-
-/// The answers to all samples, from the store or worked out.
-fn rows(
-    loaded: &LoadedCase,
-    options: &EnsembleOptions,
-    samples: &Samples,
-    ask: impl Fn(usize, Vec<String>) -> Result<Answer, String> + Sync,
-    hear: &mut dyn FnMut(usize, usize),
-) -> Result<Vec<Row>, EnsembleError> {
-    let output = loaded.case.ensemble.output;
-    let identity = Identity {
-        case: loaded.hash.clone(),
-        version: engine_version().to_owned(),
-        output: output.name().to_owned(),
-        options: options.search.given(),
-    };
-    if let Some(parent) = options.store.parent().filter(|parent| !parent.as_os_str().is_empty()) {
-        std::fs::create_dir_all(parent).map_err(EnsembleError::Output)?;
-    }
-    let store = Store::open(&options.store)?;
-    let keys: Vec<String> = samples.rows.iter().map(|row| sample_key(&identity, &samples.keys, row)).collect();
-    let mut rows = keys.iter().map(|key| store.find(key, columns(output))).collect::<Result<Vec<_>, _>>()?;
-    let again = |row: &Row| options.retry_failed && !row.is_done();
-    let wanted: Vec<usize> = (0..keys.len()).filter(|&k| rows[k].as_ref().is_none_or(again)).collect();
-    let n = keys.len();
-    let mut done = n - wanted.len();
-    hear(done, n);
-    let timed = |k: usize| {
-        let clock = Instant::now();
-        ask(k, samples.settings(k)).map(|answer| (answer, clock.elapsed().as_secs_f64()))
-    };
-    let lost = work(&wanted, options.jobs, options.interrupt, timed, |k, (answer, seconds)| {
-        let Answer::Done(row) = answer else { return Err(EnsembleError::Changed) };
-        let values: Vec<_> = samples.keys.iter().map(String::as_str).zip(samples.rows[k].iter().copied()).collect();
-        store.add(&keys[k], k, &values, &row, (seconds, engine_version()))?;
-        rows[k] = Some(row);
-        done += 1;
-        hear(done, n);
-        Ok(())
-    })?;
-    if options.interrupt.load(Ordering::Relaxed) && done < n {
-        return Err(EnsembleError::Interrupted { done, n });
-    }
-    if lost.count > 0 {
-        return Err(EnsembleError::Lost { count: lost.count, message: lost.message });
-    }
-    Ok(rows.into_iter().flatten().collect())
 }

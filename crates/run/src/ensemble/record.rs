@@ -5,17 +5,15 @@ use std::io;
 use std::path::Path;
 
 use enmm::engine_version;
-use enmm::model::case::Ensemble;
+use enmm::model::case::{Ensemble, EnsembleOutput};
 use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{histogram_picture, number_text};
 use serde_json::{Value as Json, json};
 
-use super::{EnsembleError, EnsembleOptions, columns};
+use super::{CONFIDENCE, EnsembleError, EnsembleOptions, columns};
 
-/// Confidence of the intervals.
-const CONFIDENCE: f64 = 0.95;
 /// Shares of the samples for which quantiles are given.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
@@ -44,7 +42,7 @@ impl EnsembleResult {
         let name = columns(ensemble.output)[0];
         let (mut good, mut outputs, mut failed, mut doubtful) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (k, row) in rows.iter().enumerate() {
-            match row.output(name).and_then(Json::as_f64).filter(|_| row.is_done()) {
+            match row.number(name) {
                 Some(output) => {
                     good.push(k);
                     outputs.push(output);
@@ -52,7 +50,7 @@ impl EnsembleResult {
                 None if row.is_done() => failed.push((k, format!("the store has no number {name} of it"))),
                 None => failed.push((k, row.message.clone())),
             }
-            let doubt = row.output("doubt").and_then(Json::as_str).unwrap_or_default();
+            let doubt = row.text("doubt");
             if !doubt.is_empty() {
                 doubtful.push((k, doubt.to_owned()));
             }
@@ -77,6 +75,14 @@ impl EnsembleResult {
     /// Confidence interval (95 %) of that probability, by Wilson's formula.
     pub fn interval(&self) -> Interval {
         wilson(self.failures(), self.outputs.len(), CONFIDENCE)
+    }
+
+    /// By what the samples were decided, where that is what was looked for.
+    pub fn decided(&self) -> Option<String> {
+        let by = |name: &str| self.rows.iter().filter(|row| row.text("decided_by") == name).count();
+        let [bound, factor, trial] = ["bound", "factor", "trial"].map(by);
+        (self.ensemble.output == EnsembleOutput::Failure)
+            .then(|| format!("{bound} by their bound, {factor} by their factor, {trial} by a trial at the limit"))
     }
 
     /// Mean output.

@@ -4,7 +4,7 @@ use enmm::model::Simulation;
 use enmm::model::case::key::Key;
 use enmm::model::case::{Axes, Case, Invalid, JointLawKind, LoadKind, Plane, Port, Solver, StageKind};
 
-use crate::left_out_stages;
+use crate::{left_out_stages, with_support_forces};
 
 /// The model in its last static stage before any motion, and what was left out.
 ///
@@ -21,7 +21,7 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
 /// A key that cannot be treated or does not fit the model.
 pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     case.validate()?;
-    let mut case = case.clone();
+    let mut case = with_support_forces(case);
     // No step is taken, so the integrator and its keys do not matter.
     let Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, .. } = Solver::default();
     case.solver = Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, ..case.solver };

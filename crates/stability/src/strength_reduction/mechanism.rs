@@ -6,25 +6,33 @@ use enmm::model::tables::BlockId;
 
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 
+/// Share of the free rock below which failing blocks are a chip and no failure of the slope.
+pub const CHIP: f64 = 0.01;
+
 /// Which ways to fail to look for.
 #[derive(Debug, Clone, Copy)]
 pub struct MechanismOptions {
-    /// Area (m²) of failing blocks below which a way to fail is passed over.
-    pub least_area: f64,
+    /// Area (m²) of failing blocks below which a way to fail is passed over; that of a chip when none is given.
+    pub least_area: Option<f64>,
     /// How many of the others to find.
     pub count: usize,
 }
 
 impl Default for MechanismOptions {
     fn default() -> Self {
-        Self { least_area: 0.0, count: 1 }
+        Self { least_area: None, count: 1 }
     }
 }
 
 impl MechanismOptions {
+    /// Area (m²) of failing blocks from which on a way to fail counts.
+    pub fn least(&self, reduction: &Reduction) -> f64 {
+        self.least_area.unwrap_or(CHIP * reduction.free_area)
+    }
+
     /// Whether a way to fail counts: blocks of at least the least area, or no blocks at all.
     pub fn counts(&self, reduction: &Reduction) -> bool {
-        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= self.least_area)
+        reduction.first_unstable().is_none_or(|trial| trial.failing_area() >= self.least(reduction))
     }
 }
 

@@ -20,7 +20,7 @@ use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Simulation};
 
 pub use judge::{Reason, Verdict};
-pub use mechanism::{MechanismOptions, mechanisms};
+pub use mechanism::{CHIP, MechanismOptions, mechanisms};
 pub use slip::slide;
 
 /// Least and greatest F that trials reach when none are given.

@@ -2,7 +2,7 @@
 
 use super::slip::slide;
 use super::{HELD, ReductionError, ReductionOptions};
-use crate::left_out_stages;
+use crate::{left_out_stages, with_support_forces};
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Invalid, Stage, StageKind};
 use enmm::model::settle::REST_STEPS;
@@ -59,7 +59,7 @@ fn slips_anyhow(slip: f64) -> String {
 
 /// The case without its dynamic stages, and with a stage for the trials at its end.
 fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
-    let mut case = case.clone();
+    let mut case = with_support_forces(case);
     let mut warnings = Vec::new();
     let count = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
     if count == 0 {

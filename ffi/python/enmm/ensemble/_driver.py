@@ -13,20 +13,23 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, NamedTuple
 
 from .._case import Case
 from .._errors import invalid
 from .._library import load_library
 from .._program import CaseLike
-from ._outputs import NAMES, Answer, Output, evaluate
+from ._outputs import DECIDING, NAMES, Answer, Output, evaluate
 from ._sampling import Identity, draw_with_keys
+from ._screen import screened
 from ._store import Row, Store
-from ._summary import Ensemble
+from ._summary import Ensemble, wilson
 from ._variables import Distribution, Seeds, Variable
 
 _WINDOW = 2000
 """Samples that are with the executor at a time."""
+_BATCH = 50
+"""Samples after each of which the width of the interval is looked at."""
 _TRIES = 3
 """How often a sample is given out whose worker was lost."""
 
@@ -50,6 +53,7 @@ def run(
     method: str = "monte_carlo",
     correlations: Mapping[tuple[str, str], float] | None = None,
     limit: float = 1.0,
+    interval: float | None = None,
     options: Mapping[str, Any] | None = None,
     retry_failed: bool = False,
     progress: Callable[[int, int], object] | None = None,
@@ -59,7 +63,10 @@ def run(
     `variables` maps keys of the case to distributions, such as `{"joint_law.plane.friction_deg": Normal(35, 3),
     "joint_set[0].seed": Seeds()}`. `output` is "factor_of_safety", "level_tops" or "associated" (bounds of limit
     analysis, in milliseconds), or a function of a Case that returns a number or a dict of numbers. A sample fails when
-    its output is below `limit`. `options` are those of `enmm.fos`.
+    its output is below `limit`. "failure" finds which samples have a factor below the limit with a fraction of the
+    searches: by bounds, and by a trial at the limit where these leave it open. With `interval` no more samples are
+    worked out once the 95 % interval of the probability of failure is as narrow as that; it is looked at after every
+    50 samples, and `method` must be "monte_carlo". `options` are those of `enmm.fos`.
 
     `executor` runs the samples: without one as many `enmm` programs as the machine has processors; any executor of
     `concurrent.futures`; a client of Dask, the address of its scheduler, or "dask" for a local cluster. Results do not
@@ -68,7 +75,8 @@ def run(
     ensembles may share the file. A function is known to the store by its name, so take another file when you change it.
 
     `method` is "monte_carlo" or "latin_hypercube". `correlations` maps pairs of keys to the correlation of the normal
-    variables behind them (Gaussian copula). `progress` is called with the number of samples done, and `n`.
+    variables behind them (Gaussian copula). `progress` is called with the number of samples done, and how many are
+    wanted; with `output` "failure" it begins again for each of the bounds, the searches and the trials.
 
     Samples whose case has no answer are stored as failed, counted in `Ensemble.failed` and warned of; `retry_failed`
     works them out again. Raises EnsembleError when workers were lost again and again.
@@ -79,38 +87,104 @@ def run(
         raise invalid(
             "output: is a function without a name of its own, by which a store could find it; define one by def"
         )
-    version = load_library().version
-    identity = Identity(base.digest, _name(output), {name: float(value) for name, value in (options or {}).items()})
-    samples, keys = draw_with_keys(variables, n, seed, method, correlations or {}, identity)
+    if interval is not None and (not 0 < interval < 1 or method != "monte_carlo"):
+        raise invalid(
+            f'interval: is {interval} with method {method!r}, must be within 0 and 1 with "monte_carlo": the first '
+            "samples of a Latin hypercube are no sample of the whole"
+        )
     with ExitStack() as stack:
-        kept = stack.enter_context(Store(store))
-        rows = kept.find(keys)
-        wanted = [k for k, key in enumerate(keys) if key not in rows or (retry_failed and rows[key].status == "failed")]
-        pool = stack.enter_context(_pool(executor)) if wanted else None
-        done = n - len(wanted)
-        for k, answer in _answers(pool, wanted, lambda k: (base, samples[k], output, dict(options or {}))):
-            row = Row("failed" if answer.message else "done", answer.outputs, answer.message)
-            kept.add(keys[k], k, samples[k], row, answer.seconds, version)
-            rows[keys[k]] = row
-            done += 1
-            if progress is not None:
-                progress(done, n)
-    name = output if isinstance(output, str) else None
-    found = Ensemble(base, dict(variables), samples, [rows[key] for key in keys], name, limit, method, seed)
-    if found.failed:
-        first = found.failed[0]
+        answers = _Answers(stack, base, _Draw(variables, n, seed, method, correlations or {}), executor, store)
+        answers.retry_failed, answers.progress = retry_failed, progress
+        rows: list[Row] = []
+        margin = None
+        while len(rows) < n:
+            batch = range(len(rows), n if interval is None else min(n, len(rows) + _BATCH))
+            if output == "failure":
+                found, margin = screened(batch, limit, dict(options or {}), answers.find, margin)
+                rows += found
+            else:
+                rows += answers.find(batch, output, dict(options or {}))
+            if interval is not None and _is_narrow(rows, DECIDING.get(_name(output)), limit, interval):
+                break
+        samples = answers.samples[: len(rows)]
+    name = DECIDING[output] if isinstance(output, str) else None
+    ensemble = Ensemble(base, dict(variables), samples, rows, name, limit, method, seed)
+    if ensemble.failed:
+        first = ensemble.failed[0]
         warnings.warn(
-            f"{len(found.failed)} of {n} samples have no answer and count neither as failed nor as stable slopes; "
+            f"{len(ensemble.failed)} of {len(rows)} samples have no answer and count neither as failed nor as stable slopes; "
             f"the first, sample {first[0]}: {first[1]}",
             stacklevel=2,
         )
-    if found.doubtful:
+    if ensemble.doubtful:
         warnings.warn(
-            f"{len(found.doubtful)} of {n} factors are above the bound of limit analysis (see `Ensemble.doubtful`): "
+            f"{len(ensemble.doubtful)} of {len(rows)} factors are above the bound of limit analysis (see `Ensemble.doubtful`): "
             "the slope may have slid before its strength was reduced, and shorter static stages help",
             stacklevel=2,
         )
-    return found
+    return ensemble
+
+
+class _Draw(NamedTuple):
+    """How samples are drawn."""
+
+    variables: Mapping[str, Variable]
+    n: int
+    seed: int
+    method: str
+    correlations: Mapping[tuple[str, str], float]
+
+
+class _Answers:
+    """Outputs of samples: from the store where they are there, else from workers, and then into the store at once."""
+
+    def __init__(
+        self, stack: ExitStack, case: Case, draw: _Draw, executor: AnyExecutor, store: str | os.PathLike[str] | None
+    ) -> None:
+        self._stack, self._case, self._draw, self._executor = stack, case, draw, executor
+        self._store = stack.enter_context(Store(store))
+        self._version = load_library().version
+        self._pool: Executor | None = None
+        self._keys: dict[str, list[str]] = {}
+        self.samples: list[dict[str, Any]] = []
+        """The values of the samples, once one has been asked for."""
+        self.retry_failed = False
+        self.progress: Callable[[int, int], object] | None = None
+
+    def find(self, places: Iterable[int], output: Output, options: dict[str, Any]) -> list[Row]:
+        """One output of some samples, in their order."""
+        places, keys = list(places), self._keys_of(output, options)
+        rows = self._store.find(keys[k] for k in places)
+        again = [k for k in places if keys[k] in rows and self.retry_failed and rows[keys[k]].status == "failed"]
+        wanted = [k for k in places if keys[k] not in rows] + again
+        done = len(places) - len(wanted)
+        if wanted and self._pool is None:
+            self._pool = self._stack.enter_context(_pool(self._executor))
+        for k, answer in _answers(self._pool, sorted(wanted), lambda k: (self._case, self.samples[k], output, options)):
+            row = Row("failed" if answer.message else "done", answer.outputs, answer.message)
+            self._store.add(keys[k], k, self.samples[k], row, answer.seconds, self._version)
+            rows[keys[k]] = row
+            done += 1
+            if self.progress is not None:
+                self.progress(done, len(places))
+        return [rows[keys[k]] for k in places]
+
+    def _keys_of(self, output: Output, options: dict[str, Any]) -> list[str]:
+        """Keys of all samples in the store."""
+        identity = Identity(self._case.digest, _name(output), {name: float(value) for name, value in options.items()})
+        name = repr(identity)
+        if name not in self._keys:
+            self.samples, self._keys[name] = draw_with_keys(*self._draw, identity)
+        return self._keys[name]
+
+
+def _is_narrow(rows: list[Row], name: str | None, limit: float, width: float) -> bool:
+    """Whether the interval of the probability of failure is no wider than `width`."""
+    outputs = [float(row.outputs[name or next(iter(row.outputs))]) for row in rows if row.status == "done"]
+    if not outputs:
+        return False
+    low, high = wilson(sum(output < limit for output in outputs), len(outputs))
+    return high - low <= width
 
 
 def _check(case: Case, variables: Mapping[str, Variable], output: Output) -> None:

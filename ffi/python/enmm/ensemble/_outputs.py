@@ -9,9 +9,17 @@ from .._case import Case
 from .._errors import CaseError, InvalidArgumentError, Status, StepError
 
 Output = str | Callable[[Case], float | Mapping[str, Any]]
-"""`factor_of_safety`, `level_tops` or `associated` (limit analysis), or a function of a case that pickle can take."""
+"""`factor_of_safety`, `level_tops` or `associated` (limit analysis), `failure` (whether the factor is below the limit),
+or a function of a case that pickle can take."""
 
-NAMES = ("factor_of_safety", "level_tops", "associated")
+DECIDING = {
+    "factor_of_safety": "factor_of_safety",
+    "level_tops": "level_tops",
+    "associated": "associated",
+    "failure": "factor_estimate",
+}
+"""The column of each output that decides whether a sample fails."""
+NAMES = tuple(DECIDING)
 
 
 class Answer(NamedTuple):

@@ -252,5 +252,6 @@ def from_case(case: CaseLike) -> dict[str, Any]:
         "method": ensemble.get("sampling", "monte_carlo"),
         "seed": ensemble.get("seed", 1),
         "limit": ensemble.get("limit", 1.0),
+        "interval": ensemble.get("interval"),
         "correlations": {tuple(row["keys"]): row["value"] for row in table.get("random_correlation", [])},
     }

@@ -169,12 +169,7 @@ fn water(simulation: &Simulation) -> Option<Water> {
     let (model, state) = (simulation.model(), simulation.state());
     let water = model.water.as_ref()?;
     let share = state.drive.share(simulation.time());
-    let level = state.drive.water_level(share);
-    let rise = Vector::new(0.0, level - water.level);
-    let surface = match water.table.is_empty() {
-        true => vec![Point::new(0.0, level)],
-        false => water.table.iter().map(|p| p + rise).collect(),
-    };
+    let surface = water.surfaces[state.stage as usize].moved_to(state.drive.water_level(share));
     let boundary = &model.boundary;
     let mut reached = BTreeMap::<_, Vec<[Point; 2]>>::new();
     for &edge in &water.edges {
