@@ -636,3 +636,21 @@ def test_a_client_of_um_bridge_gets_the_factor(package):
     finally:
         server.kill()
         server.wait()
+
+
+def test_failing_samples_are_found_with_few_searches_as_the_program_finds_them(ensemble, tmp_path):
+    """The exact factor is tan(friction)/0.5; the program continues the store of the package."""
+    store = tmp_path / "store.sqlite"
+    variables = {FRICTION: ensemble.Normal(0.55, 0.05, of="tangent")}
+    found = ensemble.run(block(), variables, 80, "failure", store=store, options={"tolerance": 0.05})
+    by = found.table["decided_by"].tolist()
+    assert by.count("bound") >= 50 and by.count("factor") == 12
+    exact = np.tan(np.radians(found.table[FRICTION])) / 0.5
+    clear = np.abs(exact - 1) > 1e-3
+    assert np.array_equal((found.values < 1)[clear], (exact < 1)[clear])
+    again = ensemble.run(block(), variables, 80, "failure", store=store, options={"tolerance": 0.05})
+    assert again.table["factor_estimate"].tolist() == found.table["factor_estimate"].tolist()
+    first = ensemble.run(block(), variables, 400, "level_tops", store=store, interval=0.15)
+    assert len(first) % 50 == 0 and len(first) < 400
+    with pytest.raises(ValueError, match="interval"):
+        ensemble.run(block(), variables, 80, "failure", interval=0.1, method="latin_hypercube")

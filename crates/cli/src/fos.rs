@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = TOLERANCE)]
     tolerance: f64,
     /// Ignore mechanisms of less rock (m²), such as single key blocks: they are reported and removed, and the search
-    /// begins again. Default: a hundredth of the free rock; 0 counts all.
+    /// begins again. Default: 1.5 % of the free rock; 0 counts all.
     #[arg(long, value_name = "AREA")]
     least_area: Option<f64>,
     /// Look at the slope after this static stage; default: after the last.
@@ -256,7 +256,7 @@ fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
     let passed = match found.which.least_area {
         _ if found.which.counts(reduction) => "",
         Some(_) => "; passed over, less than --least-area",
-        None => "; passed over as a chip, less than a hundredth of the free rock: --least-area 0 counts it",
+        None => "; passed over as a chip, less than 1.5 % of the free rock: --least-area 0 counts it",
     };
     format!(
         "{} {blocks}{fate}: {:.4} m², {:.4e} kg/m, {:.1} % of the free rock{passed}",

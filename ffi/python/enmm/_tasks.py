@@ -246,9 +246,11 @@ def fos(
     """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
 
     `low` and `high` bound the factors that are tried, and the search begins with them. `tolerance` is the width of the
-    final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2; a
-    hundredth of the free rock without it) do not count. `stage` is the static stage after which the slope is looked at. `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither
-    pictures nor a page are drawn. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are as those of `run`.
+    final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2; 1.5 %
+    of the free rock without it) do not count. `stage` is the static stage after which the slope is looked at.
+    `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither pictures
+    nor a page are drawn. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are
+    as those of `run`.
 
     Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
     """

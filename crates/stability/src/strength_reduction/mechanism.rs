@@ -7,7 +7,7 @@ use enmm::model::tables::BlockId;
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 
 /// Share of the free rock below which failing blocks are a chip and no failure of the slope.
-pub const CHIP: f64 = 0.01;
+pub const CHIP: f64 = 0.015;
 
 /// Which ways to fail to look for.
 #[derive(Debug, Clone, Copy)]
