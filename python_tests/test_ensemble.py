@@ -638,14 +638,14 @@ def test_a_client_of_um_bridge_gets_the_factor(package):
         server.wait()
 
 
-def test_failing_samples_are_found_with_few_searches_as_the_program_finds_them(ensemble, tmp_path):
-    """The exact factor is tan(friction)/0.5; the program continues the store of the package."""
+def test_failing_samples_are_found_with_few_searches(ensemble, tmp_path):
+    """The exact factor is tan(friction)/tan(30 degrees)."""
     store = tmp_path / "store.sqlite"
-    variables = {FRICTION: ensemble.Normal(0.55, 0.05, of="tangent")}
+    variables = {FRICTION: ensemble.Normal(0.64, 0.06, of="tangent")}
     found = ensemble.run(block(), variables, 80, "failure", store=store, options={"tolerance": 0.05})
     by = found.table["decided_by"].tolist()
     assert by.count("bound") >= 50 and by.count("factor") == 12
-    exact = np.tan(np.radians(found.table[FRICTION])) / 0.5
+    exact = np.tan(np.radians(found.table[FRICTION])) / math.tan(math.radians(30))
     clear = np.abs(exact - 1) > 1e-3
     assert np.array_equal((found.values < 1)[clear], (exact < 1)[clear])
     again = ensemble.run(block(), variables, 80, "failure", store=store, options={"tolerance": 0.05})
