@@ -42,7 +42,7 @@ fn a_host_shifts_the_table_by_what_it_moves_the_level() {
     let [x, y] = foot();
     let table = |rise: f64| format!("[water]\ntable = [[0.0, {rise:?}], [{x:?}, {:?}]]\nfaces = []\n", y + 7.0 + rise);
     let mut moved = slope(&table(0.0));
-    assert_eq!(moved.model().water.as_ref().expect("water").level, y + 7.0);
+    assert_eq!(moved.model().water.as_ref().expect("water").surfaces[0].level, y + 7.0);
     moved.drive().to.water_level += 2.5;
     moved.drive().arrive();
     let (found, exact) = (pushed(&mut moved), pushed(&mut slope(&table(2.5))));

@@ -18,7 +18,8 @@ pub use integrator::{Buffers, OtherIntegrator};
 pub use ledger::{BALANCE, ENERGIES, Ledger};
 pub use memory::Part;
 pub use model::{
-    BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water, WaterSurface,
+    BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
+    WaterSurface,
 };
 pub use quantity::Quantity;
 pub use workspace::{

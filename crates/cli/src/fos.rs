@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm::model::case::Support;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
-use enmm::model::case::Support;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::support::{BoltUse, bolt_uses};
 use enmm_run::{FosError, FosOptions};
@@ -232,7 +232,8 @@ fn chips(found: &Found) -> Option<String> {
         format!("chip of {area:.1} m² {}", factor(chip))
     };
     let chips: Vec<String> = found.chips().map(of_chip).collect();
-    (!chips.is_empty()).then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
+    (!chips.is_empty())
+        .then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
 }
 
 /// What the bolts carry, and by which convention.

@@ -98,7 +98,7 @@ fn work_ends_when_the_interval_is_as_narrow_as_asked_for() {
     let found = json(&place.path("case/ensemble.json"));
     let [low, high] = [0, 1].map(|end| found["interval"][end].as_f64().expect("a number"));
     let n = found["samples"].as_u64().expect("a number");
-    assert!(high - low <= 0.12 && n % 50 == 0 && n < 400, "{n} samples, {low} to {high}");
+    assert!(high - low <= 0.12 && n.is_multiple_of(50) && n < 400, "{n} samples, {low} to {high}");
     assert!(answer.stdout.contains(&format!("{n} of 400")), "{answer:?}");
     let refused = sample(&place, &[&wanted[..], &["--set", "ensemble.sampling=latin_hypercube"]].concat());
     assert_eq!(refused.status, Some(2), "{refused:?}");

@@ -117,7 +117,8 @@ impl Store {
             )
             .map_err(|error| failure(&self.path, &error))?;
         let given = Json::from(given).to_string();
-        let written = statement.execute(params![key, place, status, given, row.object(), row.message, seconds, version]);
+        let written =
+            statement.execute(params![key, place, status, given, row.object(), row.message, seconds, version]);
         written.map(drop).map_err(|error| failure(&self.path, &error))
     }
 

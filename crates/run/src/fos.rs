@@ -184,7 +184,10 @@ fn case_after(case: &Case, stage: Option<&str>) -> Result<Case, String> {
     let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static);
     let names: Vec<&str> = statics.map(|stage| stage.name.as_str()).collect();
     let place = names.iter().position(|other| *other == name).ok_or_else(|| {
-        format!("--stage: there is no static stage {name:?} before the first dynamic one; there are: {}", names.join(", "))
+        format!(
+            "--stage: there is no static stage {name:?} before the first dynamic one; there are: {}",
+            names.join(", ")
+        )
     })?;
     case.stages.truncate(place + 1);
     Ok(case)

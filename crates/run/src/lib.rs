@@ -20,7 +20,8 @@ pub mod vtu;
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record};
 pub use check::check;
 pub use ensemble::{
-    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns, ensemble,
+    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,
+    ensemble,
 };
 pub use folder::{Folder, STORE, check_output, check_owner, is_result, make_place};
 pub use fos::{FosError, FosOptions, fos};

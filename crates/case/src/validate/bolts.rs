@@ -43,8 +43,10 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
         _ => ["", ""],
     };
     if let (Some(support), false) = (bolt.support, needed.is_empty()) {
-        let message =
-            format!("is {:?}, so the bolt carries its `{needed}`, which is missing; add it, such as `{value}`", support.name());
+        let message = format!(
+            "is {:?}, so the bolt carries its `{needed}`, which is missing; add it, such as `{value}`",
+            support.name()
+        );
         return fail(&key.field("support"), message);
     }
     if bolt.name.is_none() && !bolt.active {

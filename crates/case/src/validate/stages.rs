@@ -57,7 +57,10 @@ fn validate_motion(key: &Key, stage: &Stage) -> Check {
 fn validate_water(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
     let Some(surface) = &stage.water else { return Ok(()) };
     if place == 0 {
-        return fail(key, "is in the first stage, which has the surface of [water]; give it there, or in a later stage");
+        return fail(
+            key,
+            "is in the first stage, which has the surface of [water]; give it there, or in a later stage",
+        );
     }
     if case.water.is_none() {
         return fail(key, "needs [water], which says what the water reaches; add it with the surface at the start");

@@ -152,7 +152,8 @@ impl EnsembleProgress {
             self.answered += 1;
             self.below += usize::from(output < limit);
         }
-        let slower = |(k, seconds): (usize, f64)| self.slowest.is_none_or(|(_, most)| seconds > most).then_some((k, seconds));
+        let slower =
+            |(k, seconds): (usize, f64)| self.slowest.is_none_or(|(_, most)| seconds > most).then_some((k, seconds));
         self.slowest = took.and_then(slower).or(self.slowest);
     }
 }

@@ -192,7 +192,8 @@ fn rows(of: &Ensemble, options: &EnsembleOptions, answers: &mut Answers) -> Resu
 /// Whether the interval of the probability of failure is no wider than `width`.
 fn is_narrow(rows: &[Row], of: &Ensemble, width: f64) -> bool {
     let outputs = rows.iter().filter_map(|row| row.number(columns(of.output)[0]));
-    let (failing, all) = outputs.fold((0, 0), |(failing, all), output| (failing + usize::from(output < of.limit), all + 1));
+    let (failing, all) =
+        outputs.fold((0, 0), |(failing, all), output| (failing + usize::from(output < of.limit), all + 1));
     let interval = wilson(failing, all, CONFIDENCE);
     all > 0 && interval.high - interval.low <= width
 }
