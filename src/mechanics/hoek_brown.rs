@@ -1,4 +1,4 @@
-//! The curved part of the yield surface of Hoek–Brown rock and the return to it (Eqs. 56a–57b).
+//! The curved part of the yield surface of Hoek–Brown rock and the return to it (Eqs. 56a, 57a, 57b).
 
 use enmm_case::{Envelope, Tangent};
 
@@ -41,7 +41,7 @@ pub struct Circle {
     pub sin_friction: f64,
 }
 
-/// The envelope with its shear strength times a factor (Eq. 56b).
+/// The envelope with its shear strength times a factor (Eq. 57a).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
     envelope: Envelope,
@@ -129,7 +129,7 @@ impl Circle {
 }
 
 impl Curve {
-    /// Sine of the dilation angle on a circle: at most that of its friction angle (Eq. 57a).
+    /// Sine of the dilation angle on a circle: at most that of its friction angle.
     pub fn sin_dilation(&self, at: &Circle) -> f64 {
         self.sin_dilation.min(at.sin_friction)
     }

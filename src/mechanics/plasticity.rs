@@ -86,7 +86,7 @@ impl MohrCoulomb {
 }
 
 impl YieldingRock {
-    /// The surface with its shear strength and the given tensile strength times `factor` (Eqs. 56b, 59); ψ is at most
+    /// The surface with its shear strength and the given tensile strength times `factor` (Eqs. 57a, 59); ψ is at most
     /// the φ that is left.
     pub fn surface(&self, factor: f64) -> YieldSurface {
         let (elasticity, plane_stress) = (self.elasticity, self.plane_stress);
@@ -193,7 +193,7 @@ pub fn equivalent_strain(plastic: &PlasticStrain) -> f64 {
     (2.0 / 3.0 * double_dot(plastic, plastic)).sqrt()
 }
 
-/// The surface between elastic and plastic states of a rock (Eqs. 56, 56b).
+/// The surface between elastic and plastic states of a rock (Eqs. 56, 56a).
 #[doc(alias = "return mapping")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YieldSurface {
