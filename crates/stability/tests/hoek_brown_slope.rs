@@ -10,7 +10,7 @@ use enmm_stability::limit_analysis::continuum::bracket;
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
 /// The slope of R. E. Hammah, T. E. Yacoub, B. C. Corkum and J. H. Curran (2005): 10 m high, 45°, 25 kN/m³, σci 30 MPa,
-/// mi 2, GSI 5, D 0. They found 1.15 by strength reduction and 1.153 by Bishop's method.
+/// mi 2, GSI 5, D 0: 1.15 by strength reduction and by Bishop's method.
 const PUBLISHED: f64 = 1.15;
 
 /// The slope with so many elements over its height at a mesh angle (degrees), and more keys of its strength.
@@ -27,18 +27,21 @@ fn slope(rows: f64, angle: f64, more: &str) -> Case {
     enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
 }
 
-/// On elements of a tenth of the height: within 3 % of the published factor, and the ledger closes.
+/// On elements of a tenth of the height: within 3 % of the published factor, below the upper bound and above the lower
+/// one, as far as 0.5 % of the bracket and 1 % of the mesh leave open; the ledger closes.
 #[test]
 fn the_factor_of_a_slope_is_that_of_hammah_and_others() {
-    let all: &[(f64, &str)] = &[(0.0, ""), (20.0, ""), (37.0, ""), (7.0, ", associated = true")];
-    for &(angle, more) in by_extent([&all[..1], &all[..2], all]) {
-        let case = slope(10.0, angle, more);
+    for &(rows, angle) in by_extent([&[(10.0, 20.0)][..], &[(10.0, 20.0), (10.0, 37.0)], &[(10.0, 0.0), (20.0, 0.0)]]) {
+        let case = slope(rows, angle, "");
         let options = ReductionOptions { low: Some(1.1), high: Some(1.25), ..ReductionOptions::default() };
         let reduction = factor_of_safety(&case, &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
         let factor = reduction.factor().expect("a factor");
-        println!("{angle}° {more}: {factor}");
+        let found = reduction.bracket.as_ref().expect("bounds");
+        let [lower, upper] = [found.lower.value(), found.upper.value()];
+        println!("{rows} rows, {angle}°: {factor}, {lower} to {upper}");
         assert!(reduction.trials.iter().all(|t| t.ledger_residual.abs() < 1e-3));
-        assert!((factor / PUBLISHED - 1.0).abs() < 0.03, "{angle}° {more}: {factor}");
+        assert!((factor / PUBLISHED - 1.0).abs() < 0.03, "{rows} {angle}°: {factor}");
+        assert!(factor > 0.99 * lower && factor < 1.01 * upper, "{rows} {angle}°: {factor}, {lower} to {upper}");
     }
 }
 
