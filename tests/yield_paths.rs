@@ -1,6 +1,5 @@
-//! Claim: rock yields at its Mohr–Coulomb or Hoek–Brown strength along any strain path, flows at its dilation angle, and does both
-//! in
-//! every element of a cut mesh and in any rotated frame.
+//! Claim: rock yields at its Mohr–Coulomb or Hoek–Brown strength along any strain path, flows at its dilation
+//! angle, and does both in every element of a cut mesh and in any rotated frame.
 
 use crate::common::simulation;
 use enmm::geometry::Vector;
@@ -94,8 +93,8 @@ fn biaxial_compression_has_strength_and_dilation() {
     }
 }
 
-/// Hoek–Brown rock under lateral pressure fails at σ₁ = σ₃ + σci·(mb·σ₃/σci + s)^a, by a formula of its own here, to one
-/// part in a million, and flows without dilation, at an angle, or at that of the tangent of σ₁(σ₃).
+/// Hoek–Brown rock under lateral pressure fails at σ₁ = σ₃ + σci·(mb·σ₃/σci + s)^a, by a formula of its own here, to
+/// one part in a million, and flows without dilation, at an angle, or at that of the tangent of σ₁(σ₃).
 #[test]
 fn biaxial_compression_has_the_strength_of_hoek_and_brown() {
     let (sigma_ci, mi, gsi, d): (f64, f64, f64, f64) = (30e6, 8.0, 35.0, 0.4);

@@ -4,17 +4,18 @@ use enmm_case::{Envelope, Tangent};
 
 use super::Elasticity;
 
-/// Points of the table of an envelope: neighbouring circles differ by a third in their size, so that chords between
-/// them hold all but a hundredth of the strength.
-const POINTS: usize = 33;
+/// Points of the table of an envelope: neighbouring circles differ by a sixth in their size, so that chords between
+/// them hold all but a few thousandths of the strength.
+const POINTS: usize = 65;
 /// Sizes of the first and the last circle in the table, relative to the uniaxial compressive strength and to the
 /// strength under a pressure of σci.
 const ENDS: [f64; 2] = [0.02, 2.0];
 /// Most circles that a search looks at by regula falsi, of which it needs ten, and in all: halving ends earlier.
 const FALSI: usize = 50;
 const TRIED_MAX: usize = 1200;
-/// Rest of an equation, relative to the largest stress, at which it counts as solved: rounding.
-const SOLVED: f64 = 1e-14;
+/// Rest of an equation, relative to the largest stress, at which it counts as solved: far below what counts as
+/// on the surface.
+const SOLVED: f64 = 1e-12;
 
 /// Hoek–Brown strength of a rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -177,7 +178,8 @@ impl Curve {
         };
         let (mut values, mut last) = (ends.map(|at| value(&at)), ends.len());
         for tried in 0..TRIED_MAX {
-            // Regula falsi that halves the value of an end that stays (the Illinois rule); where it is slow, halving.
+            // Regula falsi that lowers the value of an end that stays (N. Anderson and Å. Björck 1973); where it is slow,
+            // halving.
             let share = if tried < FALSI { values[0] / (values[0] - values[1]) } else { 0.5 };
             let at = self.circle(ends[0].v + share * (ends[1].v - ends[0].v));
             let now = value(&at);
@@ -185,11 +187,11 @@ impl Curve {
                 return Some(at);
             }
             let side = usize::from(now <= 0.0);
-            (ends[side], values[side]) = (at, now);
             if side == last {
-                values[1 - side] *= 0.5;
+                let share = 1.0 - now / values[side];
+                values[1 - side] *= if share > 0.0 { share } else { 0.5 };
             }
-            last = side;
+            (ends[side], values[side], last) = (at, now, side);
         }
         Some(ends[0])
     }

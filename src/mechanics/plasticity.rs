@@ -1,5 +1,5 @@
-//! Rock that yields: elastic, perfectly plastic by Mohr–Coulomb or Hoek–Brown with tension cut-off, by return mapping in
-//! principal stresses (Eqs. 54–59).
+//! Rock that yields: elastic, perfectly plastic by Mohr–Coulomb or Hoek–Brown with tension cut-off, by return mapping
+//! in principal stresses (Eqs. 54–59).
 
 use crate::geometry::Vector;
 

@@ -1,5 +1,5 @@
-//! Slopes of rock masses by Hoek–Brown: the factor of a published one, bounds about it, and what limit analysis of rigid
-//! blocks says to them.
+//! Slopes of rock masses by Hoek–Brown: the factor of a published one, bounds about it, and what limit analysis of
+//! rigid blocks says to them.
 
 use std::path::Path;
 
