@@ -13,9 +13,9 @@ const ENDS: [f64; 2] = [0.02, 2.0];
 /// Most circles that a search looks at by regula falsi, of which it needs ten, and in all: halving ends earlier.
 const FALSI: usize = 50;
 const TRIED_MAX: usize = 1200;
-/// Rest of an equation, relative to the largest stress, at which it counts as solved: far below what counts as
-/// on the surface.
-const SOLVED: f64 = 1e-12;
+/// Rest of an equation, relative to the largest trial stress, at which it counts as solved: rounding, so that the stress
+/// is on the surface where it is a small part of the trial stress.
+const SOLVED: f64 = 1e-14;
 
 /// Hoek–Brown strength of a rock.
 #[derive(Debug, Clone, Copy, PartialEq)]

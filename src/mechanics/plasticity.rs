@@ -50,6 +50,7 @@ pub struct YieldingRock {
 }
 
 /// Which stresses a rock withstands, and how it flows beyond.
+#[expect(clippy::large_enum_variant, reason = "a model has one for each kind of rock")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
     /// Friction and cohesion.
