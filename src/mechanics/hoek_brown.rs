@@ -13,8 +13,8 @@ const ENDS: [f64; 2] = [0.02, 2.0];
 /// Most circles that a search looks at by regula falsi, of which it needs ten, and in all: halving ends earlier.
 const FALSI: usize = 50;
 const TRIED_MAX: usize = 1200;
-/// Rest of an equation, relative to the largest trial stress, at which it counts as solved: rounding, so that the stress
-/// is on the surface where it is a small part of the trial stress.
+/// Rest of an equation, relative to the largest trial stress, at which it counts as solved: rounding, so that a stress
+/// that is a small part of the trial stress is on the surface too.
 const SOLVED: f64 = 1e-14;
 
 /// Hoek–Brown strength of a rock.
@@ -178,8 +178,8 @@ impl Curve {
         };
         let (mut values, mut last) = (ends.map(|at| value(&at)), ends.len());
         for tried in 0..TRIED_MAX {
-            // Regula falsi that lowers the value of an end that stays (N. Anderson and Å. Björck 1973); where it is slow,
-            // halving.
+            // Regula falsi that lowers the value of an end that stays (N. Anderson and Å. Björck 1973); where it is
+            // slow, halving.
             let share = if tried < FALSI { values[0] / (values[0] - values[1]) } else { 0.5 };
             let at = self.circle(ends[0].v + share * (ends[1].v - ends[0].v));
             let now = value(&at);
