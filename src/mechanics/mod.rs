@@ -7,6 +7,7 @@ pub mod chunk;
 mod column;
 mod elasticity;
 pub mod element_lanes;
+mod hoek_brown;
 mod internal;
 mod load;
 mod mass;
@@ -20,6 +21,7 @@ pub use averaging::{Averages, Averaging, Strained, list};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use elasticity::{Elasticity, critical_dt};
+pub use hoek_brown::HoekBrown;
 pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::MassMatrix;
@@ -27,6 +29,6 @@ pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
     turning,
 };
-pub use plasticity::{MohrCoulomb, PlasticStrain, YieldSurface, equivalent_strain};
+pub use plasticity::{Criterion, MohrCoulomb, PlasticStrain, YieldSurface, YieldingRock, equivalent_strain};
 pub use record::Record;
 pub use turn::Turn;

@@ -1,8 +1,9 @@
-//! Rock that yields: elastic, perfectly plastic Mohr–Coulomb with tension cut-off, by return mapping in principal
-//! stresses (Eqs. 54–59).
+//! Rock that yields: elastic, perfectly plastic by Mohr–Coulomb or Hoek–Brown with tension cut-off, by return mapping
+//! in principal stresses (Eqs. 54–59).
 
 use crate::geometry::Vector;
 
+use super::hoek_brown::{Curve, HoekBrown, Onto};
 use super::{Deformation, Elasticity, Strained};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
@@ -36,14 +37,31 @@ enum Plane {
     Tension(usize),
 }
 
-/// Strength of a rock.
+/// Elastic constants and strength of a rock that yields.
 #[doc(alias = "elastic-plastic")]
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MohrCoulomb {
+pub struct YieldingRock {
     /// Elastic constants in the plane.
     pub elasticity: Elasticity,
     /// Whether there is no stress out of the plane, instead of no strain.
     pub plane_stress: bool,
+    /// Its strength.
+    pub criterion: Criterion,
+}
+
+/// Which stresses a rock withstands, and how it flows beyond.
+#[expect(clippy::large_enum_variant, reason = "a model has one for each kind of rock")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// Friction and cohesion.
+    MohrCoulomb(MohrCoulomb),
+    /// A curved envelope, in plane strain.
+    HoekBrown(HoekBrown),
+}
+
+/// Strength by friction and cohesion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MohrCoulomb {
     /// Tangent of the friction angle.
     pub friction: f64,
     /// Cohesion (Pa).
@@ -55,19 +73,39 @@ pub struct MohrCoulomb {
 }
 
 impl MohrCoulomb {
-    /// The surface with tan φ, c and the tensile strength times `factor` (Eq. 59); ψ is at most the φ that is left.
-    pub fn surface(&self, factor: f64) -> YieldSurface {
+    fn planes(&self, factor: f64) -> Planes {
         let sine = |tangent: f64| tangent / (1.0 + tangent * tangent).sqrt();
         let (friction, cohesion) = (self.friction * factor, self.cohesion * factor);
         let apex = if friction > 0.0 { cohesion / friction } else { f64::INFINITY };
-        YieldSurface {
-            elasticity: self.elasticity,
-            plane_stress: self.plane_stress,
+        Planes {
             sin_friction: sine(friction),
             sin_dilation: sine(self.dilation.min(friction)),
             shear: 2.0 * cohesion / (1.0 + friction * friction).sqrt(),
             tension: self.tension.map_or(apex, |tension| (tension * factor).min(apex)),
-            cohesion,
+        }
+    }
+}
+
+impl YieldingRock {
+    /// The surface with its shear strength and the given tensile strength times `factor` (Eqs. 57a, 59); ψ is at most
+    /// the φ that is left.
+    pub fn surface(&self, factor: f64) -> YieldSurface {
+        let (elasticity, plane_stress) = (self.elasticity, self.plane_stress);
+        let (planes, curve) = match &self.criterion {
+            Criterion::MohrCoulomb(strength) => (strength.planes(factor), None),
+            Criterion::HoekBrown(strength) => {
+                let curve = strength.curve(factor);
+                (Planes::beside(&curve), Some(curve))
+            }
+        };
+        YieldSurface { elasticity, plane_stress, planes, curve, least: self.least_stress(factor) }
+    }
+
+    /// Stress (Pa) beside which a rest is nothing where no other stress acts: cohesion, or uniaxial strength.
+    pub fn least_stress(&self, factor: f64) -> f64 {
+        match &self.criterion {
+            Criterion::MohrCoulomb(strength) => strength.cohesion * factor,
+            Criterion::HoekBrown(strength) => strength.compression() * factor,
         }
     }
 
@@ -156,19 +194,63 @@ pub fn equivalent_strain(plastic: &PlasticStrain) -> f64 {
     (2.0 / 3.0 * double_dot(plastic, plastic)).sqrt()
 }
 
-/// The planes between elastic and plastic states of a rock (Eq. 56).
+/// The surface between elastic and plastic states of a rock (Eqs. 56, 56a).
 #[doc(alias = "return mapping")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YieldSurface {
     elasticity: Elasticity,
     plane_stress: bool,
+    planes: Planes,
+    /// The curve in place of the shear planes, which then hold at the tensile strength alone.
+    curve: Option<Curve>,
+    /// Stress (Pa) beside which a rest is nothing where no other stress acts.
+    least: f64,
+}
+
+/// Shear planes and tensile strength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Planes {
     sin_friction: f64,
     sin_dilation: f64,
     /// 2c·cos φ (Pa).
     shear: f64,
     /// Tensile strength (Pa); infinite for a rock without friction and without a given value.
     tension: f64,
-    cohesion: f64,
+}
+
+impl Planes {
+    /// The shear planes that touch a curve where it meets its tensile strength.
+    fn beside(curve: &Curve) -> Self {
+        let at = &curve.first;
+        Self {
+            sin_friction: at.sin_friction,
+            sin_dilation: curve.sin_dilation(at),
+            shear: 2.0 * (at.radius - at.centre * at.sin_friction),
+            tension: curve.tension,
+        }
+    }
+
+    /// Whether they meet in a point at the tensile strength, as at the end of an envelope.
+    fn are_a_point(&self) -> bool {
+        self.sin_friction >= 1.0
+    }
+
+    fn beyond(&self, plane: Plane, s: &[f64; 3]) -> f64 {
+        match plane {
+            Plane::Shear(i, j) => s[i] - s[j] + (s[i] + s[j]) * self.sin_friction - self.shear,
+            Plane::Tension(i) => s[i] - self.tension,
+        }
+    }
+
+    /// Gradient of a plane, with the friction angle or, for the flow, the dilation angle.
+    fn normal(plane: Plane, sine: f64) -> [f64; 3] {
+        let mut normal = [0.0; 3];
+        match plane {
+            Plane::Shear(i, j) => (normal[i], normal[j]) = (1.0 + sine, sine - 1.0),
+            Plane::Tension(i) => normal[i] = 1.0,
+        }
+        normal
+    }
 }
 
 impl YieldSurface {
@@ -215,39 +297,40 @@ impl YieldSurface {
 
     /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.
     pub fn excess(&self, stress: [f64; 4]) -> f64 {
-        let principal = Principal::of(stress, self.plane_stress);
-        PLANES[..ORDERED].iter().map(|&p| self.beyond(p, &principal.sorted)).fold(f64::NEG_INFINITY, f64::max)
+        let sorted = Principal::of(stress, self.plane_stress).sorted;
+        match &self.curve {
+            None => PLANES[..ORDERED].iter().map(|&p| self.planes.beyond(p, &sorted)).fold(f64::NEG_INFINITY, f64::max),
+            Some(_) => self.beyond(&sorted),
+        }
+    }
+
+    /// The same for principal stresses, the largest first.
+    fn beyond(&self, sorted: &[f64; 3]) -> f64 {
+        let shear = match &self.curve {
+            None => self.planes.beyond(PLANES[0], sorted),
+            Some(curve) => curve.beyond([sorted[0], sorted[2]]),
+        };
+        shear.max(self.planes.beyond(PLANES[3], sorted))
     }
 
     /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eq. 57).
     pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
         let principal = Principal::of(trial, self.plane_stress);
         let sorted = principal.sorted;
-        let most = sorted.iter().fold(self.cohesion, |a, s| a.max(s.abs()));
+        let most = sorted.iter().fold(self.least, |a, s| a.max(s.abs()));
         let tolerance = ON_SURFACE * most;
-        let excess = self.beyond(PLANES[0], &sorted).max(self.beyond(PLANES[3], &sorted));
+        let excess = self.beyond(&sorted);
         if excess.is_nan() || excess <= tolerance {
             return None;
         }
-        let flow = Return { surface: self, principal: &principal, tolerance }.flow();
+        let onto = |curve| Onto { curve, rock: &self.elasticity, trial: sorted, tolerance }.flow();
+        let back = Return { surface: self, principal: &principal, tolerance };
+        let flow = match self.curve.as_ref().map(onto) {
+            Some(Some(flow)) => flow,
+            Some(None) if self.planes.are_a_point() => back.apex(),
+            _ => back.flow(),
+        };
         Some(principal.in_plane_axes(flow))
-    }
-
-    fn beyond(&self, plane: Plane, s: &[f64; 3]) -> f64 {
-        match plane {
-            Plane::Shear(i, j) => s[i] - s[j] + (s[i] + s[j]) * self.sin_friction - self.shear,
-            Plane::Tension(i) => s[i] - self.tension,
-        }
-    }
-
-    /// Gradient of a plane, with the friction angle or, for the flow, the dilation angle.
-    fn normal(plane: Plane, sine: f64) -> [f64; 3] {
-        let mut normal = [0.0; 3];
-        match plane {
-            Plane::Shear(i, j) => (normal[i], normal[j]) = (1.0 + sine, sine - 1.0),
-            Plane::Tension(i) => normal[i] = 1.0,
-        }
-        normal
     }
 }
 
@@ -317,17 +400,17 @@ impl Return<'_> {
     /// Plastic strain when exactly these planes yield; `None` when one of them would have to yield backwards, or
     /// another plane is violated.
     fn on<const N: usize>(&self, planes: &[Plane; N]) -> Option<[f64; 3]> {
-        let surface = self.surface;
+        let YieldSurface { planes: surface, elasticity, .. } = self.surface;
         if planes.iter().any(|&p| surface.beyond(p, &[0.0; 3]) == f64::NEG_INFINITY) {
             return None;
         }
-        let flows = planes.map(|p| YieldSurface::normal(p, surface.sin_dilation));
+        let flows = planes.map(|p| Planes::normal(p, surface.sin_dilation));
         let stresses = flows.map(|b| self.stress(&b));
-        let normals = planes.map(|p| YieldSurface::normal(p, surface.sin_friction));
+        let normals = planes.map(|p| Planes::normal(p, surface.sin_friction));
         let matrix = normals.map(|a| stresses.map(|s| (0..3).map(|k| a[k] * s[k]).sum::<f64>()));
         let right = planes.map(|p| surface.beyond(p, &self.principal.sorted));
-        let rates = solve(matrix, right, surface.elasticity.mu)?;
-        let least = -self.tolerance / surface.elasticity.mu;
+        let rates = solve(matrix, right, elasticity.mu)?;
+        let least = -self.tolerance / elasticity.mu;
         if rates.iter().any(|rate| rate.is_nan() || *rate < least) {
             return None;
         }
@@ -342,7 +425,8 @@ impl Return<'_> {
     fn apex(&self) -> [f64; 3] {
         let Elasticity { lambda, mu, .. } = self.surface.elasticity;
         let free = self.principal.free;
-        let target = if free.is_none() && self.surface.tension.is_finite() { self.surface.tension } else { 0.0 };
+        let target =
+            if free.is_none() && self.surface.planes.tension.is_finite() { self.surface.planes.tension } else { 0.0 };
         let bears = |k: usize| free != Some(k);
         let off = [0, 1, 2].map(|k| if bears(k) { self.principal.sorted[k] - target } else { 0.0 });
         let axes = if free.is_some() { 2.0 } else { 3.0 };
@@ -380,9 +464,12 @@ fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], scale: f64) -> O
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use enmm_case::{Envelope, HoekBrown};
 
-    fn rock(friction_deg: f64, dilation_deg: f64, tension: Option<f64>, plane_stress: bool) -> MohrCoulomb {
+    use super::*;
+    use crate::mechanics::hoek_brown;
+
+    fn rock(friction_deg: f64, dilation_deg: f64, tension: Option<f64>, plane_stress: bool) -> YieldingRock {
         let tangent = |degrees: f64| degrees.to_radians().tan();
         let elasticity = if plane_stress {
             Elasticity::plane_stress(1e9, 0.3, 2500.0)
@@ -390,11 +477,12 @@ mod tests {
             Elasticity::plane_strain(1e9, 0.3, 2500.0)
         };
         let (friction, dilation) = (tangent(friction_deg), tangent(dilation_deg));
-        MohrCoulomb { elasticity, plane_stress, friction, cohesion: 1e6, dilation, tension }
+        let criterion = Criterion::MohrCoulomb(MohrCoulomb { friction, cohesion: 1e6, dilation, tension });
+        YieldingRock { elasticity, plane_stress, criterion }
     }
 
     /// Stress after the return of a trial stress.
-    fn returned(strength: &MohrCoulomb, trial: [f64; 4]) -> ([f64; 4], PlasticStrain) {
+    fn returned(strength: &YieldingRock, trial: [f64; 4]) -> ([f64; 4], PlasticStrain) {
         let flow = strength.surface(1.0).flow(trial).unwrap_or_default();
         let relief = strength.relief(&flow);
         ([0, 1, 2, 3].map(|k| trial[k] - relief[k]), flow)
@@ -450,6 +538,90 @@ mod tests {
             assert!(surface.excess(stress) <= 1e-9 * 6e7, "{strength:?} {trial:?} {stress:?}");
             assert!(surface.flow(stress).is_none(), "{strength:?} {trial:?} {stress:?}");
             assert!(double_dot(&stress, &flow) >= -1e-9 * 6e7 * equivalent_strain(&flow), "{trial:?} {flow:?}");
+            yielded += u32::from(flow != [0.0; 4]);
+        }
+        assert!(yielded > 100_000, "{yielded}");
+    }
+
+    fn mass(gsi: f64, mi: f64, dilation: f64, tension: Option<f64>) -> (YieldingRock, Envelope) {
+        let envelope = HoekBrown { sigma_ci: 30e6, mi, gsi, d: 0.0, associated: false }.envelope();
+        let tension = tension.map(|share| share * envelope.tension());
+        let criterion = Criterion::HoekBrown(hoek_brown::HoekBrown::new(envelope, dilation, tension));
+        let elasticity = Elasticity::plane_strain(1e9, 0.3, 2500.0);
+        (YieldingRock { elasticity, plane_stress: false, criterion }, envelope)
+    }
+
+    /// Triaxial compression with the axis in the plane or out of it, and extension: at every confining pressure the
+    /// largest pressure is that of the formula, to one part in a million.
+    #[test]
+    fn triaxial_points_are_those_of_hoek_and_brown() {
+        for (gsi, mi) in [(5.0, 2.0), (45.0, 10.0), (80.0, 25.0), (100.0, 7.0)] {
+            let (strength, envelope) = mass(gsi, mi, 0.0, None);
+            for minor in [-0.5 * envelope.tension(), 0.0, 1e4, 3e5, 5e6, 60e6, 3e9] {
+                let major = envelope.major(minor).unwrap();
+                // Trial stresses from which flow without dilation leads to (−minor, −major).
+                for beyond in [1e-3, 0.3, 20.0] {
+                    let more = beyond * major;
+                    let compression = [-minor + 2.0 * more, -major - 4.0 * more, -minor + 2.0 * more];
+                    let extension = [-minor + 4.0 * more, -major - 2.0 * more, -major - 2.0 * more];
+                    let middle = [-minor + more, -major - more, -0.4 * minor - 0.6 * major];
+                    for [a, b, c] in [compression, extension, middle] {
+                        for trial in [[a, b, 0.0, c], [a, c, 0.0, b], [b, c, 0.0, a]] {
+                            let (stress, _) = returned(&strength, trial);
+                            let sorted = Principal::of(stress, false).sorted;
+                            let formula = envelope.major(-sorted[0]).unwrap();
+                            assert!((sorted[2] / -formula - 1.0).abs() < 1e-6, "{gsi} {minor} {trial:?} {stress:?}");
+                            let small = 1e-6 * (major + more);
+                            assert!((sorted[0] + minor).abs() < small, "{gsi} {minor} {trial:?} {stress:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A reduced envelope has the same normal stress and a share of the shear strength on every plane: the circles of
+    /// stresses on it touch τ(σ)/F.
+    #[test]
+    fn a_factor_acts_on_the_shear_strength_of_every_plane() {
+        for factor in [0.3, 0.8, 1.0, 2.5] {
+            let (strength, envelope) = mass(30.0, 8.0, 0.0, None);
+            for k in 0..40 {
+                let at = envelope.tangent(1e-3 * 1.3f64.powi(k));
+                let centre = at.normal + factor * factor * at.shear * at.friction;
+                let touching = (at.normal - centre).hypot(factor * at.shear);
+                let trial = [3.0 * touching - centre, -3.0 * touching - centre, 0.0, -centre];
+                let relief = strength.relief(&strength.surface(factor).flow(trial).unwrap());
+                let radius = 3.0 * touching - 0.5 * (relief[0] - relief[1]);
+                assert!((radius / touching - 1.0).abs() < 1e-9, "{factor} {k}: {radius} {touching}");
+            }
+        }
+    }
+
+    /// The same claims as for flat planes, for flow without dilation, with some, and associated flow, with and without
+    /// a tensile strength below the end of the envelope, at several factors.
+    #[test]
+    fn any_trial_stress_ends_on_the_surface_of_hoek_and_brown() {
+        let mut seed = 11;
+        let mut yielded = 0;
+        for case in 0..200_000 {
+            let dilation = [0.0, dice(&mut seed), f64::INFINITY][case % 3];
+            let tension = (case % 4 == 0).then(|| if case % 8 == 0 { 0.0 } else { dice(&mut seed) });
+            let (gsi, mi) = (1.0 + 99.0 * dice(&mut seed), 1.0 + 49.0 * dice(&mut seed));
+            let (strength, envelope) = mass(gsi, mi, dilation, tension);
+            let factor = [1.0, 0.6, 3.0, 1000.0][case / 3 % 4];
+            let size = 4.0 * (envelope.compression() + envelope.tension()) * libm::pow(10.0, 2.0 * dice(&mut seed));
+            let mut number = || (2.0 * dice(&mut seed) - 1.0) * size;
+            let (centre, own) = (number(), [number(), number(), number(), number()]);
+            let trial = [own[0] + centre, own[1] + centre, own[2], own[3] + centre];
+            let surface = strength.surface(factor);
+            let flow = surface.flow(trial).unwrap_or_default();
+            let relief = strength.relief(&flow);
+            let stress = [0, 1, 2, 3].map(|k| trial[k] - relief[k]);
+            let about = || format!("{gsi} {mi} {dilation} {tension:?} {factor} {trial:?} {stress:?}");
+            assert!(surface.excess(stress) <= 1e-9 * size, "{}", about());
+            assert!(surface.flow(stress).is_none(), "{}", about());
+            assert!(double_dot(&stress, &flow) >= -1e-9 * size * equivalent_strain(&flow), "{}", about());
             yielded += u32::from(flow != [0.0; 4]);
         }
         assert!(yielded > 100_000, "{yielded}");

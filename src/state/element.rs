@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::cover::ElementId;
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, Elasticity, MohrCoulomb, PlasticStrain, PreStress, Strained, equivalent_strain};
+use crate::mechanics::{Deformation, Elasticity, PlasticStrain, PreStress, Strained, YieldingRock, equivalent_strain};
 
 use super::{Model, State};
 
@@ -57,7 +57,7 @@ impl Model {
     }
 
     /// Strength of an element; none when it never yields.
-    pub fn strength_of(&self, element: ElementId) -> Option<&MohrCoulomb> {
+    pub fn strength_of(&self, element: ElementId) -> Option<&YieldingRock> {
         self.strengths[self.element_rock[element] as usize].as_ref()
     }
 
@@ -79,7 +79,7 @@ impl Model {
         state: &State,
         element: ElementId,
         felt: &Felt,
-    ) -> Option<(&MohrCoulomb, Strained, [PlasticStrain; 2])> {
+    ) -> Option<(&YieldingRock, Strained, [PlasticStrain; 2])> {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;

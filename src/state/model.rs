@@ -4,8 +4,8 @@ use crate::contact::{BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
-    Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, MohrCoulomb, PreStress, Record,
-    StressField,
+    Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, PreStress, Record, StressField,
+    YieldingRock,
 };
 
 use super::{OtherIntegrator, SelectionBuffers};
@@ -152,7 +152,7 @@ pub struct Model {
     /// In-situ stress of each element (Pa); empty when there is none.
     pub pre_stress: Vec<PreStress>,
     /// Strength of each rock; none for one that never yields.
-    pub strengths: Vec<Option<MohrCoulomb>>,
+    pub strengths: Vec<Option<YieldingRock>>,
     /// Elements of rock that yields whose volume changes are averaged.
     pub averaging: Averaging,
     /// In-situ stress out of the plane of each element (Pa); empty when there is none or no rock yields.

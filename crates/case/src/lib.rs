@@ -5,6 +5,7 @@ mod bolt;
 mod expand;
 mod fingerprint;
 mod ground;
+mod hoek_brown;
 mod in_situ;
 mod joint_set;
 pub mod key;
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use bolt::{Anchorage, Bolt, BoltPattern, Support};
 pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
+pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
 pub use pictures::{PictureKind, Pictures};
@@ -215,7 +217,7 @@ pub enum Plane {
     Stress,
 }
 
-/// An elastic rock; with `friction_deg` or `cohesion` it yields by Mohr–Coulomb.
+/// An elastic rock; with `friction_deg` or `cohesion` it yields by Mohr–Coulomb, with `hoek_brown` by Hoek–Brown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -232,16 +234,19 @@ pub struct Rock {
     /// Plane strain or plane stress.
     #[serde(default)]
     pub plane: Plane,
-    /// Friction angle (degrees); with neither this nor `cohesion` the rock never yields.
+    /// Friction angle (degrees); with neither this nor `cohesion` nor `hoek_brown` the rock never yields.
     #[serde(default)]
     pub friction_deg: Option<f64>,
     /// Cohesion (Pa).
     #[serde(default)]
     pub cohesion: Option<f64>,
-    /// Dilation angle (degrees); default: `friction_deg` (associated flow).
+    /// Generalized Hoek–Brown strength, in place of `friction_deg` and `cohesion`; needs plane strain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hoek_brown: Option<HoekBrown>,
+    /// Dilation angle (degrees); default: `friction_deg` (associated flow), or 0 with `hoek_brown`.
     #[serde(default)]
     pub dilation_deg: Option<f64>,
-    /// Tensile strength (Pa); default: the apex of the Mohr–Coulomb surface.
+    /// Tensile strength (Pa); default: the apex of the Mohr–Coulomb surface, or s·σci/mb of Hoek–Brown.
     #[serde(default)]
     pub tension: Option<f64>,
     /// Polygon (m): elements whose centroid lies inside are of this rock.
@@ -262,7 +267,13 @@ impl Case {
 impl Rock {
     /// Whether the rock has a strength that can be exceeded.
     pub fn yields(&self) -> bool {
-        self.friction_deg.is_some() || self.cohesion.is_some()
+        self.friction_deg.is_some() || self.cohesion.is_some() || self.hoek_brown.is_some()
+    }
+
+    /// Whether the rock swells when it yields.
+    pub fn dilates(&self) -> bool {
+        let angle = self.dilation_deg.or(self.friction_deg).unwrap_or_default();
+        angle > 0.0 || self.hoek_brown.is_some_and(|mass| mass.associated)
     }
 }
 

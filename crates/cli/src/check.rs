@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use enmm::model::Simulation;
 use enmm_run::check::Check;
+use enmm_run::rock_mass::RockMass;
 use enmm_run::{Folder, Observer};
 
 use crate::case::CaseArguments;
@@ -65,6 +66,19 @@ fn memory(found: &Check) -> String {
     format!("{all}: model {model}, state 2 × {state}, buffers {buffers}")
 }
 
+/// A rock mass by Hoek–Brown, and its equivalent strength.
+fn rock_mass(mass: &RockMass) -> String {
+    let RockMass { rock, mb, s, a, height, .. } = mass;
+    let [compression, tension, minor, cohesion] =
+        [mass.compression, mass.tension, mass.minor_max, mass.cohesion].map(|stress| 1e-3 * stress);
+    format!(
+        "rock.{rock}: Hoek–Brown mb {mb:.4}, s {s:.4e}, a {a:.4}; uniaxial strength {compression:.4} kPa, tensile \
+         strength {tension:.4} kPa; equivalent c {cohesion:.4} kPa, φ {:.3}° for σ₃ up to {minor:.4} kPa (slope of \
+         {height:.6} m)",
+        mass.friction_deg
+    )
+}
+
 fn json_line(found: &Check) -> String {
     serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }
@@ -97,6 +111,7 @@ fn table(found: &Check) -> String {
         ("memory (MB)", memory(found)),
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<21} {value}")).collect();
+    lines.extend(found.rock_masses.iter().map(rock_mass));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")

@@ -39,12 +39,14 @@ pub fn refusal(case: &Case) -> Option<Invalid> {
 
 fn unknown(case: &Case) -> Option<String> {
     let table = |name: &str, present: bool| present.then(|| format!("[[{name}]]"));
-    let yields = case.rocks.iter().find(|(_, rock)| rock.friction_deg.is_some() || rock.cohesion.is_some());
+    let yields = case.rocks.iter().find(|(_, rock)| rock.yields());
     let closing = case.joint_laws.iter().find(|(_, law)| law.kind == JointLawKind::BartonBandis);
     table("quiet", !case.quiets.is_empty())
         .or_else(|| table("free_field", !case.free_fields.is_empty()))
         .or_else(|| table("bolt", !case.bolts.is_empty()))
-        .or_else(|| yields.map(|(name, _)| format!("rock that yields (rock.{name}: friction_deg, cohesion)")))
+        .or_else(|| {
+            yields.map(|(name, _)| format!("rock that yields (rock.{name}: friction_deg, cohesion, hoek_brown)"))
+        })
         .or_else(|| closing.map(|(name, _)| format!("Barton–Bandis joints (joint_law.{name}.kind)")))
 }
 

@@ -10,7 +10,8 @@ fn unknown_key_names_the_nearest_known_key() {
         "young = 5e10",
         "yung = 5e10",
         "LINE: rock.granite.yung: unknown key \"yung\", did you mean `young`? Known keys: blocks, cohesion, \
-         density, dilation_deg, friction_deg, plane, poisson, region, tension, young; rename or remove it",
+         density, dilation_deg, friction_deg, hoek_brown, plane, poisson, region, tension, young; rename or remove \
+         it",
     );
 }
 
@@ -547,4 +548,33 @@ fn error_of_the_builder_is_located_at_the_longest_known_key() {
         let expected = format!("slope.toml:{}: {key}: crosses itself", line(part));
         assert_eq!(source.locate(key, "crosses itself").to_string(), expected);
     }
+}
+
+/// Strengths of Hoek and Brown: ranges, and what does not go together.
+#[test]
+fn hoek_brown_says_its_limits_and_what_excludes_it() {
+    let mass = "sigma_ci = 50e6, mi = 10.0, gsi = 45.0, d = 0.7, associated = true }";
+    for (from, to, key, message) in [
+        ("sigma_ci = 50e6", "sigma_ci = 50", "hoek_brown.sigma_ci", "is 50 Pa, must be at least 10000 and at most"),
+        (
+            "mi = 10.0",
+            "mi = 0.5",
+            "hoek_brown.mi",
+            "is 0.5, must be at least 1 and at most 50; intact rock has 4 to 35",
+        ),
+        ("gsi = 45.0", "gsi = 101", "hoek_brown.gsi", "is 101, must be at least 1 and at most 100"),
+        ("d = 0.7", "d = 1.1", "hoek_brown.d", "is 1.1, must be at least 0 and at most 1; 0 for undisturbed rock"),
+        ("gsi = 45.0, ", "", "hoek_brown", "gsi"),
+        (mass, &format!("{mass}\ncohesion = 1e5"), "cohesion", "is 100000 beside hoek_brown, at most one of both"),
+        (mass, &format!("{mass}\nfriction_deg = 30"), "friction_deg", "is 30 beside hoek_brown"),
+        (mass, &format!("{mass}\nplane = \"stress\""), "plane", "hoek_brown needs plane strain"),
+        (mass, &format!("{mass}\ndilation_deg = 5"), "dilation_deg", "has no effect beside hoek_brown.associated"),
+        (mass, &format!("{mass}\ntension = 9e9"), "tension", "the Hoek–Brown surface ends at s·sigma_ci/mb"),
+    ] {
+        let error = error_of(&edited(from, to));
+        assert!(error.contains(&format!("rock.mass.{key}")) && error.contains(message), "{to}: {error}");
+    }
+    let error =
+        error_of(&edited("young = 1e9\npoisson = 0.3\nplane", "young = 1e9\ntension = 1e5\npoisson = 0.3\nplane"));
+    assert!(error.contains("add friction_deg, cohesion or hoek_brown, or remove it"), "{error}");
 }

@@ -10,6 +10,7 @@ use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::rock_mass::{RockMass, rock_masses};
 
 /// Share of a full cover's mass below which a cover counts as small.
 const SMALL_COVER: f64 = 1e-3;
@@ -61,6 +62,9 @@ pub struct Check {
     pub trace_ends: Vec<TraceEndRecord>,
     /// Blocks below the least area.
     pub crumbs: Vec<CrumbRecord>,
+    /// Rock that yields by Hoek–Brown.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rock_masses: Vec<RockMass>,
     /// What the build has changed in the drawing.
     pub notes: Vec<String>,
     /// Warnings for the user.
@@ -100,6 +104,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         memory: memory(simulation, &state, &workspace),
         trace_ends: TraceEndRecord::all(built),
         crumbs: CrumbRecord::all(built),
+        rock_masses: rock_masses(simulation.case()),
         notes: built.notes.clone(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }

@@ -12,6 +12,7 @@ pub mod fos;
 mod found;
 pub mod history;
 mod mechanism_page;
+pub mod rock_mass;
 mod run;
 pub mod summary;
 pub mod support;

@@ -145,7 +145,7 @@ fn model(
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
-        strengths: case.rocks.values().map(rock::strength).collect(),
+        strengths: case.rocks.values().map(rock::yielding).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
         laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),

@@ -2,7 +2,7 @@
 
 use crate::cover::{Covers, ElementId};
 use crate::geometry::polygon;
-use crate::mechanics::{Averaging, Elasticity, MohrCoulomb, PlasticStrain};
+use crate::mechanics::{Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, YieldingRock};
 use crate::model::case::{Case, Invalid, Plane, Rock};
 use crate::state::Model;
 
@@ -17,21 +17,29 @@ pub(super) fn elasticity(rock: &Rock) -> Elasticity {
     }
 }
 
-/// Strength of a rock of the case; none when it gives neither friction nor cohesion.
-pub(super) fn strength(rock: &Rock) -> Option<MohrCoulomb> {
-    if !rock.yields() {
-        return None;
-    }
+/// Elastic constants and strength of a rock of the case; none when it never yields.
+pub(super) fn yielding(rock: &Rock) -> Option<YieldingRock> {
+    let plane_stress = rock.plane == Plane::Stress;
+    rock.yields().then(|| YieldingRock { elasticity: elasticity(rock), plane_stress, criterion: criterion(rock) })
+}
+
+fn criterion(rock: &Rock) -> Criterion {
     let tangent = |degrees: f64| libm::tan(degrees.to_radians());
-    let friction = rock.friction_deg.unwrap_or(0.0);
-    Some(MohrCoulomb {
-        elasticity: elasticity(rock),
-        plane_stress: rock.plane == Plane::Stress,
-        friction: tangent(friction),
-        cohesion: rock.cohesion.unwrap_or(0.0),
-        dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
-        tension: rock.tension,
-    })
+    match &rock.hoek_brown {
+        Some(mass) => {
+            let dilation = if mass.associated { f64::INFINITY } else { tangent(rock.dilation_deg.unwrap_or(0.0)) };
+            Criterion::HoekBrown(HoekBrown::new(mass.envelope(), dilation, rock.tension))
+        }
+        None => {
+            let friction = rock.friction_deg.unwrap_or(0.0);
+            Criterion::MohrCoulomb(MohrCoulomb {
+                friction: tangent(friction),
+                cohesion: rock.cohesion.unwrap_or(0.0),
+                dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
+                tension: rock.tension,
+            })
+        }
+    }
 }
 
 /// Patches of the elements that can yield.
@@ -71,7 +79,7 @@ pub(super) fn overstressed(case: &Case, model: &Model) -> Option<String> {
     let excess = |e: ElementId| {
         let strength = model.strength_of(e)?;
         let stress = model.pre_stress_and_out(e);
-        let size = stress.iter().fold(strength.cohesion, |a, s| a.max(s.abs()));
+        let size = stress.iter().fold(strength.least_stress(1.0), |a, s| a.max(s.abs()));
         let excess = strength.surface(1.0).excess(stress);
         (excess > 1e-9 * size).then_some((e, excess))
     };
@@ -103,8 +111,7 @@ const UNSEEN: [f64; 2] = [3.0, 2.0];
 /// By how much (%) factors of safety of a rock come out too high with elements of a tenth of a height (m).
 fn too_strong(case: &Case, rock: &Rock, height: f64) -> f64 {
     let weight = rock.density * libm::hypot(case.gravity.x, case.gravity.y) * height;
-    let dilates = rock.dilation_deg.or(rock.friction_deg).is_some_and(|degrees| degrees > 0.0);
-    TOO_STRONG[usize::from(dilates)] + STIFFER * libm::log10(rock.young / weight / SOFT).max(0.0)
+    TOO_STRONG[usize::from(rock.dilates())] + STIFFER * libm::log10(rock.young / weight / SOFT).max(0.0)
 }
 
 /// Warns that factors of safety of rock that yields come out too high on a coarse mesh (theory, section 15).

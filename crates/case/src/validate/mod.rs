@@ -9,6 +9,7 @@ mod joints;
 mod loads;
 mod ports;
 mod random;
+mod rock_strength;
 mod stages;
 
 use thiserror::Error;
@@ -214,33 +215,11 @@ fn rock(key: &Key, rock: &Rock) -> Check {
         Plane::Stress => Range::above(-1.0).to(0.5),
     };
     number(key, "poisson", rock.poisson, poisson, "", "rock has 0.1 to 0.4")?;
-    strength(key, rock)?;
+    rock_strength::validate_strength(key, rock)?;
     if let Some(ring) = &rock.region {
         region(&key.field("region"), ring)?;
     }
     points(&key.field("blocks"), &rock.blocks, 0, "a list of blocks")
-}
-
-/// Strength of rock: signs and ranges, and what makes no sense together.
-fn strength(key: &Key, rock: &Rock) -> Check {
-    let free = "leave out friction_deg and cohesion for rock that never yields";
-    optional(key, "friction_deg", rock.friction_deg, Law::ANGLE, "degrees", free)?;
-    optional(key, "cohesion", rock.cohesion, Law::STRENGTH, "Pa", free)?;
-    let (friction, cohesion) = (rock.friction_deg.unwrap_or(0.0), rock.cohesion.unwrap_or(0.0));
-    if rock.yields() && friction == 0.0 && cohesion == 0.0 {
-        return fail(key, format!("has friction_deg 0 and cohesion 0, one must be greater than 0; {free}"));
-    }
-    for (name, value) in [("dilation_deg", rock.dilation_deg), ("tension", rock.tension)] {
-        if value.is_some() && !rock.yields() {
-            let message = "has no effect on rock that never yields; add friction_deg or cohesion, or remove it";
-            return fail(&key.field(name), message);
-        }
-    }
-    let hint = "more than friction_deg would make energy; leave it out for friction_deg";
-    optional(key, "dilation_deg", rock.dilation_deg, Range::from(0.0).to(friction), "degrees", hint)?;
-    let apex = if friction > 0.0 { cohesion / libm::tan(friction.to_radians()) } else { Law::STRENGTH_MAX };
-    let hint = "the shear planes end at cohesion/tan(friction_deg); leave it out for that";
-    optional(key, "tension", rock.tension, Range::from(0.0).to(apex), "Pa", hint)
 }
 
 fn joint_law(key: &Key, law: &JointLaw) -> Check {

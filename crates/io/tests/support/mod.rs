@@ -250,6 +250,13 @@ cohesion = 2e4
 dilation_deg = 5.0
 tension = 1e4
 region = [[0.0, 3.0], [10.0, 3.0], [10.0, 5.0]]
+
+[rock.mass]
+density = 2600.0
+young = 5e9
+poisson = 0.25
+hoek_brown = { sigma_ci = 50e6, mi = 10.0, gsi = 45.0, d = 0.7, associated = true }
+blocks = [[1.0, 4.0]]
 "#;
 
 /// Returns the valid case with `from` replaced by `to`; `from` must occur.

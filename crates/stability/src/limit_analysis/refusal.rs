@@ -44,7 +44,8 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     }
     // No element takes part, so that none yields, and no doubt about elements that yield has a place.
     for rock in case.rocks.values_mut() {
-        (rock.friction_deg, rock.cohesion, rock.dilation_deg, rock.tension) = (None, None, None, None);
+        (rock.friction_deg, rock.cohesion, rock.hoek_brown) = (None, None, None);
+        (rock.dilation_deg, rock.tension) = (None, None);
     }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
@@ -60,8 +61,9 @@ fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
     if let Some((name, rock)) = case.rocks.iter().find(|(_, rock)| rock.yields()) {
         let key = Key::root().field("rock").field(name);
         let (field, value) = match (rock.friction_deg, rock.cohesion) {
-            (Some(friction), _) => ("friction_deg", friction),
-            (None, cohesion) => ("cohesion", cohesion.unwrap_or_default()),
+            (Some(friction), _) => ("friction_deg", friction.to_string()),
+            (None, Some(cohesion)) => ("cohesion", cohesion.to_string()),
+            (None, None) => ("hoek_brown", "given".to_owned()),
         };
         let message = format!(
             "is {value}, but limit analysis of rigid blocks knows no rock that yields: leave out its strength, or \

@@ -37,8 +37,8 @@ pub enum Edge {
 pub struct Patch {
     /// Corners.
     pub corners: [Point; 3],
-    /// Strength; none for rock that never yields.
-    pub strength: Option<Strength>,
+    /// Strengths that all hold, by the kind of rock in [`Rock::kinds`].
+    pub kind: usize,
     /// Weight and inertia over the area.
     pub body: Vector,
     /// Whether it is held altogether.
@@ -61,6 +61,9 @@ pub struct Bar {
 /// Triangles and bolts.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rock {
+    /// Strengths of each kind of rock, all of which hold: one of Mohr–Coulomb, several lines along an envelope, none
+    /// where it never yields.
+    pub kinds: Vec<Vec<Strength>>,
     /// Triangles.
     pub patches: Vec<Patch>,
     /// Bolts.
@@ -101,7 +104,7 @@ pub fn stress(triangle: usize, corner: usize) -> usize {
 /// A program with the stresses and their limits, and the force of each bolt.
 pub fn begin(rock: &Rock, strength: f64) -> (Conic, Vec<Sum>) {
     let mut program = Conic::new(stress(rock.patches.len(), 0));
-    yields(&mut program, &rock.patches, strength);
+    yields(&mut program, rock, strength);
     let pulls = rock.bars.iter().map(|bar| pull(&mut program, bar)).collect();
     (program, pulls)
 }
@@ -130,12 +133,12 @@ pub fn turned([x, y]: [Sum; 2], normal: Vector) -> [Sum; 2] {
 }
 
 /// Limits of all stresses (Eqs. 88, 89), and of the search for the missing cohesion.
-fn yields(program: &mut Conic, patches: &[Patch], strength: f64) {
+fn yields(program: &mut Conic, rock: &Rock, strength: f64) {
     program.is_positive(Sum { terms: vec![(MISSING, 1.0)], constant: SPARE }.into());
-    for (t, patch) in patches.iter().enumerate().filter(|(_, patch)| !patch.is_held) {
+    for (t, patch) in rock.patches.iter().enumerate().filter(|(_, patch)| !patch.is_held) {
         for corner in 0..3 {
-            if let Some(rock) = patch.strength {
-                yields_at(program, stress(t, corner), rock, strength);
+            for &line in &rock.kinds[patch.kind] {
+                yields_at(program, stress(t, corner), line, strength);
             }
         }
     }

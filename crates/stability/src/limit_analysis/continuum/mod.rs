@@ -10,11 +10,12 @@ mod marks;
 mod mesh;
 mod search;
 mod sizes;
+mod strengths;
 mod upper;
 
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::assemble::outlines;
-use enmm::model::case::{self, Case, Invalid};
+use enmm::model::case::{Case, Invalid};
 use enmm::model::tables::BlockId;
 use enmm::model::{BoltSegment, Simulation};
 
@@ -27,6 +28,7 @@ use marks::Marks;
 use mesh::Mesh;
 use search::{Proof, Proven, prove};
 use sizes::Sizes;
+use strengths::strengths;
 use upper::Controls;
 
 /// Most triangles of a mesh, unless it is told otherwise.
@@ -94,8 +96,8 @@ struct Ground {
     simulation: Simulation,
     loads: Loads,
     is_held: Vec<bool>,
-    /// Strength of each rock; none for one that never yields.
-    kinds: Vec<Option<Strength>>,
+    /// Strengths of each rock for the lower and for the upper bound; none for one that never yields.
+    kinds: [Vec<Vec<Strength>>; 2],
     /// Length (m) and stress (Pa) that count as one.
     units: [f64; 2],
     area: f64,
@@ -110,7 +112,8 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     let ground = Ground::new(simulation, case)?;
     let found = ground.upper(triangles)?;
     let turning = ground.turning(&found.sizes);
-    let stresses = ground.rock(&ground.mesh(&found.sizes.for_stress(), triangles / 3, &turning)?.parted());
+    let mesh = ground.mesh(&found.sizes.for_stress(), triangles / 3, &turning)?.parted();
+    let stresses = ground.rock(&mesh, Proof::Equilibrium);
     let unsolved = |status| unsolved(stresses.patches.len(), status);
     let start = found.proven.factor.strength() * (1.0 + AHEAD);
     let lower = prove(|x| lower::program(&stresses, x).solve(), start, Proof::Equilibrium).map_err(unsolved)?;
@@ -189,7 +192,8 @@ impl Ground {
         let stress = (densest * loads.acceleration.norm() * length).max(loads.greatest());
         let stress = if stress > 0.0 { stress } else { 1.0 };
         let is_held = refusal::held_blocks(&simulation);
-        let kinds = case.rocks.values().map(|rock| strength(rock, stress)).collect();
+        let of_rocks = |proof| case.rocks.values().map(|rock| strengths(rock, proof, stress, stress)).collect();
+        let kinds = [Proof::Equilibrium, Proof::Mechanism].map(of_rocks);
         Ok(Self { kinds, units: [length, stress], drawing, loads, is_held, area, simulation })
     }
 
@@ -209,7 +213,7 @@ impl Ground {
 
     fn upper_on(&self, sizes: Sizes, triangles: usize, start: f64) -> Result<Upper, BoundError> {
         let mesh = self.mesh(&sizes, triangles, &[])?;
-        let rock = self.rock(&mesh);
+        let rock = self.rock(&mesh, Proof::Mechanism);
         let controls = Controls::new(&rock.patches);
         let solve = |x| upper::program(&rock, &controls, x).solve();
         let proven = prove(solve, start, Proof::Mechanism).map_err(|status| unsolved(rock.patches.len(), status))?;
@@ -276,10 +280,12 @@ impl Ground {
     }
 
     /// Triangles and bolts with all that acts on them.
-    fn rock(&self, mesh: &Mesh) -> Rock {
+    fn rock(&self, mesh: &Mesh, proof: Proof) -> Rock {
         let patches = self.patches(mesh);
         let bars = self.bars(mesh, &patches);
-        Rock { patches, bars }
+        let [inner, outer] = &self.kinds;
+        let kinds = if proof == Proof::Equilibrium { inner.clone() } else { outer.clone() };
+        Rock { kinds, patches, bars }
     }
 
     /// The bolts that are installed, those within one block included.
@@ -311,12 +317,12 @@ impl Ground {
         let [length, stress] = self.units;
         let patch = |t: usize| {
             let block = mesh.triangles[t].block;
-            let rock = self.kind(block, mesh.centroid(t));
+            let kind = self.kind(block, mesh.centroid(t));
             let model = self.simulation.model();
             Patch {
                 corners: mesh.corners(t).map(|p| p / length),
-                strength: self.kinds[rock],
-                body: self.loads.acceleration * (model.rocks[rock].density * length / stress),
+                kind,
+                body: self.loads.acceleration * (model.rocks[kind].density * length / stress),
                 is_held: self.is_held[block.number() as usize],
                 edges: [0, 1, 2].map(|k| self.edge(mesh, t, k)),
             }
@@ -364,13 +370,4 @@ impl Ground {
         let background = || rocks().find(|(_, rock)| rock.region.is_none() && rock.blocks.is_empty());
         by_block.or_else(by_region).or_else(background).map_or(0, |(k, _)| k)
     }
-}
-
-/// Strength of a rock in a unit of stress (Pa); none when it gives neither friction nor cohesion.
-fn strength(rock: &case::Rock, unit: f64) -> Option<Strength> {
-    rock.yields().then(|| Strength {
-        friction: libm::tan(rock.friction_deg.unwrap_or_default().to_radians()),
-        cohesion: rock.cohesion.unwrap_or_default() / unit,
-        tension: rock.tension.map(|tension| tension / unit),
-    })
 }

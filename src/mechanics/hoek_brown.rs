@@ -1,0 +1,280 @@
+//! The curved part of the yield surface of Hoek–Brown rock and the return to it (Eqs. 56a, 57a, 57b).
+
+use enmm_case::{Envelope, Tangent};
+
+use super::Elasticity;
+
+/// Points of the table of an envelope: neighbouring circles differ by a sixth in their size, so that chords between
+/// them hold all but a few thousandths of the strength.
+const POINTS: usize = 65;
+/// Sizes of the first and the last circle in the table, relative to the uniaxial compressive strength and to the
+/// strength under a pressure of σci.
+const ENDS: [f64; 2] = [0.02, 2.0];
+/// Most circles that a search looks at by regula falsi, of which it needs ten, and in all: halving ends earlier.
+const FALSI: usize = 50;
+const TRIED_MAX: usize = 1200;
+/// Rest of an equation, relative to the largest trial stress, at which it counts as solved: rounding, so that a stress
+/// that is a small part of the trial stress is on the surface too.
+const SOLVED: f64 = 1e-14;
+
+/// Hoek–Brown strength of a rock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HoekBrown {
+    envelope: Envelope,
+    /// Sine of the dilation angle; one for associated flow.
+    sin_dilation: f64,
+    /// Tensile strength (Pa); `None` for the end of the envelope.
+    tension: Option<f64>,
+    /// v of some points of the envelope, and its tangents there.
+    table: [(f64, Tangent); POINTS],
+}
+
+/// The largest circle of Mohr at its centre: it touches the envelope.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Circle {
+    /// v of the envelope.
+    v: f64,
+    /// Mean of the largest and the smallest stress (Pa), compression positive.
+    pub centre: f64,
+    /// Half of their difference (Pa).
+    pub radius: f64,
+    /// Sine of the friction angle where it touches.
+    pub sin_friction: f64,
+}
+
+/// The envelope with its shear strength times a factor (Eq. 57a).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    envelope: Envelope,
+    factor: f64,
+    sin_dilation: f64,
+    /// Tensile strength (Pa).
+    pub tension: f64,
+    /// The circle whose largest stress is the tensile strength.
+    pub first: Circle,
+    table: [Circle; POINTS],
+}
+
+/// The return of a trial stress, in principal stresses with the largest first, to a curve.
+pub struct Onto<'a> {
+    /// The curve.
+    pub curve: &'a Curve,
+    /// Elastic constants in plane strain.
+    pub rock: &'a Elasticity,
+    /// The trial stress (Pa).
+    pub trial: [f64; 3],
+    /// Stress (Pa) beyond the curve that still counts as on it.
+    pub tolerance: f64,
+}
+
+/// Where a return to the face leaves the middle stress.
+enum Order {
+    Kept,
+    MiddleBelow,
+    MiddleAbove,
+}
+
+impl HoekBrown {
+    /// Strength with a tangent of the dilation angle, infinite for associated flow, and a tensile strength (Pa).
+    pub fn new(envelope: Envelope, dilation: f64, tension: Option<f64>) -> Self {
+        let sin_dilation = if dilation.is_finite() { dilation / (1.0 + dilation * dilation).sqrt() } else { 1.0 };
+        let [low, high] = [ENDS[0] * envelope.place(0.0), ENDS[1] * envelope.place(envelope.sigma_ci)];
+        let ratio = libm::pow(high / low, 1.0 / (POINTS - 2) as f64);
+        let mut v = 0.0;
+        let table = std::array::from_fn(|k| {
+            v = if k == 1 { low } else { v * ratio };
+            (v, envelope.tangent(v))
+        });
+        Self { envelope, sin_dilation, tension, table }
+    }
+
+    /// The envelope with its shear strength and the given tensile strength times a factor.
+    pub fn curve(&self, factor: f64) -> Curve {
+        let end = self.envelope.tension();
+        let mut curve = Curve {
+            envelope: self.envelope,
+            factor,
+            sin_dilation: self.sin_dilation,
+            tension: self.tension.map_or(end, |tension| (tension * factor).min(end)),
+            first: Circle::default(),
+            table: self.table.map(|(v, tangent)| Circle::touching(v, &tangent, factor)),
+        };
+        curve.first = curve.table[0];
+        if curve.tension < end {
+            curve.first = curve.root(end, |at| at.ends()[0] - curve.tension).unwrap_or(curve.first);
+        }
+        curve
+    }
+
+    /// Uniaxial compressive strength of the rock mass (Pa).
+    pub fn compression(&self) -> f64 {
+        self.envelope.compression()
+    }
+}
+
+impl Circle {
+    /// The circle that touches the envelope with its shear strength times a factor.
+    fn touching(v: f64, tangent: &Tangent, factor: f64) -> Self {
+        let (shear, friction) = (factor * tangent.shear, factor * tangent.friction);
+        if !friction.is_finite() {
+            return Self { v, centre: tangent.normal, radius: 0.0, sin_friction: 1.0 };
+        }
+        let secant = (1.0 + friction * friction).sqrt();
+        Self { v, centre: tangent.normal + shear * friction, radius: shear * secant, sin_friction: friction / secant }
+    }
+
+    /// Largest and smallest stress (Pa), tension positive.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.radius - self.centre, -self.radius - self.centre]
+    }
+}
+
+impl Curve {
+    /// Sine of the dilation angle on a circle: at most that of its friction angle.
+    pub fn sin_dilation(&self, at: &Circle) -> f64 {
+        self.sin_dilation.min(at.sin_friction)
+    }
+
+    fn circle(&self, v: f64) -> Circle {
+        Circle::touching(v, &self.envelope.tangent(v), self.factor)
+    }
+
+    /// How far (Pa) principal stresses lie beyond the curve, measured as |s₁ − s₃|; of stresses that are far inside, or
+    /// on the side of the tensile strength, a bound of it.
+    pub fn beyond(&self, [largest, smallest]: [f64; 2]) -> f64 {
+        let (centre, radius) = (-0.5 * (largest + smallest), 0.5 * (largest - smallest));
+        let after = self.table.partition_point(|at| at.centre <= centre);
+        let Some(below) = after.checked_sub(1).map(|k| &self.table[k]) else {
+            return 2.0 * radius - 2.0 * self.first.radius;
+        };
+        let inner = self.table.get(after).map_or(below.radius, |above| {
+            below.radius + (above.radius - below.radius) * (centre - below.centre) / (above.centre - below.centre)
+        });
+        let outer = below.radius + below.sin_friction * (centre - below.centre);
+        if radius <= inner {
+            return 2.0 * (radius - inner);
+        }
+        if radius > outer {
+            return 2.0 * (radius - outer);
+        }
+        let largest = largest.abs().max(smallest.abs());
+        let at = self.root(largest, |at| centre - at.centre);
+        2.0 * (radius - at.unwrap_or(self.first).radius)
+    }
+
+    /// The circle at which a quantity that falls from circle to circle is zero; none when it is not positive at the
+    /// first one. `scale` is the stress (Pa) beside which a rest is nothing.
+    fn root(&self, scale: f64, value: impl Fn(&Circle) -> f64) -> Option<Circle> {
+        let enough = SOLVED * scale;
+        let first = self.table.partition_point(|at| at.v <= self.first.v);
+        if value(&self.first).is_nan() || value(&self.first) <= 0.0 {
+            return None;
+        }
+        let after = first + self.table[first..].partition_point(|at| value(at) > 0.0);
+        let low = if after > first { self.table[after - 1] } else { self.first };
+        let mut ends = match self.table.get(after) {
+            Some(high) => [low, *high],
+            None => self.above(low, &value)?,
+        };
+        let (mut values, mut last) = (ends.map(|at| value(&at)), ends.len());
+        for tried in 0..TRIED_MAX {
+            // Regula falsi that lowers the value of an end that stays (N. Anderson and Å. Björck 1973); where it is
+            // slow, halving.
+            let share = if tried < FALSI { values[0] / (values[0] - values[1]) } else { 0.5 };
+            let at = self.circle(ends[0].v + share * (ends[1].v - ends[0].v));
+            let now = value(&at);
+            if now.abs() <= enough || at.v <= ends[0].v || at.v >= ends[1].v {
+                return Some(at);
+            }
+            let side = usize::from(now <= 0.0);
+            if side == last {
+                let share = 1.0 - now / values[side];
+                values[1 - side] *= if share > 0.0 { share } else { 0.5 };
+            }
+            (ends[side], values[side], last) = (at, now, side);
+        }
+        Some(ends[0])
+    }
+
+    /// Two circles beyond the table, one after the other, between which a quantity ceases to be positive.
+    fn above(&self, mut low: Circle, value: &impl Fn(&Circle) -> f64) -> Option<[Circle; 2]> {
+        for _ in 0..TRIED_MAX {
+            let at = self.circle(2.0 * low.v);
+            let now = value(&at);
+            if !now.is_finite() {
+                return None;
+            }
+            if now <= 0.0 {
+                return Some([low, at]);
+            }
+            low = at;
+        }
+        None
+    }
+}
+
+impl Onto<'_> {
+    /// Plastic strain along the sorted axes that brings the trial stress to the curve: to its face, or to an edge where
+    /// the middle stress equals another. None where the trial stress returns to the tensile strength.
+    pub fn flow(&self) -> Option<[f64; 3]> {
+        match self.face() {
+            Some((strain, Order::Kept)) => Some(strain),
+            Some((_, Order::MiddleBelow)) => self.edge(false),
+            Some((_, Order::MiddleAbove)) => self.edge(true),
+            None => self.edge(false).or_else(|| self.edge(true)),
+        }
+    }
+
+    /// Return to the face, where the middle stress's axis does not flow, and where that leaves the middle stress.
+    fn face(&self) -> Option<([f64; 3], Order)> {
+        let [s1, s2, s3] = self.trial;
+        let Elasticity { lambda, mu, .. } = *self.rock;
+        let rate = |at: &Circle| (s1 - s3 - 2.0 * at.radius) / (4.0 * mu);
+        let swells = |at: &Circle| 4.0 * (lambda + mu) * rate(at) * self.curve.sin_dilation(at);
+        let at = self.root(|at| swells(at) - 2.0 * at.centre - (s1 + s3))?;
+        let (rate, sine) = (rate(&at), self.curve.sin_dilation(&at));
+        if rate < -self.tolerance / mu {
+            return None;
+        }
+        let middle = s2 - 2.0 * lambda * sine * rate;
+        let [largest, smallest] = at.ends();
+        let order = match () {
+            () if middle < smallest - self.tolerance => Order::MiddleBelow,
+            () if middle > largest + self.tolerance => Order::MiddleAbove,
+            () => Order::Kept,
+        };
+        Some(([(1.0 + sine) * rate, 0.0, (sine - 1.0) * rate], order))
+    }
+
+    /// Return to the edge where the middle stress equals the largest one (`upper`) or the smallest one.
+    fn edge(&self, upper: bool) -> Option<[f64; 3]> {
+        let [s1, s2, s3] = self.trial;
+        let Elasticity { lambda, mu, .. } = *self.rock;
+        let [largest, smallest] = if upper { [0.5 * (s1 + s2), s3] } else { [s1, 0.5 * (s2 + s3)] };
+        let sine = |at: &Circle| self.curve.sin_dilation(at);
+        let rate = |at: &Circle| {
+            let shared = if upper { 3.0 - sine(at) } else { 3.0 + sine(at) };
+            (largest - smallest - 2.0 * at.radius) / (mu * shared)
+        };
+        let alone = if upper { mu } else { 2.0 * mu };
+        let relief = |at: &Circle| rate(at) * (alone * (1.0 + sine(at)) + 2.0 * lambda * sine(at));
+        let at = self.root(|at| at.ends()[0] - largest + relief(at))?;
+        let (rate, sine) = (rate(&at), sine(&at));
+        let grows = [(1.0 + sine) * rate, (sine - 1.0) * rate];
+        let (strain, against) = if upper {
+            let apart = (s1 - s2) / (2.0 * mu);
+            let middle = 0.5 * (grows[0] - apart);
+            ([0.5 * (grows[0] + apart), middle, grows[1]], -middle)
+        } else {
+            let apart = (s2 - s3) / (2.0 * mu);
+            let middle = 0.5 * (grows[1] + apart);
+            ([grows[0], middle, 0.5 * (grows[1] - apart)], middle)
+        };
+        (rate >= -self.tolerance / mu && against <= self.tolerance / mu).then_some(strain)
+    }
+
+    fn root(&self, value: impl Fn(&Circle) -> f64) -> Option<Circle> {
+        let largest = self.trial[0].abs().max(self.trial[2].abs());
+        self.curve.root(largest, value)
+    }
+}
