@@ -262,6 +262,22 @@ impl Case {
     pub fn yields(&self) -> bool {
         self.rocks.values().any(Rock::yields)
     }
+
+    /// Young's modulus over the weight γH of the model (γ of the rock, H the height of the outline) of the rock that
+    /// has least of it and yields; none without such rock or without gravity.
+    pub fn least_stiffness(&self) -> Option<f64> {
+        let heights = || self.domain.outline.iter().map(|point| point[1]);
+        let height = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
+        let weight = libm::hypot(self.gravity.x, self.gravity.y) * height;
+        let yielding = self.rocks.values().filter(|rock| rock.yields());
+        let least = yielding.map(|rock| rock.young / (rock.density * weight)).fold(f64::INFINITY, f64::min);
+        least.is_finite().then_some(least)
+    }
+
+    /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
+    pub fn is_whole(&self) -> bool {
+        self.joints.is_empty() && self.joint_sets.is_empty() && self.bolts.is_empty()
+    }
 }
 
 impl Rock {

@@ -31,7 +31,7 @@ fn factor([rows, angle]: [f64; 2], stiffness: f64, dilation: f64) -> f64 {
 }
 
 /// Elements of a tenth of the height: each factor within 3.5 %, their mean over mesh angles within 2 % and a half of
-/// the bracket; rock that is ten times stiffer within 2.5 % of the softer one (1.4 and 2.1 % were found).
+/// the bracket; rock that is ten times stiffer within 0.5 % of the softer one.
 #[test]
 fn the_factor_of_a_slope_in_soil_is_that_of_griffiths_and_lane() {
     let angles = by_extent([&[0.0, 37.0][..], &[0.0, 7.0, 20.0, 37.0, 52.0], &[0.0, 7.0, 20.0, 37.0, 52.0]]);
@@ -40,7 +40,7 @@ fn the_factor_of_a_slope_in_soil_is_that_of_griffiths_and_lane() {
         let factors = [500.0, 5000.0].map(|stiffness| factor([10.0, angle], stiffness, 0.0));
         println!("{angle}°: {factors:?}");
         assert!(factors.iter().all(|factor| (factor / 1.39 - 1.0).abs() < 0.035), "{angle}°: {factors:?}");
-        assert!((factors[1] / factors[0] - 1.0).abs() < 0.025, "{angle}°: {factors:?}");
+        assert!((factors[1] / factors[0] - 1.0).abs() < 0.005, "{angle}°: {factors:?}");
         sum += factors.iter().sum::<f64>();
     }
     let mean = 0.5 * sum / angles.len() as f64;

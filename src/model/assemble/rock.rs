@@ -111,7 +111,9 @@ const UNSEEN: [f64; 2] = [3.0, 2.0];
 /// By how much (%) factors of safety of a rock come out too high with elements of a tenth of a height (m).
 fn too_strong(case: &Case, rock: &Rock, height: f64) -> f64 {
     let weight = rock.density * libm::hypot(case.gravity.x, case.gravity.y) * height;
-    TOO_STRONG[usize::from(rock.dilates())] + STIFFER * libm::log10(rock.young / weight / SOFT).max(0.0)
+    // Trials of whole rock are made with a stiffness for which nothing is added.
+    let stiffer = if case.is_whole() { 0.0 } else { libm::log10(rock.young / weight / SOFT).max(0.0) };
+    TOO_STRONG[usize::from(rock.dilates())] + STIFFER * stiffer
 }
 
 /// Warns that factors of safety of rock that yields come out too high on a coarse mesh (theory, section 15).
