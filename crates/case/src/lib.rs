@@ -719,7 +719,8 @@ pub struct Output {
     /// Whether to write VTU frames.
     pub frames: bool,
     /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each stage
-    /// `displacement`, `joints`, `stress`), `false` for none, or a list of exactly those to draw.
+    /// `displacement_contours`, `joints`, `mean_stress_contours`), `false` for none, or a list of exactly those to
+    /// draw.
     pub pictures: Pictures,
 }
 

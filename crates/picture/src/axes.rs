@@ -210,6 +210,21 @@ pub fn number_text(value: f64) -> String {
     with_minus(trimmed(format!("{value:.*}", (3 - exponent).max(0) as usize)))
 }
 
+/// A number in three digits, for readers: `94.6`, `1.44`, `2510`.
+pub fn three_digits(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return number_text(value);
+    }
+    // Rounding first keeps 9.996 from becoming 10.00.
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let exponent = libm::log10(rounded.abs() * (1.0 + 1e-12)).floor() as i32;
+    if !(-4..7).contains(&exponent) {
+        return number_text(rounded);
+    }
+    with_minus(format!("{rounded:.*}", (2 - exponent).max(0) as usize))
+}
+
 /// A value in three digits with the prefix in which it reads well: `1.25 MPa`.
 pub fn si_text(value: f64, unit: &str) -> String {
     const PREFIXES: [(f64, &str); 5] = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m")];

@@ -43,6 +43,8 @@ impl Entry {
 pub enum Sign {
     /// Text alone.
     None,
+    /// Text below that of the entry before.
+    Blank,
     /// A line of a colour and a width (px).
     Line(Colour, f64),
     /// A broken line.
@@ -130,6 +132,7 @@ fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
     };
     match sign {
         Sign::None => return 0.0,
+        Sign::Blank => {}
         Sign::Line(colour, width) => sheet.line([left, y], [right, y], Style::line(colour, width)),
         Sign::Dashed(colour, width) => sheet.line([left, y], [right, y], Style::line(colour, width).dashed()),
         Sign::Hollow => {

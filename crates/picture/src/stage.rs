@@ -346,12 +346,7 @@ impl<'a> StageSheet<'a> {
         draw_bolts(&mut self.sheet, &view, &there);
         let mut labels = Labels::new(view.area);
         for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            let state = match bolt.condition {
-                BoltCondition::Broken => " broken",
-                BoltCondition::Yielded => " yields",
-                _ => "",
-            };
-            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &(si_text(bolt.force, "N/m") + state));
+            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
         }
         view.draw_axes(&mut self.sheet);
     }

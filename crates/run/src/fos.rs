@@ -25,7 +25,7 @@ use enmm_stability::strength_reduction::{
 };
 
 /// Pictures of the trials and of the mechanism.
-const PICTURES: [&str; 2] = ["fos.png", "failure.png"];
+const PICTURES: [&str; 2] = ["fos", "failure"];
 
 /// How to look for the factor of safety of a case, and where results go.
 #[derive(Debug)]
@@ -181,14 +181,15 @@ fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<
 
 fn draw(directory: &Path, reduction: &Reduction) -> io::Result<()> {
     let title = &reduction.simulation.case().title;
-    trials_picture(title, reduction).write_png(&directory.join(PICTURES[0]))?;
-    failure_picture(title, reduction).write_png(&directory.join(PICTURES[1]))
+    trials_picture(title, reduction).write(directory, PICTURES[0])?;
+    failure_picture(title, reduction).write(directory, PICTURES[1])
 }
 
 /// Removes the pictures of an earlier search, and its page, unless a run has left one there.
 fn remove_drawings(directory: &Path) -> io::Result<()> {
     let page = (!has_run(directory)).then_some(PAGE);
-    let drawings = PICTURES.into_iter().chain(page).map(|name| directory.join(name));
+    let pictures = PICTURES.into_iter().flat_map(|name| ["png", "svg"].map(|end| format!("{name}.{end}")));
+    let drawings = pictures.chain(page.map(str::to_owned)).map(|name| directory.join(name));
     drawings.filter(|path| path.exists()).try_for_each(|path| fs::remove_file(&path).map_err(at_path(&path)))
 }
 

@@ -347,7 +347,9 @@ impl<'a> Driver<'a> {
     ) -> Result<(), RunError> {
         let after = rows::monitors(&self.simulation);
         let dt = [dt_before, self.simulation.model().dt];
-        let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
+        let tensions = rows::tensions(&self.simulation);
+        let stage = self.simulation.state().stage;
+        let row = rows::row(stage, report, before, &after, dt, sweeps_mean, &tensions);
         self.history.row(&row).and_then(|()| self.film.row(&row)).map_err(RunError::Output)
     }
 
