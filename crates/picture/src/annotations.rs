@@ -173,6 +173,11 @@ fn load_of_port(port: &Port) -> Option<LoadMark> {
     }
 }
 
+/// A number in three digits, without zeros at its end.
+fn short(value: f64) -> String {
+    number_text(format!("{value:.2e}").parse().unwrap_or(value))
+}
+
 /// Direction of the section, in words; empty without one.
 fn section(simulation: &Simulation) -> String {
     let azimuth = simulation.case().section.map(|section| section.azimuth_deg.rem_euclid(360.0));
@@ -216,7 +221,7 @@ fn dip(angle: f64, scatter: &str) -> String {
     } else {
         " left"
     };
-    format!("dip {}{scatter}°{side}", three_digits(angle.abs()))
+    format!("dip {}{scatter}°{side}", short(angle.abs()))
 }
 
 /// Actions on all rock, in words.
@@ -277,7 +282,7 @@ fn sets(simulation: &Simulation) -> Vec<SetMark> {
         let scatter = if set.dip_sd_deg > 0.0 { format!(" ± {}", number_text(set.dip_sd_deg)) } else { String::new() };
         SetMark {
             name: set.name.clone().unwrap_or_else(|| format!("set {}", k + 1)),
-            detail: format!("{}, every {} m", dip(set.angle().to_degrees(), &scatter), three_digits(set.spacing)),
+            detail: format!("{}, every {} m", dip(set.angle().to_degrees(), &scatter), short(set.spacing)),
             direction,
             place: middles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied(),
         }

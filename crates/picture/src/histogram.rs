@@ -16,7 +16,9 @@ const BINS_MAX: f64 = 100.0;
 const FAR: f64 = 4.0;
 /// Points of the curve of a fitted density.
 const CURVE: usize = 240;
-/// Samples at or above the limit.
+/// Samples below the limit.
+const FAILS: Colour = Colour(232, 150, 176);
+/// Samples at or above it.
 const STANDS: Colour = Colour(190, 206, 224);
 
 /// A distribution with the mean and the standard deviation of the outputs.
@@ -71,7 +73,9 @@ pub fn histogram_picture(
     let centre = frame.left + 0.5 * frame.width;
     let fit = fit.filter(|fit| fit.sd > 0.0 && fit.mean.is_finite() && (fit.mean > 0.0 || !fit.is_lognormal));
     match Bins::of(shown, limit) {
-        Some(bins) => Chart::new(&frame, bins, limit).draw(&mut sheet, &sorted, fit.as_ref()),
+        Some(bins) => {
+            Chart::new(&frame, bins, limit, fit.zip(Some(sorted.len()))).draw(&mut sheet, &sorted, fit.as_ref())
+        }
         None => sheet.text([centre, TOP + 0.5 * HEIGHT], "no outputs", middle),
     }
     sheet.rect(&frame, Style::line(INK, 1.2));
@@ -81,6 +85,11 @@ pub fn histogram_picture(
     sheet.text([frame.right() + 72.0, height], "share of the samples below", middle.upward());
     draw_legend(&mut sheet, frame.bottom() + BELOW_FRAME + LINE_HEIGHT, limit, fit, sorted.len() - shown.len());
     sheet.finish()
+}
+
+/// A point of the curve of a density between two outputs.
+fn along([low, high]: [f64; 2], k: usize) -> f64 {
+    low + (high - low) * k as f64 / CURVE as f64
 }
 
 /// How many of the sorted outputs the frame shows: all but those far above the others.
@@ -120,13 +129,13 @@ fn draw_legend(sheet: &mut Sheet, y: f64, limit: f64, fit: Option<Fit>, beyond: 
     }
 }
 
-/// A bar: that of samples that fail is dark and hatched.
+/// A bar: that of samples that fail is hatched.
 fn fill(sheet: &mut Sheet, bar: &Rect, fails: bool) {
     let mut path = Path::default();
     path.polygon([[bar.left, bar.top], [bar.right(), bar.top], [bar.right(), bar.bottom()], [bar.left, bar.bottom()]]);
-    sheet.path(path.clone(), Style::fill(if fails { ACCENT } else { STANDS }).edged(INK, 0.6));
+    sheet.path(path.clone(), Style::fill(if fails { FAILS } else { STANDS }).edged(INK, 0.6));
     if fails {
-        sheet.hatched(path, INK);
+        sheet.hatched(path, ACCENT);
     }
 }
 
@@ -142,15 +151,23 @@ struct Chart<'a> {
 }
 
 impl<'a> Chart<'a> {
-    fn new(frame: &'a Rect, bins: Bins, limit: f64) -> Self {
+    /// `fit` is the density with the number of samples.
+    fn new(frame: &'a Rect, bins: Bins, limit: f64, fit: Option<(Fit, usize)>) -> Self {
         let end = bins.start + bins.width * bins.counts.len() as f64;
         let span = end - bins.start;
         // A limit just outside the outputs is shown beside them.
         let near = |edge: f64| if (limit - edge).abs() <= span { limit } else { edge };
         let (low, high) = (near(bins.start).min(bins.start), near(end).max(end));
         let margin = 0.03 * (high - low);
-        let most = bins.counts.iter().copied().max().unwrap_or(1).max(1) as f64 * 1.08;
-        Self { frame, bins, limit, outputs: [low - margin, high + margin], most }
+        let outputs = [low - margin, high + margin];
+        let counted = bins.counts.iter().copied().max().unwrap_or(1).max(1) as f64;
+        let fitted = fit.map_or(0.0, |(fit, n)| {
+            let at = |k: usize| fit.density(along(outputs, k)) * n as f64 * bins.width;
+            (0..=CURVE).map(at).fold(0.0, f64::max)
+        });
+        // A narrow density must not press the bars down.
+        let most = 1.08 * counted.max(fitted.min(2.0 * counted));
+        Self { frame, bins, limit, outputs, most }
     }
 
     fn x(&self, output: f64) -> f64 {
@@ -193,11 +210,9 @@ impl<'a> Chart<'a> {
 
     /// The density as the number of samples that it puts into a bin.
     fn density(&self, fit: &Fit, n: usize) -> Path {
-        let [low, high] = self.outputs;
-        let at = |k: usize| low + (high - low) * k as f64 / CURVE as f64;
         let place = |output: f64| [self.x(output), self.y(fit.density(output) * n as f64 * self.bins.width)];
         let mut path = Path::default();
-        path.line((0..=CURVE).map(at).map(place));
+        path.line((0..=CURVE).map(|k| along(self.outputs, k)).map(place));
         path
     }
 

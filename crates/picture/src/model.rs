@@ -24,6 +24,8 @@ const LENGTH_ROW: f64 = 40.0;
 const MESH_AREA: f64 = 60.0;
 /// More pieces of joint traces than this are drawn as thin lines.
 const TRACES_MANY: usize = 2500;
+/// Width (px) of the joints of the law of most of them.
+const JOINT_WIDTH: f64 = 1.8;
 /// Distance (px) of the signs of supports along an edge.
 const SUPPORT_DISTANCE: f64 = 32.0;
 /// Length (px) of the arrow of the largest force, and of a traction.
@@ -266,7 +268,7 @@ impl Model<'_> {
     fn draw_joints(&self, sheet: &mut Sheet, view: &View) {
         let many = self.annotations.trace_segments.len() > TRACES_MANY;
         if !many || outlines_show(self.snapshot, view) {
-            self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
+            self.draw_traces(sheet, view, if many { 1.1 } else { JOINT_WIDTH });
         }
     }
 
@@ -300,17 +302,36 @@ impl Model<'_> {
         self.draw_outlines(sheet, view);
     }
 
-    /// Joints, coloured by law.
+    /// Joints by law.
     pub fn draw_traces(&self, sheet: &mut Sheet, view: &View, width: f64) {
-        for (law, &colour) in LINES.iter().enumerate() {
+        let laws = self.annotations.trace_segments.iter().map(|(_, law)| *law as usize + 1).max().unwrap_or(0);
+        for (law, style) in self.law_styles(laws, width).into_iter().enumerate() {
             let mut path = Path::default();
-            let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
+            let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize == law);
             let shows = |ends: &[Point; 2]| Bounds::of(ends).is_some_and(|bounds| bounds.overlaps(&view.world));
             for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable) && shows(ends)) {
                 path.line(ends.iter().map(|end| view.pixel(end)));
             }
-            sheet.path(path, Style::line(colour, width));
+            sheet.path(path, style);
         }
+    }
+
+    /// The line of each law: that of most joints is thin, those of others are wide or broken, so that they differ
+    /// without colour.
+    fn law_styles(&self, laws: usize, width: f64) -> Vec<Style> {
+        let mut lengths = vec![0.0; laws];
+        for (ends, law) in self.annotations.trace_segments.iter().filter(|(ends, _)| ends.iter().all(is_drawable)) {
+            if let Some(length) = lengths.get_mut(*law as usize) {
+                *length += (ends[1] - ends[0]).norm();
+            }
+        }
+        let rank = |law: usize| lengths.iter().filter(|length| **length > lengths[law]).count();
+        let style = |law: usize| {
+            let wide = if matches!(rank(law) % 4, 1 | 2) { 1.9 * width } else { width };
+            let style = Style::line(LINES[law % LINES.len()], wide);
+            if rank(law) % 4 >= 2 { style.dashed() } else { style }
+        };
+        (0..laws).map(style).collect()
     }
 
     /// Water outside the rock, which is drawn over it afterwards.
@@ -478,9 +499,12 @@ impl Model<'_> {
     fn joint_entries(&self) -> Vec<Entry> {
         let used: HashSet<u32> = self.annotations.trace_segments.iter().map(|(_, law)| *law).collect();
         let laws = self.snapshot.joint_laws.iter().enumerate().filter(|(law, _)| used.contains(&(*law as u32)));
+        let styles = self.law_styles(self.snapshot.joint_laws.len(), JOINT_WIDTH);
         let law = |(law, name): (usize, &String)| {
             let values = self.annotations.law_values.get(law);
-            with_values(Entry::new(Sign::Line(LINES[law % LINES.len()], 2.4), name), values)
+            let (colour, width) = styles[law].stroke.unwrap_or((INK, JOINT_WIDTH));
+            let sign = if styles[law].dashed { Sign::Dashed(colour, width) } else { Sign::Line(colour, width) };
+            with_values(Entry::new(sign, name), values)
         };
         let mut entries: Vec<Entry> = laws.flat_map(law).collect();
         let sets = self.annotations.sets.iter().filter(|set| set.place.is_some());

@@ -3,7 +3,7 @@
 use super::Picture;
 use super::annotations::{bolt_marks, counted};
 use super::axes::{
-    Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, is_drawable, superscript,
+    Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, is_drawable, number_text,
     three_digits,
 };
 use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE, WHITE};
@@ -173,7 +173,7 @@ impl Chart {
         sheet.rect(&self.frame, Style::line(INK, 1.2));
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
         let middle = self.frame.top + 0.5 * self.frame.height;
-        sheet.text([LEFT - 76.0, middle], "largest displacement [m]", style);
+        sheet.text([LEFT - 76.0, middle], "largest displacement [mm]", style);
     }
 
     /// Upright lines at F and at the factors of limit analysis that the frame shows, with their names above it.
@@ -212,7 +212,7 @@ impl Chart {
         for decade in self.decades[0].ceil() as i32..=self.decades[1].floor() as i32 {
             let y = self.y(10f64.powi(decade));
             draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
-            draw_left_number(sheet, [self.frame.left, y], &format!("10{}", superscript(decade)));
+            draw_left_number(sheet, [self.frame.left, y], &number_text(1e3 * 10f64.powi(decade)));
         }
     }
 }

@@ -280,7 +280,7 @@ fn the_model_names_what_acts_on_it() {
     for name in names.iter().chain(&more).chain(&["set 1: 38°, every 3.4 m", "10 kPa"]) {
         assert!(picture.svg().contains(&format!(">{name}<")), "{name}");
     }
-    assert!(picture.svg().contains(">20 m<"), "a length bar");
+    assert!(picture.svg().contains(">10 m<"), "a length bar");
     // A monitor and a port of one name and place have one label.
     assert_eq!(picture.svg().matches(">crest<").count(), 1);
     assert!(!picture.svg().contains("cover"));

@@ -12,8 +12,10 @@ use serde_json::{Value, json};
 use super::bound::{bound_record, bracket_record};
 use super::folder::Folder;
 pub use super::found::{Found, remedy};
+use super::input::input_record;
 use super::mechanism_page::write_fos_page;
 use super::run::has_run;
+use super::summary::BoltRecord;
 use enmm::engine_version;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
@@ -219,6 +221,7 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "least_area": found.which.least_area,
         "wall_seconds": wall,
         "mechanisms": mechanisms,
+        "input": input_record(loaded),
     });
     if !loaded.settings.is_empty() {
         record["settings"] = json!(loaded.settings);
@@ -253,6 +256,7 @@ fn search_record(reduction: &Reduction) -> Value {
             (None, Err(refused)) => json!({ "refused": refused }),
         },
         "remedy": remedy(reduction),
+        "bolts": BoltRecord::of(&reduction.simulation),
         "notes": reduction.simulation.built().notes,
         "warnings": reduction.warnings,
     });

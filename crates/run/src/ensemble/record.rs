@@ -12,6 +12,8 @@ use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Fit, histogram_picture, three_digits};
 use serde_json::{Value as Json, json};
 
+use crate::input::input_record;
+
 use super::{EnsembleError, EnsembleOptions, columns};
 
 /// Confidence of the intervals.
@@ -203,6 +205,7 @@ impl EnsembleResult {
             "fit": self.fit().map(|fit| if fit.is_lognormal { "lognormal" } else { "normal" }),
             "quantiles": self.quantiles().map(|(share, output)| [share, output]),
             "rank_correlation": self.sensitivity().into_iter().collect::<BTreeMap<_, _>>(),
+            "input": input_record(loaded),
             "wall_seconds": wall,
         })
     }

@@ -11,6 +11,7 @@ use crate::blocks::write_blocks;
 use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
+use crate::input::input_record;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
@@ -546,6 +547,7 @@ impl<'a> Driver<'a> {
             ledger: &self.progress.ledger,
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
+            input: input_record(self.loaded),
             doubt,
         };
         let summary = Summary::new(&self.simulation, record);

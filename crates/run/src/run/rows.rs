@@ -258,7 +258,28 @@ fn base_motions(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
             points,
         })
     };
-    case.base_motions.iter().filter_map(motion).collect()
+    case.base_motions.iter().filter_map(motion).chain(waves(case, stages, end)).collect()
+}
+
+/// Particle velocities of the waves that come in through quiet boundaries.
+fn waves(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
+    let of = |quiet: &enmm::model::case::Quiet| -> Option<Vec<Series>> {
+        let start = stages.get(case.motion_stage(quiet.stage.as_deref())?)?.time;
+        let (wave, rows) = (quiet.wave?, quiet.table.as_ref()?);
+        let series = |(name, part): (&str, f64)| Series {
+            name: name.to_owned(),
+            quantity: "incoming wave".to_owned(),
+            unit: "m/s".to_owned(),
+            points: rows
+                .iter()
+                .map(|[time, factor]| (start + time, quiet.scale * factor * part))
+                .filter(|(time, _)| *time <= end)
+                .collect(),
+        };
+        let parts = [("wave x", wave[0]), ("wave y", wave[1])].into_iter().filter(|(_, part)| *part != 0.0);
+        Some(parts.map(series).filter(|series| !series.points.is_empty()).collect())
+    };
+    case.quiets.iter().filter_map(of).flatten().collect()
 }
 
 /// The empty series of a column; none if the pictures leave it out.
