@@ -14,7 +14,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 29] = [
+const FILES: [&str; 31] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -42,6 +42,8 @@ const FILES: [&str; 29] = [
     "model.png",
     "model.svg",
     "report.html",
+    "report_a4.html",
+    "report_a4.pdf",
     "run.pvd",
     "summary.json",
 ];
