@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm_io::files::remove_if_there;
 use enmm_paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
 use enmm_run::Folder;
 
@@ -36,7 +37,10 @@ pub fn report(arguments: &Arguments) -> ExitCode {
         Ok(held) => held,
         Err(error) => return refuse(error),
     };
-    let page = match write_report(directory, &records) {
+    let pdf = directory.join(REPORT_PDF);
+    // A PDF of an earlier report would be taken for that of this one.
+    let written = remove_if_there(&pdf).and_then(|()| write_report(directory, &records));
+    let page = match written {
         Ok(page) => page,
         Err(error) => return refuse(error),
     };
@@ -51,7 +55,6 @@ pub fn report(arguments: &Arguments) -> ExitCode {
         ));
         return ExitCode::SUCCESS;
     };
-    let pdf = directory.join(REPORT_PDF);
     match program.convert(&page, &pdf) {
         Ok(()) => {
             print_line(&format!("{:<20} {}", "PDF", pdf.display()));
