@@ -52,8 +52,9 @@ pub struct Case {
     /// Construction joints, along which later stages part the rock.
     #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<Cut>,
-    /// Where the section lies, for joint sets by dip direction.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Where the section lies: for joint sets by dip direction, pictures and the report.
+    // Not written: once joint sets have their angles, the model does not depend on it.
+    #[serde(default, skip_serializing)]
     pub section: Option<Section>,
     /// Rocks by name.
     #[serde(rename = "rock")]

@@ -42,7 +42,10 @@ fn a_search_for_tables_alone_removes_the_drawings_of_the_search_before() {
         assert_eq!(place.enmm(words).status, Some(0));
         place.names_in("out")
     };
-    assert_eq!(left(&search), ["failure.png", "fos.csv", "fos.json", "fos.png", "report.html"]);
+    assert_eq!(
+        left(&search),
+        ["failure.png", "failure.svg", "fos.csv", "fos.json", "fos.png", "fos.svg", "report.html"]
+    );
     assert_eq!(left(&[&search[..], &["--no-pictures"]].concat()), ["fos.csv", "fos.json"]);
 }
 

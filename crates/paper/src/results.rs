@@ -31,7 +31,7 @@ pub fn run_chapter(records: &Records) -> String {
     };
     let rows: Vec<Vec<Cell>> = entries(&run.json["stages"]).iter().map(row).collect();
     let size = facts(&[
-        ("Blocks", plain(&run.json["model"]["blocks"], "", Three).into()),
+        ("Blocks", plain(&run.json["model"]["blocks"], "", Digits::Typed).into()),
         ("Area of rock", plain(&run.json["model"]["area"], "m²", Three).into()),
         ("Mesh size", length(&run.json["model"]["mesh_size"], Three).into()),
     ]);
@@ -139,7 +139,7 @@ pub fn factor_chapter(records: &Records) -> String {
         ("Greatest F at which the slope stands", plain(&bracket["stable"], "", Digits::Typed).into()),
         ("Least F at which it does not", plain(&bracket["unstable"], "", Digits::Typed).into()),
         ("Factor by limit analysis", limit_factor(&json["bound"])),
-        ("Blocks that fail", plain(&failing["blocks"], "", Three).into()),
+        ("Blocks that fail", plain(&failing["blocks"], "", Digits::Typed).into()),
         ("What they do", fate),
         ("Area that fails", plain(&failing["area"], "m²", Three).into()),
         ("Mass that fails", mass(&failing["mass"]).into()),
@@ -164,7 +164,7 @@ fn mechanisms(json: &Value) -> String {
         vec![
             Cell::from(format!("{}", k + 1)),
             factor_cell(search),
-            plain(&failing["blocks"], "", Three).into(),
+            plain(&failing["blocks"], "", Digits::Typed).into(),
             plain(&failing["area"], "m²", Three).into(),
             mass(&failing["mass"]).into(),
             if search["counts"] == Value::Bool(false) { "too small to count".into() } else { Cell::Empty },
@@ -181,7 +181,7 @@ fn trials(json: &Value) -> String {
             plain(&trial["factor"], "", Digits::Typed).into(),
             text(&trial["verdict"]).into(),
             length(&trial["displacement"], Three).into(),
-            plain(&trial["failing_blocks"], "", Three).into(),
+            plain(&trial["failing_blocks"], "", Digits::Typed).into(),
             plain(&trial["failing_area"], "m²", Three).into(),
         ]
     };
@@ -199,8 +199,8 @@ pub fn bound_chapter(records: &Records) -> String {
         ("Factor if every corner holds", side(&bound["catching"])),
         ("Lower bound", side(&bound["lower"])),
         ("Upper bound", side(&bound["upper"])),
-        ("Blocks", plain(&bound["blocks"], "", Three).into()),
-        ("Blocks that can move", plain(&bound["free_blocks"], "", Three).into()),
+        ("Blocks", plain(&bound["blocks"], "", Digits::Typed).into()),
+        ("Blocks that can move", plain(&bound["free_blocks"], "", Digits::Typed).into()),
     ];
     let note = "Limit analysis looks for forces between the blocks that hold the slope, without following its motion. Its \
                 factor is a second opinion: that of strength reduction should not lie above it.";

@@ -54,6 +54,17 @@ impl Cell {
         }
     }
 
+    /// HTML of the cell in a column.
+    fn column(&self) -> String {
+        let is_long = |text: &str| text.split_whitespace().any(|word| word.chars().count() > LONG);
+        let class = match self {
+            Self::Number(_) => " class=\"number\"",
+            Self::Text(text) if is_long(text) => " class=\"long\"",
+            _ => "",
+        };
+        format!("<td{class}>{}</td>", self.html())
+    }
+
     fn is_empty(&self) -> bool {
         *self == Self::Empty
     }
@@ -64,27 +75,47 @@ pub fn text_html(text: &str) -> String {
     escape(text).into_owned()
 }
 
-/// A table with a head; empty without rows. Columns that are empty in all rows are left out.
+/// Columns that stand side by side on the paper at most; a table with more has a line for each of its columns.
+const COLUMNS_MAX: usize = 7;
+/// Rows that such a table has side by side.
+const BESIDE: usize = 4;
+/// Letters of a word that is broken anywhere.
+const LONG: usize = 18;
+
+/// A table with a head; empty without rows. Columns that are empty in all rows are left out. One with many columns is
+/// turned: its rows stand side by side, four at a time.
 pub fn table(head: &[&str], rows: &[Vec<Cell>]) -> String {
     if rows.is_empty() {
         return String::new();
     }
     let used = |k: usize| rows.iter().any(|row| row.get(k).is_some_and(|cell| !cell.is_empty()));
     let columns: Vec<usize> = (0..head.len()).filter(|&k| used(k)).collect();
+    if columns.len() > COLUMNS_MAX {
+        return rows.chunks(BESIDE).map(|rows| turned(head, rows, &columns)).collect();
+    }
     let titles: String = columns.iter().map(|&k| format!("<th scope=\"col\">{}</th>", text_html(head[k]))).collect();
     let line = |row: &Vec<Cell>| {
         let cells: String = columns
             .iter()
             .map(|&k| {
                 let cell = row.get(k).unwrap_or(&Cell::Empty);
-                let class = if matches!(cell, Cell::Number(_)) { " class=\"number\"" } else { "" };
-                format!("<td{class}>{}</td>", cell.html())
+                cell.column()
             })
             .collect();
         format!("<tr>{cells}</tr>\n")
     };
     let body: String = rows.iter().map(line).collect();
     format!("<table>\n<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n")
+}
+
+/// A table with a line for each column.
+fn turned(head: &[&str], rows: &[Vec<Cell>], columns: &[usize]) -> String {
+    let line = |&k: &usize| {
+        let cells: String = rows.iter().map(|row| row.get(k).unwrap_or(&Cell::Empty).column()).collect();
+        format!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", text_html(head[k]))
+    };
+    let body: String = columns.iter().map(line).collect();
+    format!("<table class=\"turned\">\n<tbody>\n{body}</tbody>\n</table>\n")
 }
 
 /// Names with their values, one below the other; those without a value are left out.

@@ -5,9 +5,9 @@ use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle, text_width};
 use enmm::geometry::{Point, Vector};
 
 /// Size (px) of numbers on axes.
-pub const TICK_SIZE: f64 = 15.0;
+pub const TICK_SIZE: f64 = 17.0;
 /// Size (px) of axis titles, legends and notes.
-pub const LABEL_SIZE: f64 = 16.0;
+pub const LABEL_SIZE: f64 = 19.0;
 /// Length (px) of a tick.
 const TICK_LENGTH: f64 = 6.0;
 /// Distance (px) of the ticks that are aimed at, along x and y.
@@ -129,7 +129,7 @@ impl View {
             sheet.text([x, bottom + TICK_LENGTH + TICK_SIZE], &ticks.label(value), style);
         }
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-        sheet.text([self.area.left + 0.5 * self.area.width, bottom + 45.0], "x [m]", style);
+        sheet.text([self.area.left + 0.5 * self.area.width, bottom + 48.0], "x [m]", style);
     }
 
     fn draw_vertical_axis(&self, sheet: &mut Sheet) {

@@ -508,7 +508,7 @@ impl Model<'_> {
         };
         let mut entries: Vec<Entry> = laws.flat_map(law).collect();
         let sets = self.annotations.sets.iter().filter(|set| set.place.is_some());
-        entries.extend(sets.map(|set| Entry::new(Sign::None, format!("{}: {}", set.name, set.detail))));
+        entries.extend(sets.flat_map(|set| with_values(Entry::new(Sign::Stroke, &set.name), Some(&set.detail))));
         entries
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Picture;
-use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_text};
+use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_text, three_digits};
 use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
@@ -222,7 +222,7 @@ fn vectors_picture(
     let ticks = if logarithmic { decade_ticks(largest / size) } else { linear_ticks(largest / size) };
     draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let scale = if logarithmic { ", logarithmic scale" } else { "" };
-    sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", number_text(largest / size)))
+    sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", three_digits(largest / size)))
 }
 
 /// Ticks from zero to `largest`.

@@ -6,7 +6,7 @@ use super::history::{FARTHEST, StageStart};
 use super::sheet::{Sheet, Style, TextStyle, fitted, text_width};
 
 /// Height (px) of a row of names above the first frame.
-pub const NAME_ROW: f64 = 22.0;
+pub const NAME_ROW: f64 = 24.0;
 /// Rows of names at most.
 const NAME_ROWS: usize = 4;
 /// Width (px) of a name at most.

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use enmm::geometry::{Point, Vector};
-use enmm::model::case::PictureKind;
+use enmm::model::case::{PictureKind, StageKind};
 use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
 use enmm_observe::{Joints, Polygons, Snapshot, moved_since, references, water_surface};
@@ -174,7 +174,12 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
     let snapshot = Snapshot::of(simulation);
     let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
     let number = simulation.state().stage + 1;
-    let caption = format!("stage {number}, {}, t = {} s", simulation.stage().name, number_text(snapshot.time));
+    let stage = simulation.stage();
+    let time = match stage.kind {
+        StageKind::Static => String::new(),
+        StageKind::Dynamic => format!(", t = {} s", number_text(snapshot.time)),
+    };
+    let caption = format!("stage {number}, {}{time}", stage.name);
     let stage =
         StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
     for (kind, names) in STAGE_PICTURES.into_iter().filter(|(kind, _)| pictures.include(*kind)) {
