@@ -79,6 +79,8 @@ pub fn text_html(text: &str) -> String {
 const COLUMNS_MAX: usize = 7;
 /// Rows that such a table has side by side.
 const BESIDE: usize = 4;
+/// Rows of a table that stays on one page.
+const SHORT: usize = 12;
 /// Letters of a word that is broken anywhere.
 const LONG: usize = 18;
 
@@ -105,7 +107,9 @@ pub fn table(head: &[&str], rows: &[Vec<Cell>]) -> String {
         format!("<tr>{cells}</tr>\n")
     };
     let body: String = rows.iter().map(line).collect();
-    format!("<table>\n<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n")
+    // A short table stays on one page.
+    let class = if rows.len() <= SHORT { " class=\"short\"" } else { "" };
+    format!("<table{class}>\n<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n")
 }
 
 /// A table with a line for each column.
