@@ -37,7 +37,7 @@ function measured(name, value, unit) {
 
 // A coordinate: always in metres, so that two of one place compare.
 function placed(name, value) {
-  return [name, `${Number(value.toFixed(3))} m`.replace("-", "−"), `${value} m`];
+  return [name, `${Number(value.toFixed(4))} m`.replace("-", "−"), `${value} m`];
 }
 
 function section(title, ...children) {

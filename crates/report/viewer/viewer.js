@@ -525,7 +525,7 @@ class Viewer {
 
   key(event) {
     const { target, key } = event;
-    if (by("keys").open) return;
+    if (by("keys").open) return key === "Escape" && by("keys").close();
     if (event.ctrlKey || event.metaKey || event.altKey || target.tagName === "SELECT" || target.id === "magnify")
       return;
     // A focused button or summary takes the space bar itself.
@@ -567,7 +567,8 @@ function offer(blob, name) {
 function csvOf(film) {
   const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const head = film.head.columns.map(({ name, unit }) => cell(unit ? `${name} [${unit}]` : name));
-  const rows = film.rows.time.map((_, k) => film.rows.columns.map((column) => column[k]).join(","));
+  const columns = film.head.columns.map((_, c) => (c === 0 ? film.rows.time : film.rows.columns[c]));
+  const rows = film.rows.time.map((_, k) => columns.map((column) => column[k]).join(","));
   return [head.join(","), ...rows, ""].join("\n");
 }
 
