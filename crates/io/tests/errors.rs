@@ -69,7 +69,7 @@ fn wrong_type_says_expected_and_found() {
 /// A key that may be of two types names both, and the words that a list may have.
 #[test]
 fn wrong_type_names_all_types_and_words() {
-    let kinds = "model, deformed, history, displacement, joints, joint_stress, stress, velocity, covers, \
+    let kinds = "model, deformed, history, energy, displacement, joints, joint_stress, stress, velocity, covers, \
                  displacement_contours, mean_stress_contours";
     for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
         assert_refused(

@@ -129,7 +129,7 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         entry(ContactState::Open, Sign::Hollow, "open"),
     ];
     let mut legends = vec![Legend { title: "Joints, total length", entries }];
-    if !stage.bolts.is_empty() {
+    if stage.bolts.iter().any(|bolt| bolt.condition != BoltCondition::Absent) {
         let entries = vec![Entry::new(Sign::Bolt, "bolt with its tension")];
         legends.push(Legend { title: "Marks", entries });
     }
