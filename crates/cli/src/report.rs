@@ -13,7 +13,8 @@ use crate::{BAD_INPUT, FAILED, fail, print_line};
 /// Arguments of `enmm report`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Directory of results of enmm run, fos, bound or sample; those in its directories fos, bound and sample count too.
+    /// Directory of results of enmm run, fos, bound or sample; those in its directories fos, bound and sample count
+    /// too.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Write no PDF.
@@ -50,8 +51,8 @@ pub fn report(arguments: &Arguments) -> ExitCode {
     }
     let Some(program) = converter.as_deref().map(Converter::named).or_else(Converter::find) else {
         print_line(&format!(
-            "no PDF: no Chromium, Chrome, Edge, weasyprint or wkhtmltopdf is installed; print {REPORT} from a browser, or \
-             name a program by --converter"
+            "no PDF: no Chromium, Chrome, Edge, weasyprint or wkhtmltopdf is installed; print {REPORT} from a browser, \
+             or name a program by --converter"
         ));
         return ExitCode::SUCCESS;
     };

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::html::{chapter, entries, text, texts};
 use crate::number::{Digits, mass, percent, plain};
+use crate::parts::{chapter, entries, text, texts};
 use crate::records::{Record, Records};
 use crate::results::{factor_cell, limit_factor};
 use crate::table::{Cell, facts, list, paragraph, text_html};

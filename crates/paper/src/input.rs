@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::html::{chapter, entries, figure, part, text};
 use crate::number::{Digits, Number, length, plain, prefixed, steel_area};
+use crate::parts::{chapter, entries, figure, part, text};
 use crate::records::Records;
 use crate::table::{Cell, facts, table};
 

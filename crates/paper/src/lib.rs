@@ -8,6 +8,7 @@ mod front;
 mod html;
 mod input;
 mod number;
+mod parts;
 mod pdf;
 mod records;
 mod results;

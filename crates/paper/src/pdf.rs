@@ -47,7 +47,10 @@ pub enum PdfError {
         error: io::Error,
     },
     /// The converter went on for too long.
-    #[error("{} did not end within {} s: print {} from a browser", program.display(), PATIENCE.as_secs(), page.display())]
+    #[error(
+        "{} did not end within {} s: print {} from a browser",
+        program.display(), PATIENCE.as_secs(), page.display()
+    )]
     Slow {
         /// The converter.
         program: PathBuf,

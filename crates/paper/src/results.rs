@@ -2,19 +2,21 @@
 
 use serde_json::Value;
 
-use crate::html::{chapter, entries, figure, part, plain_words, text};
 use crate::input::bolt_name;
 use crate::number::{Digits, length, mass, percent, plain, prefixed};
+use crate::parts::{chapter, entries, figure, part, plain_words, text};
 use crate::records::{Record, Records};
 use crate::table::{Cell, facts, paragraph, table};
 
 use Digits::Three;
 
 /// How F is to be read.
-const CONVENTION: &str = "F is the number by which the strength of the joints (cohesion, tan φ and tensile strength, peak \
-    and residual) and of rock that yields is divided when the slope just stands. Weights, water, loads and the yield \
-    force of bolts are not divided: bolts carry what the motion of the rock brings to them, up to their yield force. All \
-    trials start from one state of rest. A slope that slides and is caught by other blocks does not count as stable.";
+const CONVENTION: &str = "\
+    F is the number by which the strength of the joints (cohesion, tan φ and tensile strength, peak and \
+    residual) and of rock that yields is divided when the slope just stands. Weights, water, loads and \
+    the yield force of bolts are not divided: bolts carry what the motion of the rock brings to them, up \
+    to their yield force. All trials start from one state of rest. A slope that slides and is caught by \
+    other blocks does not count as stable.";
 
 /// Stages, histories, and bolts at the end of a run.
 pub fn run_chapter(records: &Records) -> String {
@@ -202,8 +204,8 @@ pub fn bound_chapter(records: &Records) -> String {
         ("Blocks", plain(&bound["blocks"], "", Digits::Typed).into()),
         ("Blocks that can move", plain(&bound["free_blocks"], "", Digits::Typed).into()),
     ];
-    let note = "Limit analysis looks for forces between the blocks that hold the slope, without following its motion. Its \
-                factor is a second opinion: that of strength reduction should not lie above it.";
+    let note = "Limit analysis looks for forces between the blocks that hold the slope, without following its \
+                motion. Its factor is a second opinion: that of strength reduction should not lie above it.";
     chapter("Limit analysis", &(paragraph(note) + &facts(&rows)))
 }
 

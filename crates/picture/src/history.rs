@@ -8,7 +8,7 @@ use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number
 use super::colour::{BAND, Colour, GREY, INK, LINES};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
-use super::stage_axis::{NAME_ROW, StageAxis};
+use super::stage_axis::{FARTHEST, NAME_ROW, StageAxis, StageStart};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
@@ -23,8 +23,6 @@ const LOWEST: f64 = 170.0;
 const HIGHEST: f64 = 520.0;
 /// Distance (px) of value ticks that is aimed at.
 const TICK_DISTANCE: f64 = 36.0;
-/// Values beyond this are taken for numerical failures and left out.
-pub(super) const FARTHEST: f64 = 1e300;
 
 /// A quantity over time.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,17 +35,6 @@ pub struct Series {
     pub unit: String,
     /// Time (s) and value.
     pub points: Vec<(f64, f64)>,
-}
-
-/// Where a stage begins on the time axis.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct StageStart {
-    /// Name of the stage.
-    pub name: String,
-    /// Its first time (s).
-    pub time: f64,
-    /// Whether its time is a path to equilibrium and no physics.
-    pub is_static: bool,
 }
 
 /// Draws series over the stages, those of one quantity in one frame; a broken line and a name mark each of several

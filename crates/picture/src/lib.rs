@@ -38,13 +38,14 @@ pub use contours::{displacement_contours, mean_stress_contours};
 pub use covers::covers_picture;
 pub use displacement::displacement_picture;
 pub use histogram::{Fit, histogram_picture};
-pub use history::{Series, StageStart, history_picture};
+pub use history::{Series, history_picture};
 pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
 pub use reduction::{failure_picture, trials_picture};
 pub use signs::Held;
 pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
+pub use stage_axis::StageStart;
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,7 +17,7 @@ use enmm::geometry::{Point, Vector};
 use enmm_observe::{BoltCondition, Snapshot, height_at};
 
 /// Height (px) of the frame at most.
-const HEIGHT_MAX: f64 = 760.0;
+const HEIGHT_MAX: f64 = 720.0;
 /// Height (px) below the axis for the length bar.
 const LENGTH_ROW: f64 = 40.0;
 /// Mean element area (px²) below which the mesh would only grey the picture.

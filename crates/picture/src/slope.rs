@@ -15,7 +15,7 @@ pub const TOP: f64 = 100.0;
 /// Right and bottom margin (px).
 pub const MARGIN: f64 = 32.0;
 /// Distance (px) of the lines of a legend.
-pub const LINE_HEIGHT: f64 = 28.0;
+pub const LINE_HEIGHT: f64 = 26.0;
 /// Height (px) below a frame for numbers and the title of the axis.
 pub const BELOW_FRAME: f64 = 66.0;
 

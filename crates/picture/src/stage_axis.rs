@@ -2,9 +2,10 @@
 
 use super::axes::{LABEL_SIZE, Ticks};
 use super::colour::GREY;
-use super::history::{FARTHEST, StageStart};
 use super::sheet::{Sheet, Style, TextStyle, fitted, text_width};
 
+/// Values beyond this are taken for numerical failures and left out.
+pub const FARTHEST: f64 = 1e300;
 /// Height (px) of a row of names above the first frame.
 pub const NAME_ROW: f64 = 24.0;
 /// Rows of names at most.
@@ -17,6 +18,17 @@ const STATIC_SHARES: [f64; 2] = [0.12, 0.45];
 const LEAST_SHARE: f64 = 0.04;
 /// Distance (px) of numbers of time that is aimed at.
 const TICK_DISTANCE: f64 = 110.0;
+
+/// Where a stage begins on the time axis.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StageStart {
+    /// Name of the stage.
+    pub name: String,
+    /// Its first time (s).
+    pub time: f64,
+    /// Whether its time is a path to equilibrium and no physics.
+    pub is_static: bool,
+}
 
 /// Stages side by side.
 #[derive(Debug)]

@@ -165,7 +165,8 @@ pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
 }
 
 /// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
-/// step before (s), `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to the time of the row.
+/// step before (s), `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to
+/// the time of the row.
 pub fn row(
     stage: u32,
     report: &StepReport,
